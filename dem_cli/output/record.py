@@ -1,0 +1,61 @@
+"""What a solver hands to whoever keeps results: frames, history rows, a summary. Plain arrays, no files."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
+
+
+class ContactRecord(NamedTuple):
+    """All contact points at one instant. A joint owns several points (2D: its two ends)."""
+
+    joint: np.ndarray  # joint that owns the point, (n,) int64; joints are renumbered at each detection
+    blocks: np.ndarray  # the two blocks a, b, (n, 2) int64
+    points: np.ndarray  # where it acts [m], (n, d)
+    normals: np.ndarray  # unit, from a to b, (n, d)
+    normal_force: np.ndarray  # compression positive [N], (n,)
+    shear_force: np.ndarray  # along the tangent(s), acting on b [N], (n, d - 1); 2D tangent = normal turned by +90°
+    gap: np.ndarray  # positive open [m], (n,)
+    slip: np.ndarray  # accumulated slip path [m], (n,)
+    state: np.ndarray  # index into STATES, (n,) int8
+
+
+class Frame(NamedTuple):
+    """The structure at one instant."""
+
+    stage: str  # "gravity" | "loading" | "collapse"
+    step: int  # solver steps so far
+    load: float  # load multiplier
+    displacement: float  # control displacement [m] (largest displacement of any block since the start)
+    positions: np.ndarray  # centroids [m], (n_blocks, d)
+    orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1); 3D: unit quaternion, (n_blocks, 4)
+    velocities: np.ndarray  # per unit of the solver's time, (n_blocks, n_dof)
+    contacts: ContactRecord
+
+
+class Energy(NamedTuple):
+    """The energy ledger [J], each since the start of the run; external counts applied loads without gravity."""
+
+    kinetic: float
+    elastic: float
+    gravity: float
+    external: float
+    friction: float
+    damping: float
+    supports: float  # work done by prescribed motions
+
+
+class HistoryRow(NamedTuple):
+    """One row of the history; rows are written in the order in which they come."""
+
+    stage: str
+    step: int
+    load: float
+    displacement: float
+    unbalanced: float  # largest unbalanced force over the mean block weight
+    overlap: float  # largest overlap [m]
+    energy: Energy
+    monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
