@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
+STAGES = ("gravity", "loading", "collapse")  # meaning of Frame.stage and HistoryRow.stage, in their order
 
 
 class ContactRecord(NamedTuple):
@@ -59,3 +60,16 @@ class HistoryRow(NamedTuple):
     overlap: float  # largest overlap [m]
     energy: Energy
     monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
+
+
+class Observer(Protocol):
+    """Who a solver reports to while it runs; all three return at once and never change the state."""
+
+    def frame(self, frame: Frame) -> None:
+        """A snapshot to keep."""
+
+    def row(self, row: HistoryRow) -> None:
+        """A row of the history to keep."""
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
