@@ -9,7 +9,7 @@ DemError
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 KeyPath = tuple[str | int, ...]
@@ -23,20 +23,27 @@ class DemError(Exception):
 
 @dataclass(frozen=True)
 class CaseProblem:
-    """One mistake in a case: where (key path such as ("structure", 0, "block")) and what."""
+    """One mistake in a case: where (key path such as ("structure", 0, "block")) and what.
+
+    `at_key` points the reader to the name instead of the value, as for an unknown key.
+    """
 
     path: KeyPath
     message: str
+    at_key: bool = False
 
 
 class CaseError(DemError):
-    """The case is invalid. Holds every problem found, not only the first."""
+    """The case is invalid. Holds every problem found, not only the first.
+
+    `render` turns a problem into a line of text; the reader of the file gives one that adds file, line and column.
+    """
 
     exit_code = 2
 
-    def __init__(self, problems: Sequence[CaseProblem]):
+    def __init__(self, problems: Sequence[CaseProblem], render: Callable[[CaseProblem], str] | None = None):
         self.problems = tuple(problems)
-        super().__init__("\n".join(f"{dotted(p.path)}: {p.message}" for p in self.problems))
+        super().__init__("\n".join((render or plain)(problem) for problem in self.problems))
 
 
 class UsageError(DemError):
@@ -60,3 +67,8 @@ class OutputError(DemError):
 def dotted(path: KeyPath) -> str:
     """The key path as a user types it after `--set`: ("structure", 0, "block") -> "structure.0.block"."""
     return ".".join(str(key) for key in path)
+
+
+def plain(problem: CaseProblem) -> str:
+    """A problem as one line, without its place in a file."""
+    return f"{dotted(problem.path)}: {problem.message}" if problem.path else problem.message

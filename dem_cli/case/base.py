@@ -1,11 +1,63 @@
-"""The base of every table of a case file: strict about names, frozen after validation."""
+"""The base of every table of a case file: strict about names, frozen after validation.
+
+Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TOML become tuples on the way in.
+"""
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+import math
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+Pair = tuple[float, float]  # a point, vector or force in the x–y plane
+
+
+class KeyProblem(ValueError):
+    """Raised in a validator to blame one key below the table being validated.
+
+    `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`
+    """
+
+    def __init__(self, message: str, *keys: str | int):
+        super().__init__(message)
+        self.keys = keys
 
 
 class CaseModel(BaseModel):
     """A table of the case file. Unknown keys are errors; values are not coerced between types."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _lists_as_tuples(cls, table: Any) -> Any:
+        return as_tuples(table)
+
+
+class StructureBase(CaseModel):
+    """What every generator accepts. A subclass adds `kind: Literal["..."] = "..."` and its own keys.
+
+    After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks.
+    """
+
+    id: str = Field("", description="prefix of the block names; default: the kind, made unique")
+    material: str = Field("", description="a name in [materials]; may be left out when there is only one")
+    origin: Pair = Field((0.0, 0.0), description="where the structure's own origin is placed [m]")
+    rotation_deg: float = Field(0.0, description="turned about its origin, counter-clockwise [degrees]")
+
+    @property
+    def rotation(self) -> float:
+        """Turn about the origin [rad], counter-clockwise."""
+        return math.radians(self.rotation_deg)
+
+
+def as_tuples(value: Any) -> Any:
+    """`value` with every list in it, at any depth, as a tuple."""
+    if isinstance(value, (list, tuple)):
+        return tuple(as_tuples(item) for item in value)
+    if isinstance(value, dict):
+        return {key: as_tuples(item) for key, item in value.items()}
+    return value
