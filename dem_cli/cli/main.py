@@ -1,0 +1,96 @@
+"""The `dem` command: a table of subcommands, each imported only when it is used, and one place for errors.
+
+A subcommand lives in dem_cli/cli/<name>.py as a click command named `command`. It raises DemError for
+everything that is the user's to mend, and returns its exit code (None is 0).
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+import click
+
+from dem_cli import __version__
+from dem_cli.errors import DemError
+
+COMMANDS = {  # name -> the line that `dem --help` shows
+    "run": "Solve a case and write its results.",
+    "check": "Validate a case and print its model; solve nothing.",
+    "build": "Write the geometry of a case to a file.",
+    "new": "Print a commented case file to start from.",
+    "schema": "Print the JSON Schema of the case file.",
+    "plot": "Draw the results of a run.",
+    "export": "Write results in other formats.",
+}
+INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
+
+
+class LazyGroup(click.Group):
+    """A group that imports a subcommand when it is called and turns every DemError into its exit code."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in COMMANDS:
+            return None
+        return import_module(f"dem_cli.cli.{name}").command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            ctx.fail(unknown_command(name))
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> None:  # type: ignore[override]
+        """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
+        extra["standalone_mode"] = False
+        try:
+            code = super().main(args=args, prog_name=prog_name or "dem", **extra)
+            sys.stdout.flush()
+        except click.ClickException as error:
+            error.show()
+            code = error.exit_code
+        except (click.Abort, KeyboardInterrupt):
+            click.echo("interrupted", err=True)
+            code = INTERRUPTED
+        except BrokenPipeError:
+            code = quiet_pipe()
+        except DemError as error:
+            click.echo("\n".join(f"error: {line}" for line in str(error).splitlines()), err=True)
+            code = error.exit_code
+        sys.exit(code or 0)
+
+
+def unknown_command(name: str) -> str:
+    """What to say about a command that does not exist."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, COMMANDS, 1)
+    hint = f", did you mean '{close[0]}'?" if close else ""
+    return f"no command '{name}'{hint} (commands: {', '.join(COMMANDS)})"
+
+
+def quiet_pipe() -> int:
+    """The reader of our output went away (`dem ... | head`): not an error, and nothing more to print."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="dem", message="%(prog)s %(version)s")
+def main() -> None:
+    """How much earthquake can a dry-stone wall, arch or column take?
+
+    A TOML case file describes the structure; `dem run CASE.toml` pushes it until it fails.
+    """
