@@ -1,0 +1,193 @@
+"""Polygons in the plane: pure functions of arrays of corners (n, 2) [m], counter-clockwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+TOLERANCE = 1e-9  # relative to the size of the polygon: what counts as coincident or collinear
+
+
+class AreaProperties(NamedTuple):
+    """Of one polygon, or of many (then each field has one row per polygon)."""
+
+    area: np.ndarray  # [m2]
+    centroid: np.ndarray  # [m], (..., 2)
+    polar_moment: np.ndarray  # second moment of area about the centroid, Ixx + Iyy [m4]
+
+
+def size(vertices: np.ndarray) -> float:
+    """Diagonal of the bounding box [m]."""
+    return float(np.hypot(*np.ptp(np.asarray(vertices, float), axis=0)))
+
+
+def signed_area(vertices: np.ndarray) -> float:
+    """Area [m2], negative where the corners run clockwise."""
+    return float(properties(vertices).area)
+
+
+def area(vertices: np.ndarray) -> float:
+    """Area [m2], positive whatever the sense of the corners."""
+    return abs(signed_area(vertices))
+
+
+def centroid(vertices: np.ndarray) -> np.ndarray:
+    """Centroid of the enclosed area [m], (2,)."""
+    return properties(vertices).centroid
+
+
+def polar_moment(vertices: np.ndarray) -> float:
+    """Second moment of area about the centroid, Ixx + Iyy [m4]."""
+    return abs(float(properties(vertices).polar_moment))
+
+
+def properties(vertices: np.ndarray) -> AreaProperties:
+    """Area, centroid and polar moment of one polygon; signed like the sense of its corners."""
+    vertices = np.asarray(vertices, float)
+    many = properties_of_all(vertices, np.array([0, len(vertices)]))
+    return AreaProperties(many.area[0], many.centroid[0], many.polar_moment[0])
+
+
+def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaProperties:
+    """Properties of m polygons at once; polygon p is vertices[starts[p]:starts[p + 1]], starts (m + 1,).
+
+    Sums over triangles from the first corner of each, so that a polygon far from the origin loses no digits.
+    Areas and moments are negative for clockwise corners; without area the centroid is the first corner.
+    """
+    first, counts = starts[:-1], np.diff(starts)
+    origin = vertices[first]
+    a = vertices - np.repeat(origin, counts, axis=0)
+    following = np.arange(1, len(vertices) + 1)
+    following[starts[1:] - 1] = first
+    b = a[following]
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    doubled = np.add.reduceat(cross, first)
+    moment = np.add.reduceat(cross[:, None] * (a + b), first, axis=0) / 3.0
+    square = np.add.reduceat(cross * (a * a + a * b + b * b).sum(axis=1), first) / 12.0
+    safe = np.where(doubled == 0.0, 1.0, doubled)
+    offset = np.where((doubled == 0.0)[:, None], 0.0, moment / safe[:, None])
+    area_ = doubled / 2.0
+    return AreaProperties(area_, origin + offset, square - area_ * (offset * offset).sum(axis=1))
+
+
+def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaProperties:
+    """Properties of bodies of several parts; part p (area positive) belongs to body groups[p]."""
+    total = np.bincount(groups, parts.area, n_groups)
+    first = np.zeros((n_groups, 2))
+    first[groups[::-1]] = parts.centroid[::-1]  # a point of each body, against loss of digits
+    local = parts.centroid - first[groups]
+    shift = np.stack([np.bincount(groups, parts.area * local[:, k], n_groups) for k in (0, 1)], axis=1)
+    shift /= np.where(total == 0.0, 1.0, total)[:, None]
+    arm = local - shift[groups]
+    polar = np.bincount(groups, parts.polar_moment + parts.area * (arm * arm).sum(axis=1), n_groups)
+    return AreaProperties(total, first + shift, polar)
+
+
+def is_convex(vertices: np.ndarray, tolerance: float = TOLERANCE) -> bool:
+    """True if the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
+    vertices = np.asarray(vertices, float)
+    if len(vertices) < 3:
+        return False
+    extent = size(vertices)
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    after = np.roll(edges, -1, axis=0)
+    turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
+    if (turns < -tolerance * extent * extent).any() or signed_area(vertices) <= tolerance * extent * extent:
+        return False
+    angles = np.arctan2(turns, (edges * after).sum(axis=1))
+    return bool(abs(angles.sum() - 2.0 * np.pi) < 1.0)  # once around, not a star
+
+
+def in_order(points: Sequence | np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+    """Corners of a convex polygon, from any order to counter-clockwise from the lowest (then leftmost) one.
+
+    Points on an edge between two corners do not change the shape and are left out.
+    Raises ValueError: fewer than three points, the same point twice, no area, or a point inside the hull.
+    """
+    points = np.asarray(points, float)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError("each corner is a pair [x, y]")
+    if len(points) < 3:
+        raise ValueError(f"a polygon needs at least 3 corners, found {len(points)}")
+    gap = tolerance * size(points)
+    order = np.lexsort((points[:, 0], points[:, 1]))
+    _reject_duplicates(points, gap)
+    hull = _hull(points[order], gap)
+    if len(hull) < 3 or area(hull) <= gap * size(points):
+        raise ValueError("the corners lie on one line: the polygon has no area")
+    inside = _depth(points, hull) > gap
+    if inside.any():
+        k = int(np.argmax(inside))
+        raise ValueError(
+            f"corner {k + 1}, {_text(points[k])}, lies inside the polygon of the others; "
+            "a block must be convex: split a concave one into convex parts"
+        )
+    return hull
+
+
+def _reject_duplicates(points: np.ndarray, gap: float) -> None:
+    distance = np.abs(points[:, None, :] - points[None, :, :]).max(axis=2)
+    i, j = np.nonzero(np.triu(distance <= gap, 1))
+    if len(i):
+        place = _text(points[i[0]])
+        raise ValueError(f"corners {i[0] + 1} and {j[0] + 1} are the same point, {place}; give each once")
+
+
+def _hull(ordered: np.ndarray, gap: float) -> np.ndarray:
+    """Strict convex hull by the monotone chain, from points sorted by y then x; counter-clockwise."""
+
+    def chain(points: np.ndarray) -> list[np.ndarray]:
+        kept: list[np.ndarray] = []
+        for p in points:
+            while len(kept) > 1 and _left_of(kept[-2], p, kept[-1]) >= -gap:
+                kept.pop()
+            kept.append(p)
+        return kept[:-1]
+
+    return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def _left_of(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> float:
+    """Distance of p from the line a -> b, positive to the left [m]."""
+    x, y = b - a
+    return float((x * (p[1] - a[1]) - y * (p[0] - a[0])) / np.hypot(x, y))
+
+
+def _depth(points: np.ndarray, hull: np.ndarray) -> np.ndarray:
+    """Distance of each point to the nearest edge of the hull, positive inside [m]."""
+    edges = np.roll(hull, -1, axis=0) - hull
+    normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+    return ((points[:, None, :] - hull[None, :, :]) * normals[None, :, :]).sum(axis=2).min(axis=1)
+
+
+def _text(point: np.ndarray) -> str:
+    return f"[{point[0]:g}, {point[1]:g}]"
+
+
+def simplified(vertices: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+    """The same polygon without repeated corners and corners on a straight edge, (m, 2); order kept."""
+    vertices = np.asarray(vertices, float)
+    gap = tolerance * size(vertices)
+    kept = vertices[np.hypot(*(vertices - np.roll(vertices, 1, axis=0)).T) > gap]
+    if len(kept) < 3:
+        return kept
+    before, after = np.roll(kept, 1, axis=0), np.roll(kept, -1, axis=0)
+    chord = after - before
+    offset = chord[:, 0] * (kept[:, 1] - before[:, 1]) - chord[:, 1] * (kept[:, 0] - before[:, 0])
+    return kept[np.abs(offset) > gap * np.hypot(chord[:, 0], chord[:, 1])]
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> np.ndarray:
+    """Corners of a rectangle from its lower left corner, (4, 2)."""
+    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
+
+
+def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndarray:
+    """Turned about the origin by angle [rad], then shifted [m]; an angle of 0 is exact."""
+    vertices = np.asarray(vertices, float)
+    if angle:
+        c, s = np.cos(angle), np.sin(angle)
+        vertices = vertices @ np.array([[c, s], [-s, c]])
+    return vertices + np.asarray(shift, float)

@@ -1,0 +1,230 @@
+"""Arches of voussoirs: circular, segmental, pointed, flat; on springings, columns or buttresses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.geometry import polygon
+from dem_cli.model.blocks import Block
+
+
+class Support(CaseModel):
+    """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
+
+    width: Positive = Field(description="width [m]; at least that of the springing joint")
+    height: Positive = Field(description="height of the inner face, from the ground to the springing [m]")
+    courses: int = Field(1, ge=1, le=10_000, description="number of blocks that it consists of")
+    material: str = Field("", description="a name in [materials]; default: that of the arch")
+
+
+SHAPE_KEYS = {
+    "circular": ("radius", "inner_radius", "included_angle_deg"),
+    "segmental": ("span", "rise"),
+    "pointed": ("span", "rise", "inner_radius"),
+    "flat": ("span", "skew_deg"),
+}
+
+
+class Arch(StructureBase):
+    """Voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
+    level of the springings (where the inner face starts).
+
+    Block names: "<id>-<number>" for voussoirs from left to right, from 1; "<id>-left-<number>" and
+    "<id>-right-<number>" for piers from below; "<id>-base-left", "<id>-base-right" for what is fixed.
+    """
+
+    kind: Literal["arch"] = "arch"
+    shape: Literal["circular", "segmental", "pointed", "flat"] = Field(
+        "circular",
+        description="circular: by radius and angle; segmental: part of a circle, by span and rise; "
+        "pointed: two arcs; flat: straight, wedge-shaped voussoirs",
+    )
+    voussoirs: int = Field(ge=1, le=10_000, description="number of voussoirs; even for a pointed arch")
+    ring: Positive = Field(description="depth of the ring, from inner to outer face [m]")
+    radius: Positive | None = Field(None, description="radius of the middle of the ring [m] (circular)")
+    inner_radius: Positive | None = Field(
+        None, description="radius of the inner face [m] (circular, pointed)"
+    )
+    included_angle_deg: float | None = Field(
+        None, gt=0.0, lt=360.0, description="from springing to springing [degrees] (circular); default: 180"
+    )
+    span: Positive | None = Field(None, description="clear span [m] (segmental, pointed, flat)")
+    rise: Positive | None = Field(None, description="rise of the inner face [m] (segmental, pointed)")
+    skew_deg: float | None = Field(
+        None,
+        ge=0.0,
+        lt=80.0,
+        description="outermost joints against the vertical [degrees] (flat); default: 20",
+    )
+    thickness: Positive = Field(1.0, description="depth out of plane [m]")
+    columns: Support | None = Field(None, description="stand on columns; default: on fixed springings")
+    buttresses: Support | None = Field(None, description="stand on buttresses (the same as columns)")
+    base_extension: NonNegative = Field(
+        0.0, description="how far the fixed ground goes beyond each side of a column or buttress [m]"
+    )
+
+    @property
+    def piers(self) -> Support | None:
+        """What the arch stands on; None for fixed springings."""
+        return self.columns or self.buttresses
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Arch:
+        keys = SHAPE_KEYS[self.shape]
+        for key in sorted({key for other in SHAPE_KEYS.values() for key in other} - set(keys)):
+            if getattr(self, key) is not None:
+                raise KeyProblem(f"not used by a {self.shape} arch, which is given by {', '.join(keys)}", key)
+        if self.columns and self.buttresses:
+            raise KeyProblem("an arch stands on columns or on buttresses, not on both", "buttresses")
+        SHAPES[self.shape](self)
+        if self.piers:
+            _check_piers(self)
+        return self
+
+
+def _check_piers(arch: Arch) -> None:
+    (inner, outer), key = SHAPES[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
+    if outer[1] < inner[1] - 1e-9 * arch.ring:
+        message = f"{arch.included_angle_deg:g} is not allowed; must be at most 180 for an arch on piers"
+        raise KeyProblem(message, "included_angle_deg")
+    least = inner[0] - outer[0]
+    if arch.piers.width < least * (1 - 1e-9):
+        message = f"{arch.piers.width:g} is not allowed; must be at least {least:g}, as the springing joint"
+        raise KeyProblem(message, key, "width")
+
+
+def _exactly_one(arch: Arch, *keys: str) -> None:
+    given = [key for key in keys if getattr(arch, key) is not None]
+    if len(given) != 1:
+        found = "found none" if not given else "found both"
+        raise KeyProblem(f"a {arch.shape} arch needs either {' or '.join(keys)}; {found}", keys[0])
+
+
+def _required(arch: Arch, *keys: str) -> None:
+    for key in keys:
+        if getattr(arch, key) is None:
+            raise KeyProblem(f"missing: a {arch.shape} arch needs {' and '.join(keys)}", key)
+
+
+def _arc(inner_radius: float, ring: float, half_angle: float, voussoirs: int) -> np.ndarray:
+    """Joints [inner, outer] of a symmetric arc from left to right, inner feet at y = 0, (n + 1, 2, 2)."""
+    angles = half_angle * (1.0 - 2.0 * np.arange(voussoirs + 1) / voussoirs)
+    directions = np.stack([-np.sin(angles), np.cos(angles)], axis=1)
+    joints = directions[:, None, :] * np.array([inner_radius, inner_radius + ring])[None, :, None]
+    joints[:, :, 1] -= inner_radius * np.cos(half_angle)
+    joints[np.abs(joints) < 1e-14 * (inner_radius + ring)] = 0.0
+    return joints
+
+
+def _circular(arch: Arch) -> np.ndarray:
+    _exactly_one(arch, "radius", "inner_radius")
+    inner = arch.inner_radius if arch.inner_radius is not None else arch.radius - arch.ring / 2.0
+    if inner <= 0.0:
+        message = f"{arch.radius:g} is not allowed; must be more than {arch.ring / 2:g}, half the ring"
+        raise KeyProblem(message, "radius")
+    angle = 180.0 if arch.included_angle_deg is None else arch.included_angle_deg
+    return _arc(inner, arch.ring, np.radians(angle) / 2.0, arch.voussoirs)
+
+
+def _segmental(arch: Arch) -> np.ndarray:
+    _required(arch, "span", "rise")
+    half = arch.span / 2.0
+    if arch.rise > half * (1.0 + 1e-9):
+        message = f"{arch.rise:g} is not allowed; must be at most {half:g} (half the span, a semicircle)"
+        raise KeyProblem(message, "rise")
+    half_angle = 2.0 * np.arctan2(arch.rise, half)
+    return _arc(half / np.sin(half_angle), arch.ring, half_angle, arch.voussoirs)
+
+
+def _pointed(arch: Arch) -> np.ndarray:
+    _required(arch, "span")
+    _exactly_one(arch, "rise", "inner_radius")
+    half, sides = arch.span / 2.0, arch.voussoirs // 2
+    if arch.voussoirs % 2:
+        message = f"{arch.voussoirs} is not allowed; must be even: a pointed arch has a joint at the top"
+        raise KeyProblem(message, "voussoirs")
+    key = "rise" if arch.rise is not None else "inner_radius"
+    value = getattr(arch, key)
+    if value < half * (1.0 - 1e-9):
+        message = f"{value:g} is not allowed; must be at least {half:g} (half the span, a semicircle)"
+        raise KeyProblem(message, key)
+    inner = arch.inner_radius if arch.inner_radius is not None else (half**2 + arch.rise**2) / arch.span
+    radii = np.array([inner, inner + arch.ring])
+    centre = max(inner - half, 0.0)
+    angles = np.arccos(centre / inner) * np.arange(sides + 1) / sides  # of the left arc, from its springing
+    left = np.stack([-np.cos(angles), np.sin(angles)], axis=1)[:, None, :] * radii[None, :, None]
+    left[:, :, 0] += centre
+    left[-1] = np.stack([[0.0, 0.0], np.sqrt(radii**2 - centre**2)], axis=1)  # vertical at the top
+    return np.concatenate([left, left[-2::-1] * [-1.0, 1.0]])
+
+
+def _flat(arch: Arch) -> np.ndarray:
+    _required(arch, "span")
+    inner = arch.span * (np.arange(arch.voussoirs + 1) / arch.voussoirs - 0.5)
+    slope = np.tan(np.radians(20.0 if arch.skew_deg is None else arch.skew_deg))
+    outer = inner * (1.0 + arch.ring * slope / (arch.span / 2.0))
+    joints = np.zeros((arch.voussoirs + 1, 2, 2))
+    joints[:, 0, 0], joints[:, 1, 0], joints[:, 1, 1] = inner, outer, arch.ring
+    return joints
+
+
+SHAPES: dict[str, Callable[[Arch], np.ndarray]] = {
+    "circular": _circular,
+    "segmental": _segmental,
+    "pointed": _pointed,
+    "flat": _flat,
+}
+
+
+def build(arch: Arch) -> list[Block]:
+    """Blocks in local coordinates: fixed ones, piers left and right from below, voussoirs left to right."""
+    joints = SHAPES[arch.shape](arch)
+    if arch.piers:
+        joints[:, :, 1] += arch.piers.height
+    blocks = _bases(arch, joints) + (_pier_blocks(arch, joints) if arch.piers else [])
+    for k in range(arch.voussoirs):
+        shape = np.array([joints[k, 0], joints[k + 1, 0], joints[k + 1, 1], joints[k, 1]])
+        if not polygon.is_convex(shape):
+            raise ValueError(f"voussoir {k + 1} is not convex; use more voussoirs or a thinner ring")
+        blocks.append(Block(f"{k + 1}", (polygon.simplified(shape),), "", arch.thickness))
+    return blocks
+
+
+def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
+    """The two fixed blocks: below a pier as wide as it, or behind a springing joint, square to it."""
+    blocks = []
+    for side, (inner, outer) in (("left", joints[0]), ("right", joints[-1])):
+        sign = -1.0 if side == "left" else 1.0
+        if arch.piers:
+            height, reach = arch.ring, arch.piers.width + arch.base_extension
+            ends = sorted([inner[0] - sign * arch.base_extension, inner[0] + sign * reach])
+            shape = polygon.rectangle(ends[0], -height, ends[1] - ends[0], height)
+        else:
+            along = outer - inner
+            back = np.array([along[1], -along[0]]) * -sign
+            corners = [inner, outer, outer + back, inner + back]
+            shape = np.array(corners[::-1] if side == "right" else corners)
+        blocks.append(Block(f"base-{side}", (shape,), "", arch.thickness, fixed=True))
+    return blocks
+
+
+def _pier_blocks(arch: Arch, joints: np.ndarray) -> list[Block]:
+    """Rectangles from below; the uppermost one ends in the springing joint and level with its outer edge."""
+    pier, blocks = arch.piers, []
+    levels = pier.height * np.arange(pier.courses + 1) / pier.courses
+    for side, (inner, outer) in (("left", joints[0]), ("right", joints[-1])):
+        sign = -1.0 if side == "left" else 1.0
+        face, back = inner[0], inner[0] + sign * pier.width
+        for k in range(pier.courses):
+            low, high = levels[k : k + 2]
+            corners = [[back, low], [face, low], [face, high], [back, high]]
+            if k == pier.courses - 1:
+                corners[2:] = [inner, outer, [back, outer[1]]]
+            shape = polygon.simplified(np.array(corners[:: -int(sign)]))
+            blocks.append(Block(f"{side}-{k + 1}", (shape,), pier.material, arch.thickness))
+    return blocks

@@ -1,0 +1,28 @@
+"""The generators of [[structure]] by `kind`. A new one: a file with parameters and `build`, a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from dem_cli.case.base import StructureBase
+from dem_cli.model.blocks import Block
+from dem_cli.structures import arch, column, wall
+
+
+class Generator(NamedTuple):
+    """One kind of structure."""
+
+    kind: str  # as in the case file
+    parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
+    build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
+
+
+GENERATORS: dict[str, Generator] = {
+    generator.kind: generator
+    for generator in (
+        Generator("wall", wall.Wall, wall.build),
+        Generator("column", column.Column, column.build),
+        Generator("arch", arch.Arch, arch.build),
+    )
+}
