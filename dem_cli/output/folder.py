@@ -1,0 +1,244 @@
+"""The output directory of a run: results appear in it whole or not at all.
+
+Files are written into a hidden folder beside the final one and renamed into place. Where that cannot be
+(a mount point, the current folder, an unwritable parent, `--force` among other files) the hidden folder
+lies inside and only files of ours are moved. A lock, freed by the system when its owner dies, tells the
+leftovers of a killed run from a run that goes on.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import secrets
+import shutil
+import time
+from pathlib import Path
+from types import TracebackType
+
+from dem_cli.errors import DemError, OutputError, UsageError
+
+SUMMARY = "summary.json"
+OWN_NAMES = frozenset(
+    (SUMMARY, "results.h5", "contacts.vtkhdf", "case.toml", "capacity.png", "collapse.png", "energy.png", "pvd")
+)
+OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summary.json of ours has
+INTERRUPTED = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
+_LOCK = ".lock"
+_NEW, _OLD = "dem-new", "dem-old"
+_REASONS = {
+    errno.ENOSPC: "no space left on the device",
+    errno.EDQUOT: "the disk quota is used up",
+    errno.EFBIG: "the file size limit is reached",
+    errno.EACCES: "permission denied",
+    errno.EPERM: "permission denied",
+    errno.EROFS: "the file system is read-only",
+    errno.ENAMETOOLONG: "the name is too long",
+    errno.ENOTDIR: "a part of the path is a file",
+}
+
+
+def write_error(error: Exception, path: Path) -> DemError:
+    """One clear message for a failed write; HDF5 hides the reason in its text."""
+    number = getattr(error, "errno", None)
+    hidden = re.search(r"errno = (\d+)", str(error))
+    if number is None and hidden:
+        number = int(hidden.group(1))
+    if number == errno.ENOTDIR:
+        return UsageError(f"cannot write results to {path}: {_REASONS[number]}")
+    reason = _REASONS.get(number) or getattr(error, "strerror", None) or str(error).splitlines()[0]
+    return OutputError(f"cannot write results to {path}: {reason}")
+
+
+def is_ours(folder: Path) -> bool:
+    """Whether `folder` holds the results of a run, by its summary.json."""
+    try:
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(summary, dict) and summary.keys() >= OWN_KEYS
+
+
+def foreign_names(folder: Path) -> list[str]:
+    """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
+    names = sorted(n for n in os.listdir(folder) if not re.match(rf"\..*({_NEW}|{_OLD})-", n))
+    names = [name for name in names if not (name.endswith(INTERRUPTED) and is_ours(folder / name))]
+    return [name for name in names if name not in OWN_NAMES] if is_ours(folder) else names
+
+
+class OutputFolder:
+    """`path` is where to write now; `commit()` puts it under the final name, leaving the block discards it."""
+
+    def __init__(self, final: Path | str, *, force: bool = False):
+        self.name = str(final)
+        self.final = Path(final).resolve()
+        self.force = force
+        self._made: list[Path] = []
+        self._lock: int | None = None
+        if self.final.exists() and not self.final.is_dir():
+            raise UsageError(f"output folder {self.name}: a file of that name exists")
+        try:
+            self._open()
+        except OSError as error:
+            self.discard()
+            raise write_error(error, Path(self.name)) from None
+
+    def _open(self) -> None:
+        self._recover(self.final.parent)
+        if self.final.is_dir():
+            self._recover(self.final)
+        self._refuse_foreign()
+        self._make_parents()
+        self.inside = self._must_be_inside()
+        base = self.final if self.inside else self.final.parent
+        self.path = base / self._hidden(_NEW)
+        self.path.mkdir()
+        self._lock = _lock(self.path / _LOCK)
+
+    def _hidden(self, kind: str) -> str:
+        return f".{self.final.name}.{kind}-{secrets.token_hex(4)}"
+
+    def _refuse_foreign(self) -> None:
+        self.foreign = foreign_names(self.final) if self.final.is_dir() else []
+        if self.foreign and not self.force:
+            shown = ", ".join(self.foreign[:3]) + (", ..." if len(self.foreign) > 3 else "")
+            raise UsageError(
+                f"output folder {self.name}: holds files that dem did not write ({shown}); "
+                "choose another with -o, or keep them beside the results with --force"
+            )
+
+    def _must_be_inside(self) -> bool:
+        if not self.final.is_dir():
+            return False
+        cwd = Path.cwd()
+        in_use = self.final == cwd or self.final in cwd.parents or os.path.ismount(self.final)
+        return bool(self.foreign) or in_use or not os.access(self.final.parent, os.W_OK)
+
+    def _make_parents(self) -> None:
+        missing = [p for p in (self.final.parent, *self.final.parent.parents) if not p.exists()]
+        for folder in reversed(missing):
+            folder.mkdir(exist_ok=True)
+            self._made.append(folder)
+
+    def _recover(self, base: Path) -> None:
+        """Remove what killed runs left behind; give back earlier results that one had put aside."""
+        if not base.is_dir():
+            return
+        stem = f".{self.final.name}."
+        for name in sorted(os.listdir(base)):
+            if name.startswith(f"{stem}{_NEW}-") and _is_abandoned(base / name):
+                shutil.rmtree(base / name, ignore_errors=True)
+            elif name.startswith(f"{stem}{_OLD}-") and base != self.final:
+                if self.final.exists():
+                    shutil.rmtree(base / name, ignore_errors=True)
+                else:
+                    os.rename(base / name, self.final)
+
+    def commit(self, name: str | None = None) -> Path:
+        """Put the folder under its final name, or under the sibling `name`; earlier results go only now."""
+        try:
+            self._unlock()
+            if name is not None and name != self.final.name:
+                return self._commit_beside(name)
+            if self.inside:
+                self._move_files(self.final)
+            else:
+                _replace_folder(self.path, self.final, self.final.parent / self._hidden(_OLD))
+        except OSError as error:
+            raise write_error(error, Path(self.name)) from None
+        return self.final
+
+    def _commit_beside(self, name: str) -> Path:
+        base = self.final if self.inside else self.final.parent
+        target = base / name
+        if target.exists() and foreign_names(target):
+            raise OutputError(f"cannot write results to {target}: it holds files that dem did not write")
+        _replace_folder(self.path, target, base / self._hidden(_OLD))
+        return target
+
+    def _move_files(self, target: Path) -> None:
+        """In a folder that stays: the old summary goes first and the new one comes last, so none ever lies."""
+        (target / SUMMARY).unlink(missing_ok=True)
+        for name in sorted(OWN_NAMES - {SUMMARY}):
+            if (self.path / name).exists():
+                _remove(target / name)
+                os.rename(self.path / name, target / name)
+            elif not self.foreign:
+                _remove(target / name)
+        os.rename(self.path / SUMMARY, target / SUMMARY)
+
+    def discard(self) -> None:
+        """Remove what was written and the parents that were made for it; harmless after `commit`."""
+        self._unlock()
+        if hasattr(self, "path"):
+            shutil.rmtree(self.path, ignore_errors=True)
+        for folder in reversed(self._made):
+            try:
+                folder.rmdir()
+            except OSError:
+                break
+
+    def _unlock(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            (self.path / _LOCK).unlink(missing_ok=True)
+            self._lock = None
+
+    def __enter__(self) -> OutputFolder:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.discard()
+
+
+def _replace_folder(new: Path, final: Path, aside: Path) -> None:
+    """Two renames; a kill between them leaves the old results in `aside`, which the next run gives back."""
+    had_old = final.exists()
+    if had_old:
+        os.rename(final, aside)
+    try:
+        os.rename(new, final)
+    except OSError:
+        if had_old:
+            os.rename(aside, final)
+        raise
+    if had_old:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _lock(path: Path) -> int:
+    handle = os.open(path, os.O_CREAT | os.O_RDWR, 0o644)
+    _try_flock(handle)
+    return handle
+
+
+def _try_flock(handle: int) -> bool:
+    """Take the lock without waiting; where there are no locks nothing ever counts as abandoned."""
+    try:
+        import fcntl
+
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (ImportError, OSError):
+        return False
+    return True
+
+
+def _is_abandoned(folder: Path) -> bool:
+    try:
+        handle = os.open(folder / _LOCK, os.O_RDWR)
+    except FileNotFoundError:  # just made, or just about to be renamed, unless it is old
+        return time.time() - folder.stat().st_mtime > 60.0
+    except OSError:
+        return False
+    free = _try_flock(handle)
+    os.close(handle)
+    return free

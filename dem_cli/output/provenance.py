@@ -1,0 +1,21 @@
+"""With which versions a result was computed. Nothing here names a machine, a person or a place."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+
+from dem_cli import __version__
+
+PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
+
+
+def provenance() -> dict[str, str]:
+    """Versions by name; packages that are not installed are left out."""
+    versions = {"dem": __version__, "python": platform.python_version(), "machine": platform.machine()}
+    for name in PACKAGES:
+        try:
+            versions[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return versions

@@ -1,0 +1,130 @@
+"""Reads back what a run left: `read(folder)`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.model.model import Model
+from dem_cli.output.folder import SUMMARY
+from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame
+from dem_cli.output.store import FORMAT, FRAME_ARRAYS, FRAME_SCALARS, RESULTS, ROW_SCALARS
+
+
+@dataclass(frozen=True)
+class Results:
+    """A finished or interrupted run; a killed one reads up to its last frame."""
+
+    summary: dict[str, Any]  # {} where a killed run left none
+    model: Model
+    frames: Frames  # a sequence of Frame, in the order in which they came
+    history: dict[str, np.ndarray]  # "stage" (names), "step", "load", "displacement", "unbalanced", "overlap"
+    energy: dict[str, np.ndarray]  # [J], one value per history row, by the names of Energy
+    monitors: dict[str, np.ndarray]  # one value per history row, by monitor name
+    case_text: str
+    provenance: dict[str, str]
+    status: str
+
+
+class Frames(Sequence[Frame]):
+    """All frames of a run, held as arrays, handed out one by one."""
+
+    def __init__(self, columns: dict[str, np.ndarray], contacts: dict[str, np.ndarray]):
+        self._columns, self._contacts = columns, contacts
+        self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
+
+    def __len__(self) -> int:
+        return len(self._starts) - 1
+
+    def __getitem__(self, index: int) -> Frame:  # type: ignore[override]
+        i = range(len(self))[index]
+        rows = slice(self._starts[i], self._starts[i + 1])
+        contacts = ContactRecord(**{name: self._contacts[name][rows] for name in ContactRecord._fields})
+        columns = self._columns
+        return Frame(
+            stage=STAGES[columns["stage"][i]],
+            step=int(columns["step"][i]),
+            load=float(columns["load"][i]),
+            displacement=float(columns["displacement"][i]),
+            positions=columns["positions"][i],
+            orientations=columns["orientations"][i],
+            velocities=columns["velocities"][i],
+            contacts=contacts,
+        )
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (self[i] for i in range(len(self)))
+
+
+def read(folder: Path | str) -> Results:
+    """The results in `folder`; UsageError where there are none."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: no such folder")
+    if not (folder / RESULTS).is_file():
+        raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS})")
+    try:
+        with h5py.File(folder / RESULTS, "r", locking=False) as file:
+            return _read(file["dem"], _read_summary(folder))
+    except (OSError, KeyError) as error:
+        raise UsageError(f"{folder / RESULTS}: not a readable result of dem run ({error})") from None
+
+
+def _read_summary(folder: Path) -> dict[str, Any]:
+    path = folder / SUMMARY
+    if not path.is_file():
+        return {}
+    try:
+        summary: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise UsageError(f"{path}: not valid JSON ({error})") from None
+    return summary
+
+
+def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
+    if dem.attrs["format"] != FORMAT:
+        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}")
+    history = dem["history"]
+    n_rows = len(history["stage"]) if "stage" in history else 0
+    columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}
+    columns["stage"] = np.array(STAGES)[history["stage"][:]] if n_rows else np.zeros(0, dtype=str)
+    energy = {name: history["energy"][name][:n_rows] for name in Energy._fields} if n_rows else {}
+    monitors = {
+        str(name): history["monitor_values"][:n_rows, i] if n_rows else np.zeros(0)
+        for i, name in enumerate(history.attrs["monitors"])
+    }
+    return Results(
+        summary=summary,
+        model=_read_model(dem["model"]),
+        frames=_read_frames(dem),
+        history=columns,
+        energy=energy,
+        monitors=monitors,
+        case_text=dem["case"].asstr()[()],
+        provenance={name: str(value) for name, value in dem["provenance"].attrs.items()},
+        status=str(dem.attrs["status"]),
+    )
+
+
+def _read_frames(dem: h5py.Group) -> Frames:
+    group = dem["frames"]
+    if "n_contacts" not in group:
+        return Frames({}, {})
+    n_frames = len(group["n_contacts"])
+    names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stage", "n_contacts")
+    columns = {name: group[name][:n_frames] for name in names}
+    return Frames(columns, {name: dem["contacts"][name][:] for name in ContactRecord._fields})
+
+
+def _read_model(group: h5py.Group) -> Model:
+    values: dict[str, Any] = {name: int(value) for name, value in group.attrs.items()}
+    for name, data in group.items():
+        values[name] = tuple(data.asstr()[:]) if data.dtype.kind == "O" else data[:]
+    return Model(**values)

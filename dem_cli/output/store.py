@@ -1,0 +1,230 @@
+"""Writes a run to disk as it goes: results.h5 (blocks, histories, everything) and contacts.vtkhdf.
+
+results.h5 holds `/VTKHDF` (float32, what ParaView shows) beside `/dem` (float64, what `reader.read` returns):
+
+    /dem             attributes: format, status ("running" until closed)
+    /dem/case        the effective case, text
+    /dem/provenance  attributes: versions
+    /dem/model       the arrays of Model
+    /dem/frames      one row per frame; n_contacts says how many rows of /dem/contacts belong to it
+    /dem/contacts    the contact points of all frames, one after the other
+    /dem/history     one row per HistoryRow, with energy/ and monitors (names in its attribute)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from dem_cli.errors import OutputError
+from dem_cli.model.model import Model
+from dem_cli.output.folder import write_error
+from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow
+from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
+from dem_cli.output.summary import write_summary
+from dem_cli.output.vtkhdf import GridSeries, PointSeries, grow
+
+FORMAT = 1
+RESULTS, CONTACTS, CASE = "results.h5", "contacts.vtkhdf", "case.toml"
+ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap")
+FRAME_SCALARS = ("step", "load", "displacement")
+FRAME_ARRAYS = ("positions", "orientations", "velocities")
+_VTK_POLYGON = 7
+_BUFFERED_ROWS = 4096
+_TEXT = h5py.string_dtype()
+
+
+class ResultWriter:
+    """Give it frames and history rows as they come; `close(summary)` completes the folder."""
+
+    def __init__(
+        self,
+        folder: Path,
+        model: Model,
+        case_text: str,
+        provenance: Mapping[str, str],
+        monitors: Sequence[str] = (),
+        kind: str = "pushover",
+    ):
+        self.folder, self.model, self.monitors = Path(folder), model, tuple(monitors)
+        self.last_row: HistoryRow | None = None
+        self.last_frame: Frame | None = None
+        self.n_frames = 0
+        self._rows: list[HistoryRow] = []
+        self._files: list[h5py.File] = []
+        self._series: tuple[GridSeries, PointSeries] | None = None
+        self._rest = rest_vertices(model)
+        self._guarded(lambda: self._start(case_text, provenance, kind))
+
+    def _start(self, case_text: str, provenance: Mapping[str, str], kind: str) -> None:
+        (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
+        file = self._open(RESULTS)
+        self.dem = dem = file.create_group("dem")
+        dem.attrs["format"] = FORMAT
+        dem.attrs["kind"] = kind
+        dem.attrs["status"] = "running"
+        dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)
+        dem.create_dataset("case", data=case_text, dtype=_TEXT)
+        dem.create_group("provenance").attrs.update(provenance)
+        _store_model(dem.create_group("model"), self.model)
+        for name in ("frames", "contacts", "history"):
+            dem.create_group(name)
+        dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
+        file.flush()
+
+    def _open(self, name: str) -> h5py.File:
+        file = h5py.File(self.folder / name, "w", locking=False)
+        self._files.append(file)
+        return file
+
+    def frame(self, frame: Frame) -> None:
+        """Keep a snapshot; everything up to it is on disk when this returns."""
+        self._guarded(lambda: self._frame(frame))
+        self.last_frame = frame
+
+    def row(self, row: HistoryRow) -> None:
+        """Keep a row of the history; it goes to disk with the next frame."""
+        if len(row.monitors) != len(self.monitors):
+            raise ValueError(f"{len(row.monitors)} monitor values for {len(self.monitors)} monitors")
+        self._rows.append(row)
+        self.last_row = row
+        if len(self._rows) >= _BUFFERED_ROWS:
+            self._guarded(self._flush)
+
+    def close(self, summary: Mapping[str, Any]) -> None:
+        """Complete the files and write summary.json, last of all."""
+
+        def finish() -> None:
+            self._flush_rows()
+            self.dem.attrs["status"] = str(summary["status"])
+            for file in self._files:
+                file.close()
+            self._files = []
+            write_summary(self.folder, summary)
+
+        self._guarded(finish)
+
+    def abandon(self) -> None:
+        """Close what is open without completing it, whatever the disk says."""
+        for file in self._files:
+            try:
+                file.close()
+            except (OSError, RuntimeError):
+                pass
+        self._files = []
+
+    def _guarded(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        except (OSError, RuntimeError) as error:  # h5py raises RuntimeError for some failed flushes
+            self.abandon()
+            if isinstance(error, OutputError):
+                raise
+            raise write_error(error, self.folder) from None
+
+    def _flush(self) -> None:
+        self._flush_rows()
+        for file in self._files:
+            file.flush()
+
+    def _flush_rows(self) -> None:
+        rows, self._rows = self._rows, []
+        if rows:
+            _store_rows(self.dem["history"], rows)
+
+    def _frame(self, frame: Frame) -> None:
+        self._store_frame(frame)
+        if self._series is None:
+            self._series = self._start_series()
+        grid, points = self._series
+        vertices = placed_vertices(self.model, frame.positions, frame.orientations)
+        velocities = vertex_velocities(self.model, vertices, frame.positions, frame.velocities)
+        step_fields = {
+            "load_multiplier": np.array([frame.load]),
+            "control_displacement": np.array([frame.displacement]),
+            "stage": np.array([STAGES.index(frame.stage)], dtype=np.int64),
+            "step": np.array([frame.step], dtype=np.int64),
+        }
+        moved = in_space(vertices - self._rest)
+        cell_fields = {}
+        if self.model.dimension == 2:
+            cell_fields["rotation"] = frame.orientations[self.model.part_blocks, 0].astype(np.float32)
+        value = float(self.n_frames)
+        fields = {"displacement": moved, "velocity": in_space(velocities)}
+        grid.add(value, in_space(vertices), fields, cell_fields, step_fields)
+        points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), step_fields)
+        self.n_frames += 1
+        self._flush()
+
+    def _start_series(self) -> tuple[GridSeries, PointSeries]:
+        model, parts = self.model, self.model.part_blocks
+        cells = {
+            "block_id": parts.astype(np.int32),
+            "material": model.block_material[parts].astype(np.int32),
+            "fixed": model.fixed[parts].astype(np.uint8),
+        }
+        grid = GridSeries(self._files[0], model.part_starts, _VTK_POLYGON, cells)
+        return grid, PointSeries(self._open(CONTACTS))
+
+    def _store_frame(self, frame: Frame) -> None:
+        group, contacts = self.dem["frames"], self.dem["contacts"]
+        for name, values in frame.contacts._asdict().items():
+            grow(contacts, name, values)
+        for name in FRAME_ARRAYS:
+            grow(group, name, getattr(frame, name)[np.newaxis])
+        for name in FRAME_SCALARS:
+            grow(group, name, np.array([getattr(frame, name)]))
+        grow(group, "stage", np.array([STAGES.index(frame.stage)], dtype=np.int8))
+        grow(group, "n_contacts", np.array([len(frame.contacts.joint)], dtype=np.int64))  # last: it counts
+
+
+def _store_model(group: h5py.Group, model: Model) -> None:
+    for name, value in model._asdict().items():
+        if isinstance(value, int):
+            group.attrs[name] = value
+        elif isinstance(value, tuple):
+            group.create_dataset(name, data=list(value), dtype=_TEXT)
+        else:
+            group.create_dataset(name, data=value)
+
+
+def _store_rows(group: h5py.Group, rows: Sequence[HistoryRow]) -> None:
+    for name in ROW_SCALARS:
+        kind = np.int64 if name == "step" else np.float64
+        grow(group, name, np.array([getattr(row, name) for row in rows], dtype=kind))
+    energy = group.require_group("energy")
+    for i, name in enumerate(Energy._fields):
+        grow(energy, name, np.array([row.energy[i] for row in rows]))
+    grow(group, "monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
+    grow(group, "stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8))  # last: it counts
+
+
+def contact_forces(contacts: ContactRecord) -> np.ndarray:
+    """Force of each contact point on its second block [N], (n, d)."""
+    normals = contacts.normals
+    forces = contacts.normal_force[:, np.newaxis] * normals
+    if normals.shape[1] == 2:
+        tangents = np.stack((-normals[:, 1], normals[:, 0]), axis=1)
+        forces = forces + contacts.shear_force * tangents
+    return forces
+
+
+def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
+    """What ParaView shows at the contact points."""
+    shear = contacts.shear_force
+    return {
+        "joint": contacts.joint.astype(np.int32),
+        "block_a": contacts.blocks[:, 0].astype(np.int32),
+        "block_b": contacts.blocks[:, 1].astype(np.int32),
+        "normal": in_space(contacts.normals),
+        "force": in_space(contact_forces(contacts)),
+        "normal_force": contacts.normal_force.astype(np.float32),
+        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
+        "gap": contacts.gap.astype(np.float32),
+        "slip": contacts.slip.astype(np.float32),
+        "state": contacts.state.astype(np.uint8),
+    }

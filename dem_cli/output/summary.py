@@ -1,0 +1,75 @@
+"""summary.json: the answer and how it was obtained, in a fixed order and in strict JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli.output.folder import SUMMARY
+
+ORDER = (
+    "title",
+    "kind",
+    "version",
+    "status",
+    "failure_load",
+    "failure_load_bracket",
+    "failure_mode",
+    "displacement_at_failure",
+    "limit_analysis",
+    "reference",
+    "blocks",
+    "joints",
+    "contacts",
+    "steps",
+    "time_step",
+    "solve_seconds",
+    "wall_seconds",
+    "energy_closure",
+    "warnings",
+)
+
+
+def ordered(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """Known keys first, in the order above, the rest as it came; all values plain and finite or None."""
+    keys = [key for key in ORDER if key in summary] + [key for key in summary if key not in ORDER]
+    return {key: plain(summary[key]) for key in keys}
+
+
+def plain(value: Any) -> Any:
+    """Numbers, lists and dicts that strict JSON can hold; not-a-number and infinity become null."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def to_json(summary: Mapping[str, Any]) -> str:
+    """One JSON object, a key per line."""
+    return json.dumps(ordered(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
+    """Write it under its name only when it is whole."""
+    part = folder / f".{SUMMARY}.part"
+    part.write_text(to_json(summary), encoding="utf-8", newline="\n")
+    os.replace(part, folder / SUMMARY)
+
+
+def reference_verdict(failure_load: float | None, value: float, tolerance: float) -> dict[str, Any]:
+    """Comparison with the `[reference]` of the case; no failure load never passes."""
+    passed = failure_load is not None and abs(failure_load - value) <= tolerance
+    return {"value": value, "tolerance": tolerance, "passed": passed}

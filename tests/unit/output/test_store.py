@@ -1,0 +1,129 @@
+"""results.h5 and summary.json: what goes in comes out."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from synthetic import history_rows, wall_frames, wall_model, wall_summary
+
+from dem_cli.errors import UsageError
+from dem_cli.output.reader import read
+from dem_cli.output.record import Energy, Frame
+from dem_cli.output.store import ResultWriter
+from dem_cli.output.summary import ordered, to_json
+
+
+def write(folder, frames, rows, model, monitors=("top",)):
+    writer = ResultWriter(folder, model, "title = 'é'\n", {"dem": "0.1.0", "numpy": "2"}, monitors)
+    for row in rows:
+        writer.row(row)
+    for frame in frames:
+        writer.frame(frame)
+    writer.close(wall_summary())
+
+
+def assert_same_frame(found: Frame, expected: Frame) -> None:
+    for name in ("stage", "step", "load", "displacement"):
+        assert getattr(found, name) == getattr(expected, name)
+    for name in ("positions", "orientations", "velocities"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    for a, b in zip(found.contacts, expected.contacts, strict=True):
+        np.testing.assert_array_equal(a, b)
+        assert a.dtype == b.dtype
+
+
+def test_everything_comes_back(tmp_path):
+    model = wall_model()
+    frames = wall_frames(model)
+    rows = history_rows(frames, n_monitors=2)
+    write(tmp_path, frames, rows, model, ("top", "middle"))
+    results = read(tmp_path)
+    assert results.status == "ok"
+    assert results.summary == ordered(wall_summary())
+    assert results.case_text == (tmp_path / "case.toml").read_text(encoding="utf-8") == "title = 'é'\n"
+    assert results.provenance == {"dem": "0.1.0", "numpy": "2"}
+    for a, b in zip(results.model, model, strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert len(results.frames) == len(frames)
+    for found, expected in zip(results.frames, frames, strict=True):
+        assert_same_frame(found, expected)
+    assert_same_frame(results.frames[-1], frames[-1])
+    for name in ("stage", "step", "load", "displacement", "unbalanced", "overlap"):
+        assert results.history[name].tolist() == [getattr(row, name) for row in rows]
+    for i, name in enumerate(Energy._fields):
+        assert results.energy[name].tolist() == [row.energy[i] for row in rows]
+    assert results.monitors["middle"].tolist() == [row.monitors[1] for row in rows]
+
+
+def test_a_run_without_frames_is_readable(tmp_path):
+    model = wall_model()
+    write(tmp_path, [], [], model, ())
+    results = read(tmp_path)
+    assert len(results.frames) == 0
+    assert list(results.frames) == []
+    assert results.energy == results.monitors == {}
+    assert not (tmp_path / "contacts.vtkhdf").exists()
+
+
+def test_the_same_run_gives_the_same_bytes(tmp_path):
+    model = wall_model()
+    frames = wall_frames(model)
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        write(tmp_path / name, frames, history_rows(frames), model)
+    for name in ("results.h5", "contacts.vtkhdf", "summary.json"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_readable_while_it_is_written(tmp_path):
+    model = wall_model()
+    frames = wall_frames(model)
+    writer = ResultWriter(tmp_path, model, "", {}, ["top"])
+    writer.row(history_rows(frames)[0])
+    writer.frame(frames[0])
+    results = read(tmp_path)
+    assert (results.status, results.summary, len(results.frames)) == ("running", {}, 1)
+    assert len(results.history["load"]) == 1
+    writer.abandon()
+
+
+def test_rows_are_flushed_without_frames_too(tmp_path, monkeypatch):
+    monkeypatch.setattr("dem_cli.output.store._BUFFERED_ROWS", 10)
+    rows = history_rows(wall_frames(wall_model()))
+    writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"])
+    for row in rows[:25]:
+        writer.row(row)
+    assert len(read(tmp_path).history["load"]) == 20
+    writer.abandon()
+
+
+def test_a_row_has_one_value_per_monitor(tmp_path):
+    writer = ResultWriter(tmp_path, wall_model(), "", {}, [])
+    with pytest.raises(ValueError, match="1 monitor values for 0 monitors"):
+        writer.row(history_rows(wall_frames(wall_model()))[0])
+    writer.abandon()
+
+
+@pytest.mark.parametrize("name", ["missing", "empty"])
+def test_no_results_is_the_users_mistake(tmp_path, name):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(UsageError, match=name):
+        read(tmp_path / name)
+
+
+def test_a_damaged_file_is_reported(tmp_path):
+    (tmp_path / "results.h5").write_bytes(b"nothing")
+    with pytest.raises(UsageError, match="not a readable result"):
+        read(tmp_path)
+
+
+def test_summary_is_strict_json_in_a_fixed_order():
+    numbers = {"extra": np.array([np.nan, 1.0]), "warnings": (), "title": "x", "failure_load": np.float64(0.1) + 0.2}
+    text = to_json({**numbers, "time_step": float("inf"), "blocks": np.int64(3)})
+    found = json.loads(text, parse_constant=pytest.fail)
+    assert list(found) == ["title", "failure_load", "blocks", "time_step", "warnings", "extra"]
+    assert found["failure_load"] == 0.1 + 0.2
+    assert found["time_step"] is None
+    assert found["extra"] == [None, 1.0]
