@@ -1,0 +1,1 @@
+"""Compiled loops over plain arrays; imports nothing but numba, numpy and itself."""

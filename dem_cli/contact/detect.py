@@ -1,0 +1,66 @@
+"""Detection: which faces of which blocks touch or may soon touch."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.kernels.neighbours import find_pairs, place_corners
+from dem_cli.kernels.records import Shape
+from dem_cli.model.model import Model
+
+
+class Faces(NamedTuple):
+    """Pairs of faces of convex parts, ordered by parts."""
+
+    parts: np.ndarray  # the two parts a < b, (n, 2) int64
+    edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n, 4) int64
+    separation: np.ndarray  # distance along the best separating axis [m], negative: overlap, (n,)
+
+
+def block_shape(model: Model) -> Shape:
+    """The constant geometry that the kernels read."""
+    sizes = np.diff(model.part_starts)
+    corner_blocks = np.repeat(model.part_blocks, sizes)
+    distance = np.sqrt((model.vertices**2).sum(axis=1))
+    radii = np.zeros(model.n_blocks)
+    np.maximum.at(radii, corner_blocks, distance)
+    return Shape(corner_blocks, np.ascontiguousarray(model.vertices), radii)
+
+
+def world_corners(shape: Shape, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+    """Corners of all parts in place [m], (n_vertices, d)."""
+    corners = np.empty_like(shape.corner_arms)
+    place_corners(positions, orientations, shape.corner_blocks, shape.corner_arms, corners)
+    return corners
+
+
+def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
+    """All pairs of faces of different blocks that are closer than `reach` [m].
+
+    corners: world coordinates of all corners [m], (n_vertices, d), see `world_corners`.
+    Two fixed blocks have no joint. A pair of convex parts has at most one.
+    """
+    starts = model.part_starts
+    low = np.minimum.reduceat(corners, starts[:-1], axis=0)
+    high = np.maximum.reduceat(corners, starts[:-1], axis=0)
+    boxes = np.ascontiguousarray(np.column_stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]]))
+    order = np.argsort(boxes[:, 0], kind="stable")
+    capacity = 8 * model.n_parts + 16
+    while True:
+        parts = np.empty((capacity, 2), np.int64)
+        edges = np.empty((capacity, 2), np.int64)
+        separation = np.empty(capacity)
+        n = find_pairs(
+            order, boxes, corners, starts, model.part_blocks, model.fixed, reach, parts, edges, separation
+        )
+        if n <= capacity:
+            break
+        capacity = n
+    by_part = np.lexsort((parts[:n, 1], parts[:n, 0]))
+    parts, edges = parts[by_part], edges[by_part]
+    following = np.arange(1, len(corners) + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    four = np.column_stack([edges[:, 0], following[edges[:, 0]], edges[:, 1], following[edges[:, 1]]])
+    return Faces(parts, four, separation[by_part])

@@ -1,0 +1,61 @@
+"""The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
+
+The cache folder carries the hash of all sources of the package, because numba looks only at the
+file of the decorated function: a callee edited elsewhere, or a reordered record, would otherwise
+go on running old machine code.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numba
+from numba.extending import overload, register_jitable
+
+__all__ = ["cache_folder", "inline", "kernel", "overload"]
+
+_ROOT = Path(__file__).resolve().parent.parent
+
+
+def _source_hash() -> str:
+    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
+    for folder in ("kernels", "laws"):
+        for source in sorted((_ROOT / folder).glob("*.py")):
+            digest.update(source.name.encode())
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def cache_folder() -> Path:
+    """Where compiled code is kept: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
+    home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    folder = Path(home) / "dem-cli" / _source_hash()
+    if _writable(folder):
+        return folder
+    uid = os.getuid() if hasattr(os, "getuid") else 0
+    return Path(tempfile.gettempdir()) / f"dem-cli-{uid}" / folder.name
+
+
+numba.config.CACHE_DIR = str(cache_folder())
+
+
+def kernel(function: Callable) -> Callable:
+    """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
+    return numba.njit(cache=True, error_model="numpy", fastmath=False, nogil=True)(function)
+
+
+inline = register_jitable

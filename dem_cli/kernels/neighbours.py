@@ -1,0 +1,102 @@
+"""Which faces touch or may soon touch, 2D: sweep over bounding boxes, then separating axes.
+
+For two convex polygons the axis of largest separation is the normal of an edge; the joint is that
+edge and the most antiparallel edge of the other polygon (Gottschalk, Lin and Manocha 1996).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dem_cli.kernels.jit import inline, kernel
+
+
+@inline
+def _deepest_edge(corners, s0, s1, t0, t1):
+    """Edge of polygon s with the largest separation from polygon t, and that separation."""
+    best, best_edge = -math.inf, s0
+    for i in range(s0, s1):
+        j = i + 1 if i + 1 < s1 else s0
+        tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+        length = math.sqrt(tx * tx + ty * ty)
+        nx, ny = ty / length, -tx / length
+        separation = math.inf
+        for k in range(t0, t1):
+            distance = (corners[k, 0] - corners[i, 0]) * nx + (corners[k, 1] - corners[i, 1]) * ny
+            separation = min(separation, distance)
+        if separation > best:
+            best, best_edge = separation, i
+    return best, best_edge
+
+
+@inline
+def _opposite_edge(corners, i, j, t0, t1):
+    """Edge of polygon t whose outward normal points most against that of edge (i, j)."""
+    tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+    best, best_edge = math.inf, t0
+    for k in range(t0, t1):
+        m = k + 1 if k + 1 < t1 else t0
+        ux, uy = corners[m, 0] - corners[k, 0], corners[m, 1] - corners[k, 1]
+        cosine = (tx * ux + ty * uy) / math.sqrt(ux * ux + uy * uy)
+        if cosine < best:
+            best, best_edge = cosine, k
+    return best_edge
+
+
+@kernel
+def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, parts_out, edges_out, distance_out):
+    """Pairs of convex parts closer than `reach` [m], in the order of their parts.
+
+    order         parts sorted by the left side of their box, (n_parts,)
+    boxes         (left, right, bottom, top) of each part [m], (n_parts, 4)
+    parts_out     the two parts, (capacity, 2)
+    edges_out     first corners of the edge of part a and of part b, (capacity, 2)
+    distance_out  separation [m], negative: overlap, (capacity,)
+    Returns the number of pairs, which may exceed the capacity: call again with more room.
+    """
+    count = 0
+    n_parts = order.shape[0]
+    for first in range(n_parts):
+        p = order[first]
+        right = boxes[p, 1] + reach
+        for second in range(first + 1, n_parts):
+            q = order[second]
+            if boxes[q, 0] > right:
+                break
+            if boxes[q, 2] > boxes[p, 3] + reach or boxes[p, 2] > boxes[q, 3] + reach:
+                continue
+            if part_blocks[p] == part_blocks[q] or (fixed[part_blocks[p]] and fixed[part_blocks[q]]):
+                continue
+            a, b = (p, q) if p < q else (q, p)
+            a0, a1, b0, b1 = part_starts[a], part_starts[a + 1], part_starts[b], part_starts[b + 1]
+            from_a, edge_a = _deepest_edge(corners, a0, a1, b0, b1)
+            if from_a > reach:
+                continue
+            from_b, edge_b = _deepest_edge(corners, b0, b1, a0, a1)
+            if from_b > reach:
+                continue
+            if from_a >= from_b:
+                edge_b = _opposite_edge(corners, edge_a, edge_a + 1 if edge_a + 1 < a1 else a0, b0, b1)
+            else:
+                edge_a = _opposite_edge(corners, edge_b, edge_b + 1 if edge_b + 1 < b1 else b0, a0, a1)
+            if count < parts_out.shape[0]:
+                parts_out[count, 0], parts_out[count, 1] = a, b
+                edges_out[count, 0], edges_out[count, 1] = edge_a, edge_b
+                distance_out[count] = max(from_a, from_b)
+            count += 1
+    return count
+
+
+@kernel
+def place_corners(positions, orientations, corner_blocks, corner_arms, corners_out):
+    """World coordinates of all corners [m], (n_vertices, 2)."""
+    block, c, s = -1, 1.0, 0.0
+    for i in range(corner_blocks.shape[0]):
+        if corner_blocks[i] != block:
+            block = corner_blocks[i]
+            c, s = np.cos(orientations[block, 0]), np.sin(orientations[block, 0])
+        x, y = corner_arms[i, 0], corner_arms[i, 1]
+        corners_out[i, 0] = positions[block, 0] + c * x - s * y
+        corners_out[i, 1] = positions[block, 1] + s * x + c * y

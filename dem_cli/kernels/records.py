@@ -1,0 +1,84 @@
+"""The arrays that the kernels work on, each with its meaning, unit and shape.
+
+n_dof = d + r: d translations, then r rotations. Time is the solver's: seconds in dynamics, one unit
+per step in quasi-static runs (with fictitious masses).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Bodies(NamedTuple):
+    """Changing state of the blocks."""
+
+    positions: np.ndarray  # centroids [m], (n_blocks, d)
+    orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1)
+    velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
+    forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
+    corners: np.ndarray  # world coordinates of all corners [m], (n_vertices, d); kept only by moving geometry
+    travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
+
+
+class Shape(NamedTuple):
+    """Constant geometry of the blocks."""
+
+    corner_blocks: np.ndarray  # block of each corner, (n_vertices,)
+    corner_arms: np.ndarray  # corner relative to the centroid, undeformed [m], (n_vertices, d)
+    radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
+
+
+class Joints(NamedTuple):
+    """Pairs of faces that touch or may touch; a joint owns points starts[j]:starts[j + 1]."""
+
+    blocks: np.ndarray  # blocks a and b, (n_joints, 2)
+    starts: np.ndarray  # first point of each joint, (n_joints + 1,)
+    frames: np.ndarray  # fixed geometry: unit normal from a to b, then tangent(s), (n_joints, d, d)
+    arms: np.ndarray  # fixed geometry: point relative to the centroids of a and b [m], (n_points, 2, d)
+    edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
+    lengths: np.ndarray  # 2D: lengths of the two edges [m], (n_joints, 2)
+    kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
+    ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
+    law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+
+
+class Contacts(NamedTuple):
+    """Changing state of the contact points."""
+
+    gaps: np.ndarray  # positive open [m], (n_points,)
+    shear: np.ndarray  # shear force on b along the tangents [N], (n_points, d - 1)
+    normal: np.ndarray  # normal force, compression positive [N], (n_points,)
+    slip: np.ndarray  # accumulated slip path [m], (n_points,)
+    memory: np.ndarray  # whatever the law remembers, (n_points, n_memory)
+    stale: np.ndarray  # 1: faces no longer are the touching ones; the last entry asks for detection, (n_joints + 1,) int8
+
+
+class Loads(NamedTuple):
+    """Applied loads and how they drive the blocks."""
+
+    dead: np.ndarray  # [N, N m], (n_blocks, n_dof)
+    live: np.ndarray  # per unit of the load multiplier [N, N m], (n_blocks, n_dof)
+    inverse_masses: np.ndarray  # fictitious or real; 0: prescribed velocity, (n_blocks, n_dof)
+
+
+# Slots of the vector `ledger`: sums over steps [J].
+EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT = 0, 1, 2, 3, 4
+N_LEDGER = 5
+
+# Slots of the vector `control`.
+DEAD_FACTOR = 0  # multiplies dead loads
+LIVE_FACTOR = 1  # multiplies live loads
+RATE = 2  # creep: prescribed live·v per step
+DAMP = 3  # local damping coefficient
+UNBALANCED = 4  # out: largest unbalanced force [N] of the last step
+MEAN_LOAD = 5  # out: mean live factor over the call
+MEAN_POWER = 6  # out: sum of residual·v over the call
+TRAVEL_LIMIT = 7  # stop when a corner may have moved that far since detection [m]
+FIRE_MIX = 8  # state of FIRE: current mixing
+SINCE_UPHILL = 9  # state of FIRE: steps since the power was negative
+N_CONTROL = 10
+
+# What the step is driven by.
+HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3

@@ -1,0 +1,6 @@
+"""All joint laws by name. A new law is one file and one line here."""
+
+from dem_cli.laws.coulomb import COULOMB
+from dem_cli.laws.law import Law
+
+LAWS: dict[str, Law] = {law.name: law for law in (COULOMB,)}

@@ -1,0 +1,303 @@
+"""A structure in motion: the arrays, the compiled loop that fits them, and what can be asked of them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from dem_cli.contact.assemble import (
+    LIKE,
+    LIKE_ROTATION,
+    Ends,
+    JointProperties,
+    build_joints,
+    carry_memory,
+    empty_contacts,
+    measure_ends,
+)
+from dem_cli.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.kernels import fixed_geometry, planar_geometry
+from dem_cli.kernels import records as slot
+from dem_cli.kernels.advance import drift_centroids, drift_corners, make_advance
+from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
+from dem_cli.laws.law import Law
+from dem_cli.model.model import Model
+from dem_cli.output.record import ContactRecord, Energy, Frame
+from dem_cli.solve.masses import fictitious_masses
+
+TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
+SKIN = 0.02  # detection reach as a share of the smallest edge
+ALPHA = 0.4  # local damping near failure
+
+
+@cache
+def compiled_advance(kinematics: str, law: Law):
+    """The stepping loop for one kinematics and one law; compiled at its first call."""
+    if kinematics == "fixed":
+        forces = make_contact_forces(fixed_geometry.prepare, fixed_geometry.place, law.function, True)
+        return make_advance(forces, drift_centroids)
+    forces = make_contact_forces(planar_geometry.prepare, planar_geometry.place, law.function, False)
+    return make_advance(forces, drift_corners)
+
+
+class Simulation:
+    """Blocks, joints and loads that advance in time.
+
+    kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
+    live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        law: Law,
+        properties: JointProperties,
+        kinematics: str = "fixed",
+        live_scale: float = 1.0,
+        tilting: bool = False,
+        safety: float = 0.85,
+    ):
+        self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
+        self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
+        d, r = model.dimension, model.inertias.shape[1]
+        n = model.n_blocks
+        self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
+        self.shape = block_shape(model)
+        positions, orientations = model.centroids.copy(), np.zeros((n, 1 if d == 2 else 4))
+        corners = world_corners(self.shape, positions, orientations)
+        self.bodies = Bodies(
+            positions, orientations, np.zeros((n, d + r)), np.zeros((n, d + r)), corners, np.zeros(n)
+        )
+        self.smallest = smallest_edge(model)
+        self.free = np.flatnonzero(~model.fixed)
+        dead = model.dead_loads.copy()
+        live = model.live_loads * live_scale
+        dead[model.fixed] = 0.0
+        live[model.fixed] = 0.0
+        self.loads = Loads(np.ascontiguousarray(dead), np.ascontiguousarray(live), np.zeros((n, d + r)))
+        self.weight = mean_weight(dead[self.free], live[self.free], d)
+        self.control = np.zeros(slot.N_CONTROL)
+        self.control[slot.DEAD_FACTOR] = 1.0
+        self.control[slot.DAMP] = ALPHA
+        self.ledger = np.zeros(slot.N_LEDGER)
+        self.steps = 0
+        self.detections = 0
+        self.reference_positions = positions.copy()
+        self._detect_first()
+
+    # -- detection ---------------------------------------------------------------------------------
+
+    def _detect_first(self) -> None:
+        model = self.model
+        reach = self.smallest * (TOUCH if self.kinematics == "fixed" else SKIN)
+        faces = find_joints(model, self.bodies.corners, reach)
+        joints, ends = build_joints(model, faces, self.bodies, self.properties)
+        if self.kinematics == "fixed":
+            # Faces that meet in a point only cannot carry force to first order.
+            keep = np.flatnonzero(ends.overlaps > TOUCH * joints.lengths.min(axis=1, initial=np.inf))
+            faces = faces._replace(parts=faces.parts[keep], edges=faces.edges[keep], separation=faces.separation[keep])
+            joints, ends = build_joints(model, faces, self.bodies, self.properties)
+        self.joints = joints
+        self.contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, self.law.n_memory)
+        touching = np.abs(ends.gaps) <= TOUCH * self.smallest
+        self.contacts.gaps[:] = np.where(touching, 0.0, ends.gaps)
+        self._after_detection()
+
+    def detect(self) -> None:
+        """New faces after large motion; memory follows the contact points."""
+        points = measure_ends(self.joints, self.bodies, self.contacts, self.model.dimension).points
+        faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest)
+        joints, ends = build_joints(self.model, faces, self.bodies, self.properties)
+        little = self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest
+        before = self.joints.edges[self.contacts.stale[:-1] == 1] if little else None
+        self.joints, self.contacts = carry_memory(self.joints, self.contacts, points, joints, ends)
+        if before is not None and len(before):
+            # Still the same faces though nothing moved: do not ask again at every step.
+            same = (self.joints.edges[:, None, :] == before[None, :, :]).all(axis=2).any(axis=1)
+            self.contacts.stale[:-1][same] = 1
+        self._after_detection()
+
+    def _after_detection(self) -> None:
+        self.detections += 1
+        self.bodies.travel[:] = 0.0
+        self.control[slot.TRAVEL_LIMIT] = 0.5 * SKIN * self.smallest
+        self.set_masses()
+
+    def set_masses(self) -> None:
+        """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
+        before = self.kinetic_energy()
+        fictitious_masses(self.model, self.joints, self.bodies, self.shape, self.safety, self.loads.inverse_masses)
+        self.ledger[slot.DAMPING] += before - self.kinetic_energy()
+
+    # -- stepping ----------------------------------------------------------------------------------
+
+    def advance(self, n_steps: int, mode: int) -> None:
+        """n_steps steps of one mode (kernels.records), with detection when it is due."""
+        run = compiled_advance(self.kinematics, self.law)
+        left, load, power = n_steps, 0.0, 0.0
+        while left > 0:
+            done = run(
+                left, mode, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
+                self.control, self.ledger, self.like, self.like_rotation,
+            )  # fmt: skip
+            left -= done
+            self.steps += done
+            load += self.control[slot.MEAN_LOAD] * done
+            power += self.control[slot.MEAN_POWER]
+            if self.kinematics == "large" and (left > 0 or self._detection_due()):
+                self.detect()
+        self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
+        self.control[slot.MEAN_POWER] = power
+
+    def _detection_due(self) -> bool:
+        moved = self.bodies.travel.max(initial=0.0) > self.control[slot.TRAVEL_LIMIT]
+        return bool(moved or self.contacts.stale[-1])
+
+    def rest(self) -> None:
+        """Stop all free blocks; their kinetic energy goes to damping."""
+        before = self.kinetic_energy()
+        self.bodies.velocities[self.free] = 0.0
+        self.ledger[slot.DAMPING] += before - self.kinetic_energy()
+
+    def set_load(self, multiplier: float) -> None:
+        """Constant load; with a tilting table the dead loads turn with it (multiplier = tan θ)."""
+        cosine = 1.0 / np.sqrt(1.0 + multiplier**2) if self.tilting else 1.0
+        self.control[slot.DEAD_FACTOR] = cosine
+        self.control[slot.LIVE_FACTOR] = multiplier * cosine
+
+    @property
+    def load(self) -> float:
+        """Internal load multiplier (times live_scale: the one users know)."""
+        return self.control[slot.LIVE_FACTOR] / self.control[slot.DEAD_FACTOR]
+
+    @property
+    def creep_mode(self) -> int:
+        return slot.TILT_CREEP if self.tilting else slot.CREEP
+
+    @property
+    def unbalanced(self) -> float:
+        """Largest unbalanced force of the last step over the mean block weight."""
+        return self.control[slot.UNBALANCED] / self.weight
+
+    # -- state -------------------------------------------------------------------------------------
+
+    def save(self) -> tuple:
+        """A copy of everything that changes, for `restore`."""
+        return (
+            Bodies(*(a.copy() for a in self.bodies)),
+            Contacts(*(a.copy() for a in self.contacts)),
+            self.joints,
+            self.control.copy(),
+            self.ledger.copy(),
+            self.loads.inverse_masses.copy(),
+        )
+
+    def restore(self, saved: tuple) -> None:
+        """Back to a saved state (steps go on counting)."""
+        bodies, contacts, joints, control, ledger, inverse_masses = saved
+        for target, source in zip(self.bodies, bodies, strict=True):
+            target[...] = source
+        self.contacts = Contacts(*(a.copy() for a in contacts))
+        self.joints = joints
+        self.control[:], self.ledger[:] = control, ledger
+        self.loads.inverse_masses[:] = inverse_masses
+
+    # -- measures ----------------------------------------------------------------------------------
+
+    def kinetic_energy(self) -> float:
+        inverse = self.loads.inverse_masses
+        moving = inverse > 0.0
+        return 0.5 * float((self.bodies.velocities[moving] ** 2 / inverse[moving]).sum())
+
+    def elastic_energy(self) -> float:
+        contacts, joints = self.contacts, self.joints
+        normal = (contacts.normal**2 / np.where(joints.kn > 0, joints.kn, 1.0)).sum()
+        shear = ((contacts.shear**2).sum(axis=1) / np.where(joints.ks > 0, joints.ks, 1.0)).sum()
+        return 0.5 * float(normal + shear)
+
+    def displacement(self) -> np.ndarray:
+        """Displacement of all centroids [m], (n_blocks, d)."""
+        return self.bodies.positions - self.reference_positions
+
+    def live_displacement(self) -> float:
+        """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
+        d = self.model.dimension
+        travel = (self.loads.live[:, :d] * self.displacement()).sum()
+        if d == 2:
+            travel += (self.loads.live[:, 2] * self.bodies.orientations[:, 0]).sum()
+        return float(travel)
+
+    def largest_displacement(self) -> float:
+        """Largest displacement of a centroid [m]."""
+        return float(np.sqrt((self.displacement()[self.free] ** 2).sum(axis=1)).max(initial=0.0))
+
+    def ends(self) -> Ends:
+        """Contact points as they are now."""
+        if self.kinematics == "large":
+            return measure_ends(self.joints, self.bodies, self.contacts, self.model.dimension)
+        a = self.joints.blocks[:, 0].repeat(2)
+        normals = self.joints.frames[:, 0].repeat(2, axis=0)
+        return Ends(self.joints.arms[:, 0] + self.model.centroids[a], normals, self.contacts.gaps, np.zeros(0))
+
+    def energy(self) -> Energy:
+        """The ledger since the start [J]; external counts applied loads without gravity."""
+        d = self.model.dimension
+        weight = -self.loads.dead[:, d - 1]
+        gravity = float((weight * self.displacement()[:, d - 1]).sum())
+        return Energy(
+            kinetic=self.kinetic_energy(),
+            elastic=self.elastic_energy(),
+            gravity=gravity,
+            external=float(self.ledger[slot.EXTERNAL]) + gravity,
+            friction=float(self.ledger[slot.FRICTION]),
+            damping=float(self.ledger[slot.DAMPING]),
+            supports=float(self.ledger[slot.SUPPORT]),
+        )
+
+    def contact_record(self) -> ContactRecord:
+        """All contact points now."""
+        ends = self.ends()
+        owner = np.repeat(np.arange(len(self.joints.blocks)), 2)
+        friction = np.abs(self.contacts.shear).max(axis=1, initial=0.0)
+        limit = self.joints.law[owner, 0] * self.contacts.normal
+        state = np.where(self.contacts.normal <= 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
+        return ContactRecord(
+            joint=owner,
+            blocks=self.joints.blocks[owner],
+            points=ends.points.copy(),
+            normals=ends.normals.copy(),
+            normal_force=self.contacts.normal.copy(),
+            shear_force=self.contacts.shear.copy(),
+            gap=ends.gaps.copy(),
+            slip=self.contacts.slip.copy(),
+            state=state.astype(np.int8),
+        )
+
+    def frame(self, stage: str) -> Frame:
+        """A snapshot."""
+        bodies = self.bodies
+        return Frame(
+            stage, self.steps, self.load * self.live_scale, self.largest_displacement(),
+            bodies.positions.copy(), bodies.orientations.copy(), bodies.velocities.copy(), self.contact_record(),
+        )  # fmt: skip
+
+
+def smallest_edge(model: Model) -> float:
+    """Shortest edge of any block [m]."""
+    vertices, starts = model.vertices, model.part_starts
+    following = np.arange(1, len(vertices) + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    shortest = np.sqrt(((vertices[following] - vertices) ** 2).sum(axis=1)).min()
+    return float(shortest)
+
+
+def mean_weight(dead: np.ndarray, live: np.ndarray, dimension: int) -> float:
+    """Mean dead force on a free block [N]; the mean live one where there is no dead load."""
+    for loads in (dead, live):
+        mean = float(np.sqrt((loads[:, :dimension] ** 2).sum(axis=1)).mean()) if len(loads) else 0.0
+        if mean > 0.0:
+            return mean
+    return 1.0
+
