@@ -36,7 +36,7 @@ class CaseProblem:
 class CaseError(DemError):
     """The case is invalid. Holds every problem found, not only the first.
 
-    `render` turns a problem into a line of text; the reader of the file gives one that adds file, line and column.
+    `render` turns a problem into a line of text; the reader of the file gives one that adds line and column.
     """
 
     exit_code = 2

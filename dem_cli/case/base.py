@@ -1,6 +1,6 @@
 """The base of every table of a case file: strict about names, frozen after validation.
 
-Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TOML become tuples on the way in.
+Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TOML become tuples.
 """
 
 from __future__ import annotations

@@ -1,0 +1,44 @@
+"""Where the parts meet: the registries are handed to the case, the case to the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dem_cli.case.reader import LoadedCase, read_case
+from dem_cli.case.schema import Case, case_model
+from dem_cli.errors import CaseError
+
+if TYPE_CHECKING:
+    from dem_cli.model.model import Model
+
+
+@cache
+def make_case_model() -> type[Case]:
+    """The class of case files with every registered structure, law and analysis."""
+    from dem_cli.laws.registry import LAWS
+    from dem_cli.solve.registry import ANALYSES
+    from dem_cli.structures.registry import GENERATORS
+
+    return case_model(
+        {kind: generator.parameters for kind, generator in GENERATORS.items()},
+        {name: law.parameters for name, law in LAWS.items()},
+        {kind: analysis.parameters for kind, analysis in ANALYSES.items()},
+    )
+
+
+def load_case(path: str | Path, overrides: Sequence[str] = ()) -> LoadedCase:
+    """Read and validate a case file; `overrides` are KEY=VALUE texts. Raises CaseError or UsageError."""
+    return read_case(path, make_case_model(), overrides)
+
+
+def build_model(loaded: LoadedCase) -> Model:
+    """Generate the blocks and put them into arrays. Raises CaseError, with file and line, on bad geometry."""
+    from dem_cli.model.assemble import assemble
+
+    try:
+        return assemble(loaded.case)
+    except CaseError as error:
+        raise CaseError(error.problems, loaded.render) from None

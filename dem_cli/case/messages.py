@@ -1,0 +1,157 @@
+"""What the validator found, in the words of the case file: value found, what is allowed, the nearest name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from dem_cli.case.base import KeyProblem
+from dem_cli.case.words import (
+    Kind,
+    allowed,
+    either,
+    is_table,
+    kind_of,
+    listing,
+    literals,
+    nearest,
+    not_allowed,
+    unknown_name,
+)
+from dem_cli.errors import CaseProblem, KeyPath
+
+# Parts of the format that this version does not have yet: table or key -> what it belongs to.
+LATER = {"motion": "time-history analysis", "damping": "time-history analysis", "initial": "free vibration"}
+
+
+class Spot(NamedTuple):
+    """Where an error belongs.
+
+    kinds: what may stand there; owner: the table around it; union: path of the nearest union above; choices: its
+    members.
+    """
+
+    path: KeyPath
+    kinds: tuple[Kind, ...]
+    owner: type[BaseModel] | None
+    union: KeyPath | None
+    choices: tuple[Kind, ...] = ()
+
+
+def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str, Any]) -> list[CaseProblem]:
+    """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
+    found: list[CaseProblem] = []
+    unions: dict[KeyPath, list[tuple[Spot, Any]]] = {}
+    for item in error.errors(include_url=False):
+        spot = follow(model, item["loc"], item["type"])
+        if spot.union is not None:
+            unions.setdefault(spot.union, []).append((spot, item))
+        else:
+            found.append(describe(spot, item, data))
+    for path, members in unions.items():
+        inside = [(spot, item) for spot, item in members if len(spot.path) > len(path)]
+        deepest = max((len(spot.path) for spot, _ in inside), default=0)
+        if inside:
+            found += [describe(spot, item, data) for spot, item in inside if len(spot.path) == deepest]
+        else:
+            kinds = members[0][0].choices
+            found.append(CaseProblem(path, not_allowed(value_at(data, path), kinds)))
+    return list(dict.fromkeys(found))
+
+
+def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
+    """One error of the validator as a problem."""
+    path, kind = spot.path, item["type"]
+    if kind == "extra_forbidden":
+        return CaseProblem(path, unknown_key(str(path[-1]), spot.owner), at_key=True)
+    if kind in ("value_error", "assertion_error"):
+        cause = item["ctx"]["error"]
+        keys = cause.keys if isinstance(cause, KeyProblem) else ()
+        return CaseProblem(path + keys, str(cause))
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        key = item["ctx"]["discriminator"].strip("'")
+        tags = [member.type.model_fields[key].annotation for member in spot.choices]
+        names = [name for tag in tags for name in get_args(tag)]
+        value = value_at(data, (*path, key))
+        if kind == "union_tag_not_found":
+            return CaseProblem((*path, key), f"missing; must be {either(names)}")
+        return CaseProblem((*path, key), unknown_name(key, value, names))
+    if kind == "missing" and isinstance(path[-1], int):  # too short a list
+        spot = follow(spot.owner, (path[-2],), "") if spot.owner else spot
+        path = path[:-1]
+    elif kind == "missing":
+        meaning = spot.owner.model_fields[str(path[-1])].description if spot.owner else None
+        return CaseProblem(
+            path, f"missing; must be {allowed(spot.kinds)}" + (f" ({meaning})" if meaning else "")
+        )
+    value = value_at(data, path)
+    names = literals(spot.kinds)
+    if kind == "literal_error" and names and isinstance(value, str):
+        return CaseProblem(path, unknown_name(str(path[-1]), value, names))
+    return CaseProblem(path, not_allowed(value, spot.kinds))
+
+
+def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Spot:
+    """Walk the declared types along `loc`, leaving out the items that only name a member of a union."""
+    path: KeyPath = ()
+    kinds: tuple[Kind, ...] = (Kind(model),)
+    owner, union, choices = None, None, ()
+    for i, item in enumerate(loc):
+        if len(kinds) == 1 and len(kinds[0].choices) > 1:
+            members = kinds[0].choices
+            tagged = tuple(member for member in members if has_tag(member.type, item))
+            if not tagged:
+                union, choices = path, members
+            kinds = tagged or members
+            continue
+        tables = [kind.type for kind in kinds if is_table(kind.type)]
+        inner = tuple(part for kind in kinds for part in element(kind, item))
+        last_unknown = error == "extra_forbidden" and i == len(loc) - 1
+        if inner or last_unknown:
+            path += (item,)
+            kinds, owner = inner, tables[0] if tables else owner
+    if len(kinds) == 1 and len(kinds[0].choices) > 1:
+        choices, kinds = kinds[0].choices, kinds[0].choices
+    return Spot(path, kinds, owner, union, choices)
+
+
+def element(kind: Kind, item: str | int) -> tuple[Kind, ...]:
+    """What stands at a key or index of a value of this kind; nothing where it has no such part."""
+    arguments = get_args(kind.type)
+    origin = get_origin(kind.type)
+    if is_table(kind.type):
+        field = kind.type.model_fields.get(item)
+        return (kind_of(field.annotation, field.metadata),) if field is not None else ()
+    if origin is dict:
+        return (kind_of(arguments[1]),) if item != "[key]" else ()
+    if origin in (tuple, list) and isinstance(item, int):
+        variable = origin is list or arguments[-1] is Ellipsis
+        return (kind_of(arguments[0] if variable else arguments[min(item, len(arguments) - 1)]),)
+    return ()
+
+
+def has_tag(declared: Any, tag: str | int) -> bool:
+    """Whether a table is the member of a discriminated union that `tag` names."""
+    fields = declared.model_fields if is_table(declared) else {}
+    return any(tag in get_args(fields[key].annotation) for key in ("kind", "law") if key in fields)
+
+
+def unknown_key(name: str, owner: type[BaseModel] | None) -> str:
+    """What to say about a key that the table does not have."""
+    names = list(owner.model_fields) if owner else []
+    if name in LATER:
+        return f"not available yet in this version ({LATER[name]})"
+    hint = nearest(name, names)
+    return f"unknown key, {hint}" if hint else f"unknown key (allowed: {listing(names)})"
+
+
+def value_at(data: Any, path: KeyPath) -> Any:
+    """The value found in the file at a key path; None where there is none."""
+    for key in path:
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data

@@ -1,0 +1,114 @@
+"""Names that refer to each other: filling in those that may be left out, and checking the rest.
+
+All but `check_names` work on the tables as read, so that slips are reported along with the validator's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import Any
+
+from dem_cli.case.schema import Case
+from dem_cli.case.words import either, show, unknown_name
+from dem_cli.errors import CaseProblem, KeyPath, dotted
+
+
+def complete(data: dict[str, Any], title: str) -> None:
+    """Fill in, in place, the title, the only material and the ids of structures."""
+    if data.get("title", "") == "":
+        data["title"] = title
+    materials = data.get("materials")
+    only = next(iter(materials)) if isinstance(materials, dict) and len(materials) == 1 else ""
+    tables = [table for _, table in entries(data, "structure")]
+    taken = {table.get("id") for table in tables if isinstance(table.get("id", 0), str)}
+    for table in tables + [table for _, table in entries(data, "block")]:
+        if only and table.get("material", "") == "":
+            table["material"] = only
+    for table in tables:
+        kind = table.get("kind")
+        if table.get("id", "") == "" and isinstance(kind, str):
+            number = 1
+            while (name := kind if number == 1 else f"{kind}{number}") in taken:
+                number += 1
+            table["id"] = name
+            taken.add(name)
+
+
+def problems(data: dict[str, Any]) -> list[CaseProblem]:
+    """Unknown or doubled names, and a case without blocks."""
+    found = list(unknown_materials(data)) + list(unknown_in_interfaces(data))
+    for key in ("structure", "block"):
+        seen: dict[str, KeyPath] = {}
+        for path, table in entries(data, key):
+            name = table.get("id")
+            if isinstance(name, str) and name in seen:
+                message = f"{show(name)} is used twice, first at {dotted(seen[name])}"
+                found.append(CaseProblem((*path, "id"), message))
+            elif isinstance(name, str):
+                seen[name] = (*path, "id")
+    if not data.get("structure") and not data.get("block"):
+        found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
+    return found
+
+
+def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Every `material` in a structure or a block, and where there are several, its absence."""
+    materials = names(data, "materials")
+    for key in ("structure", "block"):
+        for path, table in entries(data, key):
+            if materials and table.get("material", "") == "":
+                yield CaseProblem((*path, "material"), f"missing; must be {either(materials)}")
+            for place, name in mentions(table, path):
+                if name not in materials:
+                    yield CaseProblem(place, unknown_name("material", name, materials))
+
+
+def mentions(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
+    """Where a material is named, at any depth."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key == "material" and isinstance(item, str) and item:
+                yield (*path, key), item
+            else:
+                yield from mentions(item, (*path, key))
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for i, item in enumerate(value):
+            yield from mentions(item, (*path, i))
+
+
+def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    materials, joints = names(data, "materials"), names(data, "joints")
+    for path, table in entries(data, "interface"):
+        between = table.get("between")
+        for i, name in enumerate(between if isinstance(between, list) else ()):
+            if isinstance(name, str) and name not in materials:
+                yield CaseProblem((*path, "between", i), unknown_name("material", name, materials))
+        joint = table.get("joint")
+        if isinstance(joint, str) and joint not in joints:
+            yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
+
+
+def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
+    """The tables of an array of tables with their key paths; what is no table is left to the validator."""
+    tables = data.get(key)
+    pairs = enumerate(tables) if isinstance(tables, list) else ()
+    return [((key, i), table) for i, table in pairs if isinstance(table, dict)]
+
+
+def names(data: dict[str, Any], key: str) -> list[str]:
+    table = data.get(key)
+    return list(table) if isinstance(table, dict) else []
+
+
+def check_names(case: Case, block_ids: Collection[str]) -> list[CaseProblem]:
+    """Problems of loads, settlements and monitors on blocks that do not exist.
+
+    `block_ids`: names (and aliases) that a block may be called by, known only after the structures are built.
+    """
+    known = set(block_ids)
+    return [
+        CaseProblem((key, i, "block"), unknown_name("block", table.block, list(block_ids)))
+        for key in ("load", "settlement", "monitor")
+        for i, table in enumerate(getattr(case, key))
+        if table.block is not None and table.block not in known
+    ]

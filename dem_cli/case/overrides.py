@@ -1,0 +1,92 @@
+"""`--set KEY=VALUE`: one value of a case changed from the command line, before anything is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, NamedTuple
+
+import tomli
+
+from dem_cli.case.words import listing, show, unknown_name
+from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
+
+NAMED = ("materials", "joints")  # tables of named tables: a new name is taken for a slip
+
+
+class Override(NamedTuple):
+    """A key path, as typed and resolved, and its new value."""
+
+    text: str
+    path: KeyPath
+    value: Any
+
+
+def parse(text: str) -> Override:
+    """`joints.dry.friction=0.6` -> an Override. The value is a TOML literal; what is none is a string."""
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not key:
+        raise UsageError(f"--set {text}: must be KEY=VALUE, such as joints.dry.friction=0.6")
+    try:
+        path = single_path(tomli.loads(f"{key} = 0"))
+    except tomli.TOMLDecodeError:
+        raise UsageError(f"--set {text}: '{key}' is not a key path, such as structure.0.courses") from None
+    return Override(key, path, literal(value.strip()))
+
+
+def single_path(table: dict[str, Any]) -> KeyPath:
+    """The keys of nested tables with one key each."""
+    path: KeyPath = ()
+    node: Any = table
+    while isinstance(node, dict):
+        key = next(iter(node))
+        path, node = (*path, key), node[key]
+    return path
+
+
+def literal(text: str) -> Any:
+    """A TOML value; a text that is none is taken as a string."""
+    try:
+        table = tomli.loads(f"value = {text}")
+    except tomli.TOMLDecodeError:
+        return text
+    return table["value"] if len(table) == 1 else text
+
+
+Outcome = tuple[Override, CaseProblem | None]
+
+
+def apply(data: dict[str, Any], override: Override, tables: Collection[str]) -> Outcome:
+    """Change `data` in place; gives the override with its indices resolved and what is wrong with its path.
+
+    A missing table is made if the format has it (`tables`: keys of the file's top level).
+    """
+    node: Any = data
+    path: KeyPath = ()
+    for i, key in enumerate(override.path):
+        last = i == len(override.path) - 1
+        name: str | int = key
+        if isinstance(node, list):
+            if not str(key).isdigit() or int(key) >= len(node):
+                numbers = f" (allowed: {listing(range(len(node)))})" if node else ""
+                return failed(override, (*path, key), f"no such [[{dotted(path)}]]{numbers}")
+            name = int(key)
+        elif not isinstance(node, dict):
+            return failed(override, path, f"{show(node)} is not a table; it has no '{key}'")
+        elif key not in node and not last:
+            if i == 0 and key not in tables:
+                return failed(override, (key,), unknown_name("table", key, list(tables)))
+            if i == 1 and path[0] in NAMED:
+                return failed(override, (*path, key), unknown_name(str(path[0])[:-1], key, list(node)))
+            node[key] = {}
+        path = (*path, name)
+        if last:
+            node[name] = override.value
+        else:
+            node = node[name]
+    return override._replace(path=path), None
+
+
+def failed(override: Override, path: KeyPath, message: str) -> Outcome:
+    """An override that cannot be applied."""
+    return override._replace(path=path), CaseProblem(path, message)

@@ -1,0 +1,154 @@
+"""From a TOML file to a validated case; every mistake in it at once, each with its line and column."""
+
+from __future__ import annotations
+
+import copy
+import datetime
+import re
+from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import tomli
+from pydantic import ValidationError
+
+from dem_cli.case import names
+from dem_cli.case.doubts import doubts
+from dem_cli.case.messages import problems_from
+from dem_cli.case.overrides import Override, apply, parse
+from dem_cli.case.scanner import Places
+from dem_cli.case.schema import Case
+from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
+
+
+class Source:
+    """The text that a case came from: says where a problem stands."""
+
+    def __init__(self, path: Path, text: str, overrides: Sequence[Override] = ()):
+        self.path = path
+        self.text = text
+        self.overrides = tuple(overrides)
+
+    @cached_property
+    def places(self) -> Places:
+        return Places(self.text)
+
+    def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
+        """Line and column, from 1, of the value at a key path (or of its key)."""
+        return self.places.locate(path, key)
+
+    def render(self, problem: CaseProblem) -> str:
+        """`case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""
+        path = problem.path
+        for override in self.overrides:
+            if path and override.path == path[: len(override.path)]:
+                return f"--set {dotted(path)}: {problem.message}"
+        table = path[:-1]
+        for override in self.overrides:  # a key missing in a table that only an override made
+            if table and table not in self.places.values and override.path[: len(table)] == table:
+                return f"--set {override.text}: {dotted(path)}: {problem.message}"
+        line, column = self.locate(path, problem.at_key)
+        where = f"{self.path}:{line}:{column}: "
+        return where + (f"{dotted(path)}: " if path else "") + problem.message
+
+
+class LoadedCase(Source):
+    """A valid case, the text it came from and what is doubtful about it (`warnings`, one line each)."""
+
+    def __init__(self, case: Case, source: Source):
+        super().__init__(source.path, source.text, source.overrides)
+        self.case = case
+        self.warnings = tuple(self.render(doubt) for doubt in doubts(case))
+
+
+def read_case(path: str | Path, model: type[Case], overrides: Sequence[str] = ()) -> LoadedCase:
+    """Read and validate a case file, with `KEY=VALUE` overrides. Raises CaseError or UsageError."""
+    path = Path(path)
+    changes = [parse(text) for text in overrides]
+    text = read_text(path)
+    data = parse_toml(path, text)
+    resolved, found = [], []
+    for change in changes:
+        change, problem = apply(data, change, model.model_fields)
+        resolved.append(change)
+        found += [problem] if problem else []
+    source = Source(path, text, resolved)
+    if found:
+        raise CaseError(found, source.render)
+    return LoadedCase(validate(data, model, source), source)
+
+
+def validate(data: dict[str, Any], model: type[Case], source: Source) -> Case:
+    """The case in `data`, or CaseError with every mistake in the order of the file."""
+    if data.get("dimension") == 3 and data["dimension"] is not True:  # the rest would be misread as 2D
+        found = [CaseProblem(("dimension",), "3D is not available yet in this version: only 2")]
+        raise CaseError(found, source.render)
+    found = [CaseProblem(place, f"{date} is a date; no key takes one") for place, date in dates(data)]
+    if found:
+        raise CaseError(found, source.render)
+    data = copy.deepcopy(data)
+    names.complete(data, source.path.stem)
+    case = None
+    try:
+        case = model.model_validate(data)
+    except ValidationError as error:
+        found += problems_from(error, model, data)
+    found += names.problems(data)
+    if case is None or found:
+        found.sort(key=lambda problem: source.locate(problem.path, problem.at_key))
+        raise CaseError(found, source.render)
+    return case
+
+
+def dates(value: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
+    """TOML has dates and times; a case has none."""
+    if isinstance(value, (datetime.date, datetime.time)):
+        yield path, value
+    pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in pairs:
+        if isinstance(item, (dict, list, datetime.date, datetime.time)):
+            yield from dates(item, (*path, key))
+
+
+def parse_toml(path: Path, text: str) -> dict[str, Any]:
+    """TOML as plain data; a syntax error as file, line and column."""
+    if not text.strip():
+        message = f"{path}: the file is empty; `dem new wall` prints a case to start from"
+        raise CaseError([CaseProblem((), message)])
+    try:
+        return tomli.loads(text)
+    except tomli.TOMLDecodeError as error:
+        message = re.sub(r" \(at .*\)$", "", str(error))
+        where = f"{path}:{error.lineno}:{error.colno}"
+        message = f"{where}: not valid TOML: {message[:1].lower()}{message[1:]}"
+        raise CaseError([CaseProblem((), message)]) from None
+
+
+def read_text(path: Path) -> str:
+    """The text of a UTF-8 file, with or without byte order mark."""
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        raise UsageError(f"{path}: no such file{near_file(path)}") from None
+    except IsADirectoryError:
+        raise UsageError(f"{path}: is a folder; a case is a TOML file") from None
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read ({error.strerror or error})") from None
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        byte = raw[error.start]
+        raise CaseError([CaseProblem((), f"{path}:{line}: not UTF-8 text (byte 0x{byte:02x})")]) from None
+
+
+def near_file(path: Path) -> str:
+    """`, did you mean 'wall_21.toml'?` for a file of nearly that name in the same folder."""
+    try:
+        files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
+    except OSError:
+        return f" (there is no folder '{path.parent}')"
+    close = get_close_matches(path.name, files, 1) or get_close_matches(f"{path.name}.toml", files, 1)
+    return f", did you mean '{path.parent / close[0]}'?" if close else ""

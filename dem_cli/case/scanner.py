@@ -1,0 +1,121 @@
+"""Where every key and value of a TOML text stands. The text has been parsed before: its syntax is right."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+
+import tomli
+
+from dem_cli.errors import KeyPath
+
+BLANK = re.compile(r"(?:[ \t\n,]|#[^\n]*)*")  # between elements: space, lines, commas, comments
+KEY_PART = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\s.=\]"']+)[ \t]*""")
+EQUALS = re.compile(r"[ \t]*=[ \t]*")
+STRING = re.compile(
+    r'''"""(?:[^\\]|\\.)*?"""+|\'\'\'.*?\'\'\'+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*\'''',
+    re.DOTALL,
+)
+SCALAR = re.compile(r"[^,\]}\n#]*")
+
+
+class Places:
+    """Line and column (from 1) of keys and values, by key path."""
+
+    def __init__(self, text: str):
+        self.text = text.replace("\r\n", "\n")
+        self.keys: dict[KeyPath, int] = {}
+        self.values: dict[KeyPath, int] = {}
+        self._tables: dict[KeyPath, int] = {}  # number of [[tables]] seen under a path
+        self._lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
+        self._scan()
+
+    def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
+        """Line and column of the value at `path`, or of its key; if it is missing, of its table."""
+        places = self.keys if key else self.values
+        for length in range(len(path), 0, -1):
+            if path[:length] in places:
+                return self._line_and_column(places[path[:length]])
+            places = self.keys  # from here on: the table that should have held it
+        return 1, 1
+
+    def _line_and_column(self, offset: int) -> tuple[int, int]:
+        line = bisect_right(self._lines, offset)
+        return line, offset - self._lines[line - 1] + 1
+
+    def _scan(self) -> None:
+        table: KeyPath = ()
+        at = self._blank(0)
+        while at < len(self.text):
+            if self.text.startswith("[[", at):
+                table, end = self._header(at, at + 2, array=True)
+                at = end + 2
+            elif self.text[at] == "[":
+                table, end = self._header(at, at + 1, array=False)
+                at = end + 1
+            else:
+                at = self._pair(at, table)
+            at = self._blank(at)
+
+    def _blank(self, at: int) -> int:
+        return BLANK.match(self.text, at).end()  # type: ignore[union-attr]
+
+    def _dotted(self, at: int) -> tuple[list[str], int]:
+        """The parts of a dotted key and where it ends."""
+        parts = []
+        while True:
+            match = KEY_PART.match(self.text, at)
+            assert match is not None, f"not a key at {at}"
+            word = match[1]
+            parts.append(next(iter(tomli.loads(f"{word} = 0"))) if word[0] in "\"'" else word)
+            at = match.end()
+            if self.text[at : at + 1] != ".":
+                return parts, at
+            at += 1
+
+    def _header(self, start: int, at: int, array: bool) -> tuple[KeyPath, int]:
+        parts, end = self._dotted(at)
+        path: KeyPath = ()
+        for i, part in enumerate(parts):
+            path += (part,)
+            self.keys.setdefault(path, start)
+            self.values.setdefault(path, start)
+            last = i == len(parts) - 1
+            if last and array:
+                self._tables[path] = self._tables.get(path, 0) + 1
+            if path in self._tables:
+                path += (self._tables[path] - 1,)
+                self.keys.setdefault(path, start)
+                self.values.setdefault(path, start)
+        self.keys[path] = self.values[path] = start
+        return path, end
+
+    def _pair(self, at: int, table: KeyPath) -> int:
+        parts, end = self._dotted(at)
+        path = table
+        for part in parts:
+            path += (part,)
+            self.keys.setdefault(path, at)
+            self.values.setdefault(path, at)
+        return self._value(EQUALS.match(self.text, end).end(), path)  # type: ignore[union-attr]
+
+    def _value(self, at: int, path: KeyPath) -> int:
+        """Note the value at `path`, and what is in it; returns where it ends."""
+        self.values[path] = at
+        first = self.text[at]
+        if first in "\"'":
+            return STRING.match(self.text, at).end()  # type: ignore[union-attr]
+        if first not in "[{":
+            return SCALAR.match(self.text, at).end()  # type: ignore[union-attr]
+        closing = "]" if first == "[" else "}"
+        count = 0
+        at = self._blank(at + 1)
+        while self.text[at] != closing:
+            if first == "[":
+                self.keys[(*path, count)] = at
+                at = self._value(at, (*path, count))
+                count += 1
+            else:
+                at = self._pair(at, path)
+            at = self._blank(at)
+        return at + 1

@@ -1,0 +1,188 @@
+"""The tables of a case file, in SI units; degrees only where a key says `_deg`.
+
+Which structures, joint laws and analyses exist is handed in (`case_model`): this package knows no registry.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, Literal, cast
+
+from pydantic import BeforeValidator, Field, create_model, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive, StructureBase
+
+Name = Annotated[str, Field(min_length=1)]
+Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
+
+
+class Material(CaseModel):
+    """[materials.NAME]"""
+
+    density: Positive = Field(description="mass per volume [kg/m3]")
+    young: Positive | None = Field(None, description="Young's modulus [Pa]; not used by rigid blocks")
+    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(None, description="Poisson's ratio")
+
+
+class Interface(CaseModel):
+    """[[interface]]: the joint between two materials, instead of the first one in [joints]."""
+
+    between: tuple[str, str] = Field(description="two names in [materials]")
+    joint: str = Field(description="a name in [joints]")
+
+
+class BlockTable(CaseModel):
+    """[[block]]: one block, drawn by hand."""
+
+    id: Name = Field(description="name of the block")
+    vertices: Polygon | None = Field(None, description="corners of a convex block, in any order [m]")
+    parts: Annotated[tuple[Polygon, ...], Field(min_length=1)] | None = Field(
+        None, description="instead of vertices: convex pieces of a concave block, which move as one [m]"
+    )
+    material: str = Field("", description="a name in [materials]; may be left out when there is only one")
+    thickness: Positive = Field(1.0, description="depth out of plane [m]")
+    fixed: bool = Field(False, description="cannot move (base, support)")
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> BlockTable:
+        if (self.vertices is None) == (self.parts is None):
+            found = "both are given" if self.parts else "neither is given"
+            raise ValueError(f"{found}; a block has either 'vertices' or 'parts'")
+        return self
+
+
+class Load(CaseModel):
+    """[[load]]: a force on a block."""
+
+    block: str = Field(description="id of the block that it acts on")
+    force: Pair = Field(description="force [N]")
+    at: Pair | None = Field(None, description="point of application [m]; default: centroid of the block")
+    kind: Literal["dead", "live"] = Field("dead", description="dead: constant; live: times the multiplier")
+
+
+class Settlement(CaseModel):
+    """[[settlement]]: a support that is moved."""
+
+    block: str = Field(description="id of a fixed block")
+    displacement: Pair = Field((0.0, 0.0), description="how far its centroid moves [m]")
+    rotation_deg: float = Field(0.0, description="turn about its centroid, counter-clockwise [degrees]")
+
+    @property
+    def rotation(self) -> float:
+        """Turn about the centroid [rad], counter-clockwise."""
+        return math.radians(self.rotation_deg)
+
+
+class Monitor(CaseModel):
+    """[[monitor]]: a number followed through the run."""
+
+    block: str | None = Field(None, description="id of a block: its centroid is followed")
+    point: Pair | None = Field(None, description="instead of block: a point of the undeformed structure [m]")
+    quantity: Literal["displacement", "rotation", "velocity", "acceleration"] = Field(
+        "displacement", description="[m], [rad], [m/s] or [m/s2]"
+    )
+    component: Literal["x", "y"] | None = Field(None, description="default: the length of the vector")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Monitor:
+        if (self.block is None) == (self.point is None):
+            found = "neither is given" if self.block is None else "both are given"
+            raise ValueError(f"{found}; a monitor has either 'block' or 'point'")
+        if self.quantity == "rotation" and self.component is not None:
+            raise KeyProblem(f"'{self.component}' is not allowed; a rotation has no component", "component")
+        return self
+
+
+class Output(CaseModel):
+    """[output]"""
+
+    frames: int = Field(20, ge=0, description="snapshots kept; 0 for none")
+
+
+class Reference(CaseModel):
+    """[reference]: what the answer is compared with."""
+
+    failure_load: NonNegative = Field(description="expected load multiplier at failure")
+    tolerance: Positive = Field(description="largest difference that passes, on the multiplier itself")
+    source: str = Field("", description="where the number comes from")
+
+
+class WrittenBy(CaseModel):
+    """[dem]: put into the effective case by the program."""
+
+    version: str = Field(description="version of dem that wrote this file")
+
+
+class Case(CaseModel):
+    """A whole case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
+
+    title: str = Field("", description="one line; default: the name of the file")
+    dimension: Literal[2] = Field(2, description="only 2 so far")
+    gravity: NonNegative = Field(9.81, description="acceleration towards −y [m/s2]")
+    seed: int = Field(1, ge=0, description="makes whatever is random reproducible")
+    dem: WrittenBy | None = Field(None, description="written by the program")
+    materials: dict[str, Material] = Field(min_length=1, description="materials by name")
+    joints: dict[str, Any] = Field(min_length=1, description="joints by name; the first is the default one")
+    interface: tuple[Interface, ...] = Field((), description="other joints between two materials")
+    structure: tuple[Any, ...] = Field((), description="generated blocks")
+    block: tuple[BlockTable, ...] = Field((), description="blocks drawn by hand")
+    load: tuple[Load, ...] = Field((), description="forces on blocks")
+    settlement: tuple[Settlement, ...] = Field((), description="supports that are moved")
+    analysis: Any = Field(description="what is computed")
+    output: Output = Field(Output(), description="what is kept")
+    monitor: tuple[Monitor, ...] = Field((), description="numbers followed through the run")
+    reference: Reference | None = Field(None, description="what the answer is compared with")
+    sweep: dict[str, Any] | None = Field(None, description="values to be combined; `dem run` ignores it")
+
+    @property
+    def default_joint(self) -> str:
+        """The joint between materials that no [[interface]] names."""
+        return next(iter(self.joints))
+
+    def joint_between(self, material_a: str, material_b: str) -> str:
+        """Name of the joint between two materials, in any order; of several interfaces the last counts."""
+        pair = {material_a, material_b}
+        named = [interface.joint for interface in self.interface if set(interface.between) == pair]
+        return named[-1] if named else self.default_joint
+
+
+def case_model(
+    structures: Mapping[str, type[StructureBase]],
+    laws: Mapping[str, type[CaseModel]],
+    analyses: Mapping[str, type[CaseModel]],
+) -> type[Case]:
+    """The class of case files in which these kinds exist: kind -> class of its parameters."""
+    structure = one_of(structures, "kind")
+    joint = one_of(laws, "law", default="coulomb")
+    analysis = one_of(analyses, "kind", default="pushover")
+    fields = Case.model_fields
+    narrowed: dict[str, Any] = {
+        "structure": (tuple[structure, ...], Field((), description=fields["structure"].description)),  # type: ignore[valid-type]
+        "joints": (dict[str, joint], Field(min_length=1, description=fields["joints"].description)),  # type: ignore[valid-type]
+        "analysis": (
+            analysis,
+            Field(default_factory=dict, validate_default=True, description=fields["analysis"].description),
+        ),
+    }
+    return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
+
+
+def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None = None) -> Any:
+    """A table whose `key` says which of the `kinds` it is; without the key it is the `default`."""
+    for kind, parameters in kinds.items():
+        field = parameters.model_fields.get(key)
+        if field is None or field.annotation != Literal[kind]:  # type: ignore[valid-type]
+            raise TypeError(f"{parameters.__name__} must declare {key}: Literal[{kind!r}]")
+    classes = list(kinds.values())
+    table = reduce(or_, classes)
+    if len(classes) > 1:
+        table = Annotated[table, Field(discriminator=key)]
+    return Annotated[table, BeforeValidator(with_default(key, default))] if default in kinds else table
+
+
+def with_default(key: str, value: str | None) -> Callable[[Any], Any]:
+    """A function that adds `key = value` to a table without that key."""
+    return lambda table: {key: value, **table} if isinstance(table, dict) and key not in table else table

@@ -1,0 +1,55 @@
+"""A case as TOML text: defaults filled in. Reading it and writing it again gives the same bytes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import tomli_w
+from pydantic import ValidationError
+
+from dem_cli import __version__
+from dem_cli.case.base import CaseModel
+from dem_cli.case.schema import Case
+
+HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
+SEVERAL = ("materials", "joints", "structure", "block", "interface", "load", "settlement", "monitor")
+
+
+def case_text(case: Case) -> str:
+    """TOML text of a case. A sweep is left out: this is one case of it."""
+    data: dict[str, Any] = {}
+    for key in type(case).model_fields:
+        value = getattr(case, key)
+        if key == "dem":
+            data[key] = {"version": __version__}
+        elif value is None or key == "sweep" or (key in SEVERAL and not value):
+            continue
+        elif isinstance(value, CaseModel):
+            data[key] = effective(value)
+        elif isinstance(value, dict):
+            data[key] = {name: effective(table) for name, table in value.items()}
+        elif isinstance(value, tuple):
+            data[key] = [effective(table) for table in value]
+        else:
+            data[key] = value
+    return HEADER + tomli_w.dumps(data)
+
+
+def effective(table: CaseModel) -> dict[str, Any]:
+    """All keys of a table, but for defaults that may not be written out (`bond` beside `offset`)."""
+    data = table.model_dump(exclude_none=True)
+    if accepted(table, data):
+        return data
+    kept = {key: value for key, value in data.items() if key in table.model_fields_set}
+    for key in data:
+        if key not in kept and accepted(table, {**kept, key: data[key]}):
+            kept[key] = data[key]
+    return {key: value for key, value in data.items() if key in kept}
+
+
+def accepted(table: CaseModel, data: dict[str, Any]) -> bool:
+    """Whether `data` is valid as a table of that kind, and means the same."""
+    try:
+        return type(table).model_validate(data) == table
+    except ValidationError:
+        return False
