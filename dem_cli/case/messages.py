@@ -29,8 +29,7 @@ LATER = {"motion": "time-history analysis", "damping": "time-history analysis", 
 class Spot(NamedTuple):
     """Where an error belongs.
 
-    kinds: what may stand there; owner: the table around it; union: path of the nearest union above; choices: its
-    members.
+    kinds: what may stand there; owner: the table around; union, choices: path and members of the union above.
     """
 
     path: KeyPath
@@ -45,6 +44,8 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     found: list[CaseProblem] = []
     unions: dict[KeyPath, list[tuple[Spot, Any]]] = {}
     for item in error.errors(include_url=False):
+        if item["type"] == "missing" and isinstance(item["loc"][-1], int):  # the list is too short
+            item["type"], item["loc"] = "too_short", item["loc"][:-1]
         spot = follow(model, item["loc"], item["type"])
         if spot.union is not None:
             unions.setdefault(spot.union, []).append((spot, item))
@@ -78,14 +79,10 @@ def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
         if kind == "union_tag_not_found":
             return CaseProblem((*path, key), f"missing; must be {either(names)}")
         return CaseProblem((*path, key), unknown_name(key, value, names))
-    if kind == "missing" and isinstance(path[-1], int):  # too short a list
-        spot = follow(spot.owner, (path[-2],), "") if spot.owner else spot
-        path = path[:-1]
-    elif kind == "missing":
+    if kind == "missing":
         meaning = spot.owner.model_fields[str(path[-1])].description if spot.owner else None
-        return CaseProblem(
-            path, f"missing; must be {allowed(spot.kinds)}" + (f" ({meaning})" if meaning else "")
-        )
+        note = f" ({meaning})" if meaning else ""
+        return CaseProblem(path, f"missing; must be {allowed(spot.kinds)}{note}")
     value = value_at(data, path)
     names = literals(spot.kinds)
     if kind == "literal_error" and names and isinstance(value, str):

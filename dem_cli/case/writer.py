@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import tomli_w
@@ -12,6 +13,8 @@ from dem_cli.case.base import CaseModel
 from dem_cli.case.schema import Case
 
 HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
+NUMBERS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
+FIRST = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = ("materials", "joints", "structure", "block", "interface", "load", "settlement", "monitor")
 
 
@@ -32,12 +35,18 @@ def case_text(case: Case) -> str:
             data[key] = [effective(table) for table in value]
         else:
             data[key] = value
-    return HEADER + tomli_w.dumps(data)
+    return HEADER + on_one_line(tomli_w.dumps(data))
+
+
+def on_one_line(text: str) -> str:
+    """Lists of numbers on one line each; tomli-w gives every number its own."""
+    return NUMBERS.sub(lambda lines: f"[{', '.join(lines[1].replace(',', '').split())}]", text)
 
 
 def effective(table: CaseModel) -> dict[str, Any]:
     """All keys of a table, but for defaults that may not be written out (`bond` beside `offset`)."""
     data = table.model_dump(exclude_none=True)
+    data = {key: data[key] for key in (*FIRST, *data) if key in data}
     if accepted(table, data):
         return data
     kept = {key: value for key, value in data.items() if key in table.model_fields_set}

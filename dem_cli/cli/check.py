@@ -1,0 +1,52 @@
+"""`dem check`: validate a case and print its model; nothing is solved."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import click
+
+from dem_cli.cli.options import case_argument, overrides_option, warn
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.model.model import Model
+
+
+@click.command("check", short_help="Validate a case and print its model; solve nothing.")
+@case_argument
+@overrides_option
+def command(case: str, overrides: tuple[str, ...]) -> None:
+    """Validate CASE and print its model: blocks, joints, mass, time step and estimated cost."""
+    from dem_cli import api
+
+    loaded = api.load_case(case, overrides)
+    model = api.build_model(loaded)
+    warn(loaded)
+    found = rows(loaded.case, model)
+    if find_spec("dem_cli.solve.estimate"):
+        from dem_cli.solve import estimate
+
+        found += estimate.describe(loaded.case, model)
+    width = max(len(label) for label, _ in found)
+    click.echo(loaded.case.title)
+    click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))
+
+
+def rows(case: Case, model: Model) -> list[tuple[str, str]]:
+    """What the case is made of: label and text of each line."""
+    from dem_cli.output.shapes import rest_vertices
+
+    free = ~model.fixed
+    corners = rest_vertices(model)
+    size = " × ".join(f"{length:.4g} m" for length in corners.max(axis=0) - corners.min(axis=0))
+    loads = [f"{sum(load.kind == kind for load in case.load)} {kind}" for kind in ("dead", "live")]
+    return [
+        ("analysis", case.analysis.kind),
+        ("blocks", f"{model.n_blocks:,} ({model.fixed.sum():,} fixed), {len(model.vertices):,} corners"),
+        ("size", size),
+        ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
+        ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
+        ("point loads", ", ".join(loads) if case.load else "none"),
+    ]

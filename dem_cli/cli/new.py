@@ -1,0 +1,30 @@
+"""`dem new`: a commented case file to start from, one template per kind in cli/templates."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+TEMPLATES = Path(__file__).parent / "templates"
+KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
+
+
+@click.command("new", short_help="Print a commented case file to start from.")
+@click.argument("kind", type=click.Choice(KINDS))
+@click.option("-o", "--output", metavar="FILE", help="Write to a new file instead of printing.")
+def command(kind: str, output: str | None) -> None:
+    """Print a commented case file to start from: dem new wall > wall.toml"""
+    text = (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    from dem_cli.errors import OutputError, UsageError
+
+    try:
+        with Path(output).open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise UsageError(f"{output}: exists already; nothing is overwritten") from None
+    except OSError as error:
+        raise OutputError(f"{output}: cannot be written ({error.strerror or error})") from None

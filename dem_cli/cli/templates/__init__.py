@@ -1,0 +1,1 @@
+"""Case files that `dem new` prints, one per kind."""
