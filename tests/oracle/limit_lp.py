@@ -21,7 +21,7 @@ Friction = float | Callable[["Interface"], float]
 
 @dataclass(frozen=True)
 class Interface:
-    """Two edges that lie on each other: blocks a and b, the ends of the overlap, the unit normal from a to b."""
+    """Two edges that lie on each other: blocks a and b, ends of the overlap, unit normal from a to b."""
 
     a: int
     b: int
@@ -56,6 +56,14 @@ def area_and_centroid(polygon: np.ndarray) -> tuple[float, np.ndarray]:
     return abs(area), np.array([cx, cy])
 
 
+def bodies_area_and_centroid(polygons, bodies) -> tuple[np.ndarray, np.ndarray]:
+    """Of each body, from its parts: (n,) and (n, 2)."""
+    parts = [area_and_centroid(p) for p in polygons]
+    areas = np.bincount(bodies, [area for area, _ in parts])
+    moments = [np.bincount(bodies, [area * centre[k] for area, centre in parts]) for k in (0, 1)]
+    return areas, np.column_stack(moments) / areas[:, None]
+
+
 def edges_outward(polygon: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """(start, end, outward unit normal) of each edge, corners taken counter-clockwise."""
     x, y = polygon.T
@@ -68,8 +76,15 @@ def edges_outward(polygon: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.
     return edges
 
 
-def interfaces(polygons: Sequence[np.ndarray], tolerance: float | None = None) -> list[Interface]:
-    """Every pair of opposite edges that touch along a length; `tolerance` [m], default 1e-6 of the size."""
+def interfaces(
+    polygons: Sequence[np.ndarray], bodies: Sequence[int] | None = None, tolerance: float | None = None
+) -> list[Interface]:
+    """Every pair of opposite edges of two bodies that touch along a length.
+
+    bodies     the body that each polygon is a part of; default: each its own
+    tolerance  [m], default 1e-6 of the size of all
+    """
+    bodies = range(len(polygons)) if bodies is None else bodies
     corners = np.vstack(polygons)
     if tolerance is None:
         tolerance = 1e-6 * float(np.ptp(corners, axis=0).max())
@@ -80,11 +95,13 @@ def interfaces(polygons: Sequence[np.ndarray], tolerance: float | None = None) -
     for a in range(len(polygons)):
         near = np.flatnonzero(np.all((lows <= highs[a]) & (highs >= lows[a]), axis=1))
         for b in near[near > a]:
+            if bodies[a] == bodies[b]:
+                continue
             for start, end, normal in all_edges[a]:
                 for other_start, other_end, other_normal in all_edges[b]:
                     ends = shared_segment(start, end, normal, other_start, other_end, other_normal, tolerance)
                     if ends is not None:
-                        found.append(Interface(a, int(b), ends, normal))
+                        found.append(Interface(int(bodies[a]), int(bodies[b]), ends, normal))
     return found
 
 
@@ -112,29 +129,30 @@ def limit_load(
     live: np.ndarray | None = None,
     dead: np.ndarray | None = None,
     direction: Sequence[float] = (1.0, 0.0),
-    joints: Sequence[Interface] | None = None,
+    bodies: Sequence[int] | None = None,
 ) -> LimitLoad:
-    """The largest multiplier of the live loads that the blocks carry.
+    """The largest multiplier of the live loads that the blocks carry. Every list but `polygons` is by body.
 
     weights  [N], default the area of each block; act downwards at the centroid
     live     fx, fy, moment about the centroid of each block per unit λ, default weight × direction
     dead     the same, constant, besides the weight
     friction one number, or a function of the Interface
+    bodies   the body that each polygon is a part of; default: each its own
     """
-    n_blocks = len(polygons)
-    areas, centroids = zip(*(area_and_centroid(p) for p in polygons), strict=True)
-    centroids = np.array(centroids)
+    bodies = np.arange(len(polygons)) if bodies is None else np.asarray(bodies)
+    n_blocks = int(bodies.max()) + 1
+    areas, centroids = bodies_area_and_centroid(polygons, bodies)
     weights = np.array(areas if weights is None else weights, dtype=float)
     if live is None:
         live = np.column_stack([weights[:, None] * np.asarray(direction, dtype=float), np.zeros(n_blocks)])
     constant = np.zeros((n_blocks, 3)) if dead is None else np.array(dead, dtype=float)
     constant[:, 1] -= weights
-    joints = interfaces(polygons) if joints is None else joints
+    joints = interfaces(polygons, bodies)
 
     free = ~np.asarray(fixed, dtype=bool)
     row_of = np.cumsum(free) - 1
     weight = weights[free].mean()
-    length = float(np.sqrt(np.array(areas)[free].mean()))
+    length = float(np.sqrt(areas[free].mean()))
     scale = np.tile([1 / weight, 1 / weight, 1 / (weight * length)], int(free.sum()))
 
     rows, columns, entries = [], [], []

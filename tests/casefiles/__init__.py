@@ -1,0 +1,97 @@
+"""The case files under cases/, and what the oracle needs of them: polygons, weights, loads."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
+
+from dem_cli.structures.place import place
+from dem_cli.structures.registry import GENERATORS
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+FILES = sorted(CASES.rglob("*.toml"))
+
+
+def read(path: Path) -> dict:
+    """The tables of a case file, as they stand there."""
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def case_id(path: Path) -> str:
+    return str(path.relative_to(CASES).with_suffix(""))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Convex polygons and the bodies that they are parts of; everything else by body."""
+
+    ids: list[str]
+    polygons: list[np.ndarray]
+    bodies: np.ndarray
+    fixed: np.ndarray
+    weights: np.ndarray  # [N]
+    live: np.ndarray  # fx, fy, moment, (n, 3)
+    dead: np.ndarray
+    friction: float
+
+    def limit(self, heads: bool = True) -> LimitLoad:
+        """The associated failure load, with or without friction in joints steeper than 45°."""
+        friction = self.friction if heads else frictionless_heads(self.friction)
+        return limit_load(
+            self.polygons,
+            self.fixed,
+            friction,
+            weights=self.weights,
+            live=self.live,
+            dead=self.dead,
+            bodies=self.bodies,
+        )
+
+
+def blocks_of(tables: dict) -> list[tuple[str, tuple[np.ndarray, ...], str, float, bool]]:
+    """(id, parts, material, thickness, fixed) of every block of a case."""
+    only_material = next(iter(tables["materials"]))
+    blocks = []
+    for i, table in enumerate(tables.get("structure", [])):
+        generator = GENERATORS[table["kind"]]
+        named = {"id": table["kind"], "material": only_material, **table}
+        parameters = generator.parameters.model_validate(named)
+        for block in place(generator.build(parameters), parameters, ("structure", i)):
+            blocks.append((block.id, block.parts, block.material, block.thickness, block.fixed))
+    for table in tables.get("block", []):
+        parts = table.get("parts") or [table["vertices"]]
+        parts = tuple(np.array(part, dtype=float) for part in parts)
+        material = table.get("material", only_material)
+        blocks.append((table["id"], parts, material, table.get("thickness", 1.0), table.get("fixed", False)))
+    return blocks
+
+
+def scene(path: Path) -> Scene:
+    """The structure of a case file with its loads; needs one joint law for all (Coulomb)."""
+    tables = read(path)
+    (joint,) = tables["joints"].values()
+    blocks = blocks_of(tables)
+    polygons = [part for block in blocks for part in block[1]]
+    bodies = np.repeat(np.arange(len(blocks)), [len(block[1]) for block in blocks])
+    areas, centroids = bodies_area_and_centroid(polygons, bodies)
+    densities = [tables["materials"][block[2]]["density"] for block in blocks]
+    weights = areas * densities * [block[3] for block in blocks] * tables.get("gravity", 9.81)
+    ids = [block[0] for block in blocks]
+    loads = {"live": np.zeros((len(blocks), 3)), "dead": np.zeros((len(blocks), 3))}
+    for load in tables.get("load", []):
+        i_block = ids.index(load["block"])
+        force = np.array(load["force"])
+        arm = np.array(load.get("at", centroids[i_block])) - centroids[i_block]
+        loads[load.get("kind", "dead")][i_block] += [*force, arm[0] * force[1] - arm[1] * force[0]]
+    analysis = tables.get("analysis", {})
+    if analysis.get("pattern", "mass") != "live":
+        direction = np.array(analysis.get("direction", [1.0, 0.0]))
+        direction = direction / np.hypot(*direction)
+        loads["live"] = np.column_stack([weights[:, None] * direction, np.zeros(len(blocks))])
+    friction = joint.get("friction", np.tan(np.radians(joint.get("friction_angle_deg", 0.0))))
+    fixed = np.array([block[4] for block in blocks])
+    return Scene(ids, polygons, bodies, fixed, weights, loads["live"], loads["dead"], friction)
