@@ -206,7 +206,7 @@ def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
             shape = polygon.rectangle(ends[0], -height, ends[1] - ends[0], height)
         else:
             along = outer - inner
-            back = np.array([along[1], -along[0]]) * -sign
+            back = np.array([along[1], -along[0]]) * sign
             corners = [inner, outer, outer + back, inner + back]
             shape = np.array(corners[::-1] if side == "right" else corners)
         blocks.append(Block(f"base-{side}", (shape,), "", arch.thickness, fixed=True))
