@@ -1,0 +1,83 @@
+"""scripts/run on machines that lack something: one clear message, exit code 2, nothing made."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+TOOLS = ("bash", "env", "dirname", "basename", "cat", "cksum", "tail", "rm")
+
+
+@pytest.fixture
+def project(tmp_path):
+    """A copy of the scripts beside a bin/ that holds only the tools they use."""
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / "bin").mkdir()
+    for tool in TOOLS:
+        (tmp_path / "bin" / tool).symlink_to(shutil.which(tool))
+    return tmp_path
+
+
+def fake_python(project: Path, name: str, *, new_enough: bool) -> None:
+    """An interpreter that answers the questions of scripts/environment.sh and has no venv."""
+    script = project / "bin" / name
+    answer = 0 if new_enough else 1
+    script.write_text(
+        "#!/usr/bin/env bash\n"
+        'case "$*" in\n'
+        f'  *version_info*) exit {answer} ;;\n'
+        '  *ensurepip*) exit 1 ;;\n'
+        '  --version) echo "Python 3.9.2" ;;\n'
+        "esac\n"
+    )
+    script.chmod(0o755)
+
+
+def run(project: Path, script: str = "run") -> subprocess.CompletedProcess:
+    environment = {"PATH": str(project / "bin"), "HOME": str(project)}
+    command = [str(project / "scripts" / script), "case.toml"]
+    return subprocess.run(command, env=environment, cwd=project, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("script", ["run", "test"])
+def test_python_too_old(project, script):
+    fake_python(project, "python3", new_enough=False)
+    done = run(project, script)
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"{script}: needs Python 3.11 or newer with venv, found: Python 3.9.2 "
+        "(set DEM_PYTHON to use a certain interpreter)\n"
+    )
+    assert not (project / ".venv").exists()
+
+
+def test_no_venv_module(project):
+    fake_python(project, "python3.11", new_enough=True)
+    done = run(project)
+    assert done.returncode == 2
+    assert done.stderr == "run: python3.11 has no venv module; on Debian or Ubuntu install python3-venv\n"
+    assert not (project / ".venv").exists()
+
+
+def test_no_python_at_all(project):
+    done = run(project)
+    assert done.returncode == 2
+    assert "needs Python 3.11 or newer" in done.stderr
+
+
+@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", ".ci/run"])
+def test_executable(script):
+    assert os.access(ROOT / script, os.X_OK)
+
+
+def test_constraints_are_pins_without_addresses():
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pins = [line for line in lines if not line.startswith("#")]
+    assert all(line.count("==") == 1 and "/" not in line for line in pins)
