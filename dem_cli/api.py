@@ -35,10 +35,19 @@ def load_case(path: str | Path, overrides: Sequence[str] = ()) -> LoadedCase:
 
 
 def build_model(loaded: LoadedCase) -> Model:
-    """Generate the blocks and put them into arrays. Raises CaseError, with file and line, on bad geometry."""
-    from dem_cli.model.assemble import assemble
+    """Generate the blocks, check them, put them into arrays; what is odd about them joins `loaded.warnings`.
+
+    Raises CaseError, with file and line, on bad geometry and unknown blocks.
+    """
+    from dem_cli.model import validate
+    from dem_cli.model.assemble import assembly
 
     try:
-        return assemble(loaded.case)
+        made = assembly(loaded.case)
     except CaseError as error:
         raise CaseError(error.problems, loaded.render) from None
+    found = validate.problems(loaded.case, made.model, made.blocks)
+    if found:
+        raise CaseError(found, loaded.render)
+    loaded.warnings += [line for line in validate.warnings(made.model) if line not in loaded.warnings]
+    return made.model

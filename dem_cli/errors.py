@@ -9,9 +9,11 @@ DemError
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 KeyPath = tuple[str | int, ...]
 
 
@@ -65,8 +67,11 @@ class OutputError(DemError):
 
 
 def dotted(path: KeyPath) -> str:
-    """The key path as a user types it after `--set`: ("structure", 0, "block") -> "structure.0.block"."""
-    return ".".join(str(key) for key in path)
+    """The key path as a user types it after `--set`: ("structure", 0, "block") -> structure.0.block.
+
+    A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
+    """
+    return ".".join(str(key) if BARE.fullmatch(str(key)) else f'"{key}"' for key in path)
 
 
 def plain(problem: CaseProblem) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple, get_args, get_origin
 
@@ -23,7 +24,11 @@ from dem_cli.case.words import (
 from dem_cli.errors import CaseProblem, KeyPath
 
 # Parts of the format that this version does not have yet: table or key -> what it belongs to.
-LATER = {"motion": "time-history analysis", "damping": "time-history analysis", "initial": "free vibration"}
+LATER_TABLES = {
+    "motion": "time-history analysis",
+    "damping": "time-history analysis",
+    "initial": "free vibration",
+}
 
 
 class Spot(NamedTuple):
@@ -59,6 +64,13 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
         else:
             kinds = members[0][0].choices
             found.append(CaseProblem(path, not_allowed(value_at(data, path), kinds)))
+    meant = {
+        (*p.path[:-1], name)
+        for p in found
+        if p.at_key
+        for name in re.findall("did you mean '(.*)'", p.message)
+    }
+    found = [p for p in found if p.path not in meant or not p.message.startswith("missing")]
     return list(dict.fromkeys(found))
 
 
@@ -87,7 +99,10 @@ def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
     names = literals(spot.kinds)
     if kind == "literal_error" and names and isinstance(value, str):
         return CaseProblem(path, unknown_name(str(path[-1]), value, names))
-    return CaseProblem(path, not_allowed(value, spot.kinds))
+    message = not_allowed(value, spot.kinds)
+    if kind == "tuple_type" and isinstance(value, dict):
+        message += f", each headed [[{path[-1]}]]"
+    return CaseProblem(path, message)
 
 
 def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Spot:
@@ -138,8 +153,8 @@ def has_tag(declared: Any, tag: str | int) -> bool:
 def unknown_key(name: str, owner: type[BaseModel] | None) -> str:
     """What to say about a key that the table does not have."""
     names = list(owner.model_fields) if owner else []
-    if name in LATER:
-        return f"not available yet in this version ({LATER[name]})"
+    if name in LATER_TABLES:
+        return f"not available yet in this version ({LATER_TABLES[name]})"
     hint = nearest(name, names)
     return f"unknown key, {hint}" if hint else f"unknown key (allowed: {listing(names)})"
 

@@ -5,7 +5,7 @@ All but `check_names` work on the tables as read, so that slips are reported alo
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from dem_cli.case.schema import Case
@@ -46,6 +46,12 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
                 found.append(CaseProblem((*path, "id"), message))
             elif isinstance(name, str):
                 seen[name] = (*path, "id")
+    analysis = data["analysis"] if isinstance(data.get("analysis"), dict) else {}
+    live = [table for _, table in entries(data, "load") if table.get("kind") == "live"]
+    if analysis.get("pattern") == "live" and not live:
+        found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] with kind = 'live'"))
+    if analysis.get("kind") == "settlement" and not data.get("settlement"):
+        found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
@@ -59,7 +65,7 @@ def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
             if materials and table.get("material", "") == "":
                 yield CaseProblem((*path, "material"), f"missing; must be {either(materials)}")
             for place, name in mentions(table, path):
-                if name not in materials:
+                if materials and name not in materials:
                     yield CaseProblem(place, unknown_name("material", name, materials))
 
 
@@ -100,15 +106,22 @@ def names(data: dict[str, Any], key: str) -> list[str]:
     return list(table) if isinstance(table, dict) else []
 
 
-def check_names(case: Case, block_ids: Collection[str]) -> list[CaseProblem]:
-    """Problems of loads, settlements and monitors on blocks that do not exist.
+def check_names(
+    case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None
+) -> list[CaseProblem]:
+    """Problems of loads, settlements and monitors on blocks that do not exist; of settlements of free blocks.
 
-    `block_ids`: names (and aliases) that a block may be called by, known only after the structures are built.
+    blocks  number of the block by its id and its aliases, known only after the structures are built
+    fixed   for each block, whether it is a support
     """
-    known = set(block_ids)
-    return [
-        CaseProblem((key, i, "block"), unknown_name("block", table.block, list(block_ids)))
+    found = [
+        CaseProblem((key, i, "block"), unknown_name("block", table.block, list(blocks)))
         for key in ("load", "settlement", "monitor")
         for i, table in enumerate(getattr(case, key))
-        if table.block is not None and table.block not in known
+        if table.block is not None and table.block not in blocks
     ]
+    for i, table in enumerate(case.settlement):
+        if fixed is not None and table.block in blocks and not fixed[blocks[table.block]]:
+            message = f"block {show(table.block)} is not fixed; only a fixed block can be moved"
+            found.append(CaseProblem(("settlement", i, "block"), message))
+    return found

@@ -22,6 +22,15 @@ from dem_cli.case.scanner import Places
 from dem_cli.case.schema import Case
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
 
+SYNTAX = {  # how messages of the parser begin -> the same in plain words
+    "Illegal character '\\n'": "the line ends within a string or a comment",
+    "Cannot overwrite a value": "this key is given twice",
+    "Unterminated string": "a string is not closed",
+    "Unclosed array": "a list is not closed: ']' or ',' is missing",
+    "Expected '=' after a key": "'=' is missing after a key",
+    "Invalid value": "a value is missing or not written as TOML (text stands in quotes)",
+}
+
 
 class Source:
     """The text that a case came from: says where a problem stands."""
@@ -60,7 +69,7 @@ class LoadedCase(Source):
     def __init__(self, case: Case, source: Source):
         super().__init__(source.path, source.text, source.overrides)
         self.case = case
-        self.warnings = tuple(self.render(doubt) for doubt in doubts(case))
+        self.warnings = [self.render(doubt) for doubt in doubts(case)]
 
 
 def read_case(path: str | Path, model: type[Case], overrides: Sequence[str] = ()) -> LoadedCase:
@@ -120,10 +129,19 @@ def parse_toml(path: Path, text: str) -> dict[str, Any]:
     try:
         return tomli.loads(text)
     except tomli.TOMLDecodeError as error:
-        message = re.sub(r" \(at .*\)$", "", str(error))
-        where = f"{path}:{error.lineno}:{error.colno}"
-        message = f"{where}: not valid TOML: {message[:1].lower()}{message[1:]}"
+        message = f"{path}:{error.lineno}:{error.colno}: not valid TOML: {syntax_message(error.msg)}"
         raise CaseError([CaseProblem((), message)]) from None
+
+
+def syntax_message(message: str) -> str:
+    """What the parser says, for people."""
+    for start, words in SYNTAX.items():
+        if message.startswith(start):
+            return words
+    message = re.sub(
+        r"\((?:'[^']*',? ?)+\)", lambda keys: ".".join(re.findall("'([^']*)'", keys[0])), message
+    )
+    return message[:1].lower() + message[1:]
 
 
 def read_text(path: Path) -> str:

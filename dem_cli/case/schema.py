@@ -49,8 +49,8 @@ class BlockTable(CaseModel):
     @model_validator(mode="after")
     def _one_shape(self) -> BlockTable:
         if (self.vertices is None) == (self.parts is None):
-            found = "both are given" if self.parts else "neither is given"
-            raise ValueError(f"{found}; a block has either 'vertices' or 'parts'")
+            found = "'vertices' and 'parts' are" if self.parts else "neither 'vertices' nor 'parts' is"
+            raise ValueError(f"{found} given; a block has one of them")
         return self
 
 
@@ -89,8 +89,8 @@ class Monitor(CaseModel):
     @model_validator(mode="after")
     def _one_place(self) -> Monitor:
         if (self.block is None) == (self.point is None):
-            found = "neither is given" if self.block is None else "both are given"
-            raise ValueError(f"{found}; a monitor has either 'block' or 'point'")
+            found = "'block' and 'point' are" if self.block else "neither 'block' nor 'point' is"
+            raise ValueError(f"{found} given; a monitor has one of them")
         if self.quantity == "rotation" and self.component is not None:
             raise KeyProblem(f"'{self.component}' is not allowed; a rotation has no component", "component")
         return self

@@ -11,6 +11,9 @@ import annotated_types as limits
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+MANY = 24  # names beyond this are not listed
+# Kinds that are part of the format, but not of this version.
+LATER = ("time-history", "fragility", "mohr-coulomb", "coursed-wall", "voronoi-wall")
 NUMBERS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
 WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
 SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
@@ -71,7 +74,7 @@ def allowed_one(kind: Kind, many: bool = False) -> str:
     if origin is Literal:
         return either(arguments)
     if origin is dict or is_table(declared):
-        return "tables" if many else "a table"
+        return "tables" if many else "a table" + (" with at least one entry" if least else "")
     if origin in (tuple, list):
         variable = origin is list or arguments[-1] is Ellipsis
         count = (f"at least {least} " if least else "") if variable else f"{len(arguments)} "
@@ -95,6 +98,8 @@ def not_allowed(value: Any, kinds: Iterable[Kind]) -> str:
 
 def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
     """`unknown law 'colomb', did you mean 'coulomb'? (allowed: 'coulomb')`"""
+    if value in LATER:
+        return f"{show(value)} is not available yet in this version (allowed: {listing(names)})"
     hint = nearest(value, names)
     return f"unknown {what} {show(value)}{hint and ', ' + hint} (allowed: {listing(names)})"
 
@@ -108,8 +113,8 @@ def nearest(value: Any, names: Iterable[Any]) -> str:
 def listing(names: Iterable[Any]) -> str:
     """Names to choose from; of very many the first few."""
     words = [show(name) for name in names]
-    if len(words) > 16:
-        return f"{', '.join(words[:12])}, ... {len(words)} in all"
+    if len(words) > MANY:
+        return f"{', '.join(words[:6])}, ... {len(words)} in all"
     return ", ".join(words) or "none"
 
 
@@ -128,7 +133,7 @@ def show(value: Any) -> str:
     elif isinstance(value, float):
         text = f"{value:.12g}"
     elif isinstance(value, dict):
-        text = "a table"
+        text = "a table" if value else "an empty table"
     elif isinstance(value, (list, tuple)):
         text = f"[{', '.join(show(item) for item in value)}]"
     else:

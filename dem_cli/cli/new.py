@@ -11,10 +11,13 @@ KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 
 
 @click.command("new", short_help="Print a commented case file to start from.")
-@click.argument("kind", type=click.Choice(KINDS))
+@click.argument("kind", type=click.Choice(KINDS), metavar="KIND")
 @click.option("-o", "--output", metavar="FILE", help="Write to a new file instead of printing.")
 def command(kind: str, output: str | None) -> None:
-    """Print a commented case file to start from: dem new wall > wall.toml"""
+    """Print a commented case file to start from.
+
+    KIND: arch, block, column or wall. Such as: dem new wall > wall.toml
+    """
     text = (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
     if output is None:
         click.echo(text, nl=False)
