@@ -23,6 +23,20 @@ def size(vertices: np.ndarray) -> float:
     return float(np.hypot(*np.ptp(np.asarray(vertices, float), axis=0)))
 
 
+def sizes(vertices: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Diagonals of the bounding boxes of m polygons [m], (m,)."""
+    low = np.minimum.reduceat(vertices, starts[:-1], axis=0)
+    high = np.maximum.reduceat(vertices, starts[:-1], axis=0)
+    return np.hypot(*(high - low).T)
+
+
+def _following(starts: np.ndarray) -> np.ndarray:
+    """Of each corner of m polygons, the next one around."""
+    following = np.arange(1, starts[-1] + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    return following
+
+
 def signed_area(vertices: np.ndarray) -> float:
     """Area [m2], negative where the corners run clockwise."""
     return float(properties(vertices).area)
@@ -59,9 +73,7 @@ def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaPropertie
     first, counts = starts[:-1], np.diff(starts)
     origin = vertices[first]
     a = vertices - np.repeat(origin, counts, axis=0)
-    following = np.arange(1, len(vertices) + 1)
-    following[starts[1:] - 1] = first
-    b = a[following]
+    b = a[_following(starts)]
     cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     doubled = np.add.reduceat(cross, first)
     moment = np.add.reduceat(cross[:, None] * (a + b), first, axis=0) / 3.0
@@ -88,16 +100,21 @@ def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaPr
 def is_convex(vertices: np.ndarray, tolerance: float = TOLERANCE) -> bool:
     """True if the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
     vertices = np.asarray(vertices, float)
-    if len(vertices) < 3:
-        return False
-    extent = size(vertices)
-    edges = np.roll(vertices, -1, axis=0) - vertices
-    after = np.roll(edges, -1, axis=0)
+    return bool(are_convex(vertices, np.array([0, len(vertices)]), tolerance)[0])
+
+
+def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+    """`is_convex` of m polygons at once, (m,); polygon p is vertices[starts[p]:starts[p + 1]]."""
+    following = _following(starts)
+    edges = vertices[following] - vertices
+    after = edges[following]
     turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
-    if (turns < -tolerance * extent * extent).any() or signed_area(vertices) <= tolerance * extent * extent:
-        return False
-    angles = np.arctan2(turns, (edges * after).sum(axis=1))
-    return bool(abs(angles.sum() - 2.0 * np.pi) < 1.0)  # once around, not a star
+    angles = np.add.reduceat(np.arctan2(turns, (edges * after).sum(axis=1)), starts[:-1])
+    once_around = np.abs(angles - 2.0 * np.pi) < 1.0
+    least = tolerance * sizes(vertices, starts) ** 2
+    left_turns = np.minimum.reduceat(turns, starts[:-1]) >= -least
+    has_area = properties_of_all(vertices, starts).area > least
+    return once_around & left_turns & has_area & (np.diff(starts) >= 3)
 
 
 def in_order(points: Sequence | np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:

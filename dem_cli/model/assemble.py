@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.errors import CaseError, CaseProblem, KeyPath
+from dem_cli.case.base import KeyProblem
+from dem_cli.case.names import check_names
+from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
@@ -44,9 +45,12 @@ def assemble(case: Case) -> Model:
 def assembly(case: Case) -> Assembly:
     """Model, blocks and names of a case. Raises CaseError: impossible shapes, names twice, unknown blocks."""
     blocks, names = case_blocks(case)
-    body = _bodies(case, blocks)
     number = {block.id: i for i, block in enumerate(blocks)}
     block_map = number | {alias: number[name] for alias, name in names.items() if alias not in number}
+    problems = check_names(case, block_map, [block.fixed for block in blocks])
+    if problems:
+        raise CaseError(problems)
+    body = _bodies(case, blocks)
     loads = _point_loads(case, block_map, body.centroids)
     return Assembly(_with_loads(case, body, loads), tuple(blocks), block_map)
 
@@ -60,7 +64,8 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
         try:
             generated = GENERATORS[parameters.kind].build(parameters)
         except ValueError as error:
-            problems.append(CaseProblem(("structure", i), str(error)))
+            keys = error.keys if isinstance(error, KeyProblem) else ()
+            problems.append(CaseProblem(("structure", i, *keys), str(error)))
             continue
         local[parameters.id] = generated
         blocks += place(generated, parameters, ("structure", i))
@@ -82,16 +87,6 @@ def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:
     names = tuple(case.joints)
     table = [[names.index(case.joint_between(a, b)) for b in case.materials] for a in case.materials]
     return names, np.array(table, np.int64)
-
-
-def find_block(name: str, block_map: dict[str, int], path: KeyPath) -> int:
-    """Number of the block of that id or alias. Raises CaseError that names the nearest one."""
-    if name in block_map:
-        return block_map[name]
-    nearest = difflib.get_close_matches(name, block_map, n=1, cutoff=0.0)
-    some = ", ".join(list(block_map)[:5])
-    hint = f"did you mean '{nearest[0]}'?" if nearest else ""
-    raise CaseError([CaseProblem(path, f"there is no block '{name}'; {hint} (blocks: {some}, ...)")])
 
 
 def _explicit(table: BlockTable, i: int) -> Block:
@@ -126,9 +121,7 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
 def _sorted(blocks: list[Block]) -> list[Block]:
     """From the lowest up, from left to right: neighbours get numbers close to each other."""
     lows = np.array([np.concatenate(block.parts).min(axis=0) for block in blocks])
-    step = 1e-6 * max(
-        float(np.ptp(lows, axis=0).max()), 1e-300
-    )  # against round-off within a course
+    step = 1e-6 * (float(np.ptp(lows, axis=0).max()) or 1.0)  # against round-off within a course
     order = np.lexsort((lows[:, 0], np.rint(lows[:, 1] / step)))
     return [blocks[i] for i in order]
 
@@ -166,17 +159,11 @@ def _bodies(case: Case, blocks: Sequence[Block]) -> Model:
 
 
 def _point_loads(case: Case, block_map: dict[str, int], centroids: np.ndarray) -> list[PointLoad]:
-    loads, problems = [], []
-    for i, load in enumerate(case.load):
-        try:
-            block = find_block(load.block, block_map, ("load", i, "block"))
-        except CaseError as error:
-            problems += error.problems
-            continue
-        at = centroids[block] if load.at is None else np.array(load.at)
-        loads.append(PointLoad(block, np.array(load.force), at - centroids[block], load.kind == "dead"))
-    if problems:
-        raise CaseError(problems)
+    loads = []
+    for load in case.load:
+        block = block_map[load.block]
+        arm = np.zeros(2) if load.at is None else np.array(load.at) - centroids[block]
+        loads.append(PointLoad(block, np.array(load.force), arm, load.kind == "dead"))
     return loads
 
 

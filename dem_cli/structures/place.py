@@ -60,25 +60,23 @@ def aliases(structures: Mapping[str, Sequence[Block]]) -> dict[str, str]:
 
 
 def corner_blocks(blocks: Sequence[Block]) -> dict[str, str]:
-    """Alias -> id of the free block with a vertex nearest to that corner of the box around all free blocks.
+    """Alias -> id of the free block whose box lies nearest to that corner of the box around all free blocks.
 
-    Of several at the same distance: the one whose mean vertex lies nearest to the corner, then the first.
+    Of several at the same distance: the one whose own centre lies nearest to the corner, then the first.
     """
     free = [block for block in blocks if not block.fixed]
     if not free:
         return {}
-    shapes = [part for block in free for part in block.parts]
-    owner = np.repeat(np.arange(len(free)), [sum(len(part) for part in block.parts) for block in free])
-    vertices = np.concatenate(shapes)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    means = np.stack([np.bincount(owner, vertices[:, k]) for k in (0, 1)], axis=1)
-    means /= np.bincount(owner)[:, None]
-    step = 1e-9 * np.hypot(*(high - low))  # distances are compared in units of this, against round-off
+    owner = np.repeat(np.arange(len(free)), [sum(map(len, block.parts)) for block in free])
+    vertices = np.concatenate([part for block in free for part in block.parts])
+    first = np.searchsorted(owner, np.arange(len(free)))
+    low, high = np.minimum.reduceat(vertices, first), np.maximum.reduceat(vertices, first)
+    foot, extent = low.min(axis=0), np.ptp(vertices, axis=0)
     result = {}
     for alias, fractions in CORNERS.items():
-        corner = low + np.array(fractions) * (high - low)
-        near = np.full(len(free), np.inf)
-        np.minimum.at(near, owner, np.hypot(*(vertices - corner).T))
-        ranks = np.lexsort((np.rint(np.hypot(*(means - corner).T) / step), np.rint(near / step)))
+        corner = foot + np.array(fractions) * extent
+        outside = np.maximum(np.maximum(low - corner, corner - high), 0.0)
+        distances = np.stack([np.hypot(*((low + high) / 2.0 - corner).T), np.hypot(*outside.T)])
+        ranks = np.lexsort(np.rint(distances / (1e-9 * np.hypot(*extent))))  # rounded against round-off
         result[alias] = free[ranks[0]].id
     return result
