@@ -1,0 +1,57 @@
+"""pyproject.toml lists what is imported and nothing else; constraints.txt pins all of it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+IMPORT_NAMES = {"vtk": "vtkmodules"}  # where a distribution is imported by another name
+TOOLS = {"mypy", "pytest-xdist", "ruff"}  # run, not imported
+EXTRA_OF = {"matplotlib": "plot"}  # what the package itself may lack
+
+
+def names(requirements: list[str]) -> set[str]:
+    found = {re.split(r"[\s<>=!;\[]", text, maxsplit=1)[0].lower() for text in requirements}
+    return found - {PROJECT["name"]}
+
+
+def imported(*folders: str) -> set[str]:
+    """Top-level modules that are neither the standard library nor ours."""
+    ours = {"dem_cli", *(path.stem for path in (ROOT / "tests").iterdir())}
+    found = set()
+    for folder in folders:
+        for path in (ROOT / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Import):
+                    found |= {alias.name.split(".")[0] for alias in node.names}
+                elif isinstance(node, ast.ImportFrom) and node.module:
+                    found.add(node.module.split(".")[0])
+    return found - set(sys.stdlib_module_names) - ours
+
+
+def modules(distributions: set[str]) -> set[str]:
+    return {IMPORT_NAMES.get(name, name.replace("-", "_")) for name in distributions - TOOLS}
+
+
+CORE = names(PROJECT["dependencies"])
+EVERY = CORE.union(*map(names, PROJECT["optional-dependencies"].values()))
+
+
+def test_the_package_imports_what_it_declares():
+    assert imported("dem_cli") - modules(set(EXTRA_OF)) == modules(CORE)
+
+
+def test_extras_are_used():
+    for distribution, extra in EXTRA_OF.items():
+        assert distribution in names(PROJECT["optional-dependencies"][extra])
+    assert imported("dem_cli", "tests") == modules(EVERY)
+
+
+def test_everything_declared_is_pinned():
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    assert {line.split("==")[0] for line in lines} >= EVERY

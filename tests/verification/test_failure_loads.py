@@ -1,0 +1,73 @@
+"""`dem run` on every case with a known answer, as a user runs it; references are checked in test_cases.py."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from casefiles import CASES, FILES, case_id, read
+
+REFERENCED = [path for path in FILES if "reference" in read(path)]
+SLOW = {"wall_3", "wall_2", "wall_with_door"}
+MODES = {
+    "wall_21_mu050": "sliding",
+    "wall_21": "sliding",
+    "wall_21_mu065": "mixed",
+    "wall_21_mu075": "rocking",
+    "wall_21_mu100": "rocking",
+    "column_14": "rocking",
+    "sliding_block": "sliding",
+    "trilith": "rocking",
+}
+
+
+def run(path, folder, *options, code=0) -> dict:
+    """The summary of `dem run --json`."""
+    command = [sys.executable, "-m", "dem_cli", "run", path, "-o", folder / "out", "--json", "-q", *options]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+    assert done.returncode == code, done.stdout + done.stderr
+    return json.loads(done.stdout)
+
+
+def marked(path):
+    return pytest.param(path, id=case_id(path), marks=[pytest.mark.slow] if path.stem in SLOW else [])
+
+
+@pytest.mark.parametrize("path", [marked(path) for path in REFERENCED])
+def test_failure_load(path, tmp_path):
+    reference = read(path)["reference"]
+    summary = run(path, tmp_path)
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] == pytest.approx(reference["failure_load"], abs=reference["tolerance"])
+    low, high = summary["failure_load_bracket"]
+    assert low <= summary["failure_load"] <= high
+    assert abs(summary["energy_closure"]) < 0.01
+    if path.stem in MODES:
+        assert summary["failure_mode"] == MODES[path.stem]
+
+
+def test_cannot_fail(tmp_path):
+    summary = run(CASES / "verification" / "wedged_block.toml", tmp_path)
+    assert summary["failure_load"] is None
+    assert summary["status"] != "ok"
+
+
+@pytest.mark.parametrize("name", ["overhang_falls", "leaning_column"])
+def test_does_not_stand(name, tmp_path):
+    summary = run(CASES / "verification" / f"{name}.toml", tmp_path)
+    assert not summary.get("failure_load")
+    assert summary["status"] != "ok"
+
+
+def test_settlement_of_a_support(tmp_path):
+    assert run(CASES / "verification" / "settlement_portal.toml", tmp_path)["status"] == "ok"
+
+
+def test_weight_and_units_do_not_matter(tmp_path):
+    """A rigid dry structure fails at the same multiplier whatever its density and the gravity."""
+    changes = ("materials.peperino.density=1.0", "gravity=1.62", "analysis.follow=0.0")
+    options = [word for change in changes for word in ("--set", change)]
+    summary = run(CASES / "verification" / "wall_21.toml", tmp_path, *options)
+    assert summary["failure_load"] == pytest.approx(0.6, abs=0.0018)
