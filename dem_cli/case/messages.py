@@ -100,7 +100,7 @@ def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
     if kind == "literal_error" and names and isinstance(value, str):
         return CaseProblem(path, unknown_name(str(path[-1]), value, names))
     message = not_allowed(value, spot.kinds)
-    if kind == "tuple_type" and isinstance(value, dict):
+    if message.endswith("must be a list of tables"):
         message += f", each headed [[{path[-1]}]]"
     return CaseProblem(path, message)
 

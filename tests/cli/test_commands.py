@@ -1,0 +1,116 @@
+"""`dem check`, `build`, `new` and `schema`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from dem_cli.cli.main import main
+from dem_cli.cli.new import KINDS, TEMPLATES
+from dem_cli.structures.registry import GENERATORS
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def dem(*words: str):
+    result = CliRunner().invoke(main, list(words))
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_new_prints_passes_check_as_it_is(kind, tmp_path):
+    printed = dem("new", kind)
+    path = tmp_path / "case.toml"
+    path.write_text(printed.stdout, encoding="utf-8")
+    checked = dem("check", str(path))
+    assert (printed.exit_code, printed.stderr) == (0, "")
+    assert (checked.exit_code, checked.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_new_prints_explains_every_key(kind):
+    for line in (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8").splitlines():
+        assert len(line) <= 120
+    assert "SI units" in (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
+
+
+def test_there_is_a_template_for_every_generator():
+    assert set(KINDS) == {*GENERATORS, "block"}
+
+
+def test_a_template_that_is_uncommented_is_valid_too(tmp_path):
+    text = dem("new", "wall").stdout
+    start = text.index("# [[structure.openings]]")
+    end = text.index("\n\n", start)
+    opened = text[:start] + text[start:end].replace("# ", "") + text[end:]
+    path = tmp_path / "case.toml"
+    path.write_text(opened, encoding="utf-8")
+    assert dem("check", str(path)).exit_code == 0
+
+
+def test_new_writes_a_file_once(tmp_path):
+    path = tmp_path / "wall.toml"
+    assert dem("new", "wall", "-o", str(path)).exit_code == 0
+    assert path.read_text(encoding="utf-8") == dem("new", "wall").stdout
+    again = dem("new", "arch", "-o", str(path))
+    assert (again.exit_code, again.stderr) == (2, f"error: {path}: exists already; nothing is overwritten\n")
+    nowhere = dem("new", "arch", "-o", str(tmp_path / "no" / "arch.toml"))
+    assert nowhere.exit_code == 3
+    assert "cannot be written" in nowhere.stderr
+
+
+def test_check_prints_the_model():
+    result = dem("check", str(TEMPLATES / "wall.toml"), "--set", "structure.0.courses=4")
+    lines = result.stdout.splitlines()
+    assert lines[0] == "Dry-stone wall"
+    rows = dict(line.strip().split("  ", 1) for line in lines[1:])
+    rows = {label: text.strip() for label, text in rows.items()}
+    assert rows["analysis"] == "pushover"
+    assert rows["blocks"] == "15 (1 fixed), 60 corners"
+    assert rows["size"] == "0.12 m × 0.0875 m"
+    assert rows["mass"] == "1.4401 kg (free blocks), 1 material(s)"
+    assert rows["joint laws"] == "dry (coulomb)"
+    assert rows["point loads"] == "none"
+
+
+def test_check_warns_on_stderr():
+    result = dem("check", str(TEMPLATES / "wall.toml"), "--set", "materials.stone.density=2.1")
+    assert result.exit_code == 0
+    assert result.stderr == (
+        "warning: --set materials.stone.density: "
+        "2.1 kg/m3 is unusual for a building material, did you mean 2100?\n"
+    )
+
+
+def test_schema_describes_every_key():
+    schema = json.loads(dem("schema").stdout)
+    assert {"materials", "joints"} <= set(schema["required"])
+    for name, table in schema["$defs"].items():
+        for key, field in table.get("properties", {}).items():
+            assert field.get("description") or key in ("kind", "law"), f"{name}.{key}"
+
+
+def test_schema_names_what_the_registries_hold():
+    text = dem("schema").stdout
+    for kind in (*GENERATORS, "coulomb", "pushover", "gravity"):
+        assert f'"const": "{kind}"' in text
+
+
+def test_build_writes_the_geometry(tmp_path):
+    import meshio
+
+    path = tmp_path / "model.vtu"
+    result = dem("build", str(TEMPLATES / "arch.toml"), "-o", str(path))
+    assert (result.exit_code, result.stdout) == (0, f"23 blocks written to {path}\n")
+    mesh = meshio.read(path)
+    assert sum(len(cells.data) for cells in mesh.cells) == 23
+
+
+def test_build_where_nothing_can_be_written(tmp_path):
+    result = dem("build", str(TEMPLATES / "arch.toml"), "-o", str(tmp_path / "no" / "model.vtu"))
+    assert result.exit_code == 3
+    assert result.stderr.startswith("error: ")

@@ -1,0 +1,138 @@
+"""From a file to a case: names filled in, doubts, overrides."""
+
+from __future__ import annotations
+
+import pytest
+
+from dem_cli.api import build_model, load_case
+from dem_cli.case.overrides import literal, parse
+from dem_cli.errors import CaseError, CaseProblem, UsageError
+
+WALL = """\
+[materials.stone]
+density = 2000.0
+[joints.dry]
+friction = 0.6
+[[structure]]
+kind = "wall"
+block = [1.0, 0.5]
+courses = 3
+blocks_per_course = 2
+"""
+SECOND = (
+    '[[structure]]\nkind = "wall"\nblock = [1, 0.5]\ncourses = 1\nblocks_per_course = 1\norigin = [9, 0]\n'
+)
+
+
+@pytest.fixture
+def case_file(tmp_path, monkeypatch):
+    """A function that writes case.toml and gives its name."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text: str) -> str:
+        (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+        return "case.toml"
+
+    return write
+
+
+def test_what_may_be_left_out_is_filled_in(case_file):
+    case = load_case(case_file(WALL + SECOND)).case
+    assert case.title == "case"
+    assert [(structure.id, structure.material) for structure in case.structure] == [
+        ("wall", "stone"),
+        ("wall2", "stone"),
+    ]
+
+
+def test_filled_in_ids_avoid_the_given_ones(case_file):
+    case = load_case(
+        case_file(WALL.replace("courses = 3", 'courses = 3\nid = "wall2"') + SECOND + SECOND)
+    ).case
+    assert [structure.id for structure in case.structure] == ["wall2", "wall", "wall3"]
+
+
+def test_doubts(case_file):
+    text = WALL.replace("2000.0", "2.0").replace("0.6", "31.0")
+    loaded = load_case(
+        case_file("gravity = 981.0\n" + text + '[sweep]\n"joints.dry.friction" = [0.5, 0.6]\n')
+    )
+    assert list(loaded.warnings) == [
+        "case.toml:3:11: materials.stone.density: "
+        "2 kg/m3 is unusual for a building material, did you mean 2000?",
+        "case.toml:5:12: joints.dry.friction: "
+        "31 is unusual for tan(phi); an angle is given as friction_angle_deg",
+        "case.toml:1:11: gravity: 981 m/s2 is unusual; on Earth it is 9.81",
+        "case.toml:11:1: sweep: not used here; one case is solved, as written above",
+    ]
+
+
+def test_no_doubts_about_a_plain_case(case_file):
+    assert load_case(case_file(WALL)).warnings == []
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.5", 0.5),
+        ("3", 3),
+        ("true", True),
+        ("[1, 2]", [1, 2]),
+        ("{ a = 1 }", {"a": 1}),
+        ('"0.5"', "0.5"),
+        ("tilt", "tilt"),
+        ("a wall", "a wall"),
+        ("", ""),
+        ("1\nx = 2", "1\nx = 2"),
+    ],
+)
+def test_the_value_of_an_override_is_toml_or_text(text, value):
+    assert literal(text) == value
+
+
+def test_the_key_of_an_override_may_be_quoted():
+    assert parse('materials."hard stone".density = 2e3').path == ("materials", "hard stone", "density")
+
+
+@pytest.mark.parametrize("text", ["friction", "=3", "a b=3", "a..b=3"])
+def test_an_override_without_a_key(text):
+    with pytest.raises(UsageError):
+        parse(text)
+
+
+def test_overrides(case_file):
+    values = ["joints.dry.friction=0.5", "structure.0.courses=4", "output.frames=0", "title=high wall"]
+    case = load_case(case_file(WALL), values).case
+    assert (case.joints["dry"].friction, case.structure[0].courses, case.output.frames) == (0.5, 4, 0)
+    assert case.title == "high wall"
+
+
+def test_the_last_override_of_a_key_counts(case_file):
+    assert load_case(case_file(WALL), ["seed=2", "seed=3"]).case.seed == 3
+
+
+def test_problems_of_the_model_are_located_too(case_file):
+    floating = '[[block]]\nid = "b"\nvertices = [[5, 5], [6, 5], [6, 6]]\n'
+    with pytest.raises(CaseError) as caught:
+        build_model(load_case(case_file(WALL + floating)))
+    assert str(caught.value).startswith("case.toml:10:1: block.0: nothing holds up block 'b'")
+    assert caught.value.problems[0].path == ("block", 0)
+
+
+def test_render_a_problem_without_a_place(case_file):
+    loaded = load_case(case_file(WALL))
+    assert loaded.render(CaseProblem((), "all is lost")) == "case.toml:1:1: all is lost"
+    assert loaded.locate(("structure", 0, "courses")) == (8, 11)
+
+
+def test_thousands_of_blocks_are_read_quickly(case_file):
+    import time
+
+    blocks = "".join(
+        f'[[block]]\nid = "b{i}"\nvertices = [[{i}, 0], [{i + 1}, 0], [{i + 1}, 1], [{i}, 1]]\nfixed = true\n'
+        for i in range(3000)
+    )
+    start = time.perf_counter()
+    case = load_case(case_file(WALL + blocks)).case
+    assert len(case.block) == 3000
+    assert time.perf_counter() - start < 3.0
