@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.contact.detect import Faces
-from dem_cli.kernels.planar_geometry import measure
+from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
@@ -26,15 +25,6 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
 
 
-class Ends(NamedTuple):
-    """Contact points of all joints as they are now."""
-
-    points: np.ndarray  # [m], (n_points, d)
-    normals: np.ndarray  # unit, from a to b, (n_points, d)
-    gaps: np.ndarray  # [m], (n_points,)
-    overlaps: np.ndarray  # length of the overlap of the two faces [m], (n_joints,)
-
-
 def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:
     """Contacts that carry nothing."""
     return Contacts(
@@ -47,81 +37,77 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
     )
 
 
-def measure_ends(joints: Joints, bodies: Bodies, contacts: Contacts, dimension: int) -> Ends:
-    """Where the points of all joints are, from the corners of the blocks. Changes nothing."""
-    n_joints, n_points = len(joints.blocks), len(joints.kn)
-    ends = Ends(
-        np.empty((n_points, dimension)), np.empty((n_points, dimension)), np.empty(n_points), np.empty(n_joints)
-    )
-    scratch = empty_contacts(n_joints, n_points, dimension, 0)
-    measure(joints, bodies, scratch, LIKE[dimension], ends.points, ends.normals, ends.gaps, ends.overlaps)
-    return ends
+def overlap_lengths(edges: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Length of the overlap of two edges along the first [m], (n,); negative: they miss each other."""
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    along = a1 - a0
+    length = np.sqrt((along**2).sum(axis=1))
+    along /= length[:, None]
+    low, high = ((b1 - a0) * along).sum(axis=1), ((b0 - a0) * along).sum(axis=1)
+    return np.minimum(high, length) - np.maximum(low, 0.0)
 
 
-def build_joints(model: Model, faces: Faces, bodies: Bodies, properties: JointProperties) -> tuple[Joints, Ends]:
-    """The joints of the given faces with stiffness from the present overlap, frames and arms of the present place."""
+def build_joints(
+    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int
+) -> tuple[Joints, Contacts]:
+    """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing."""
     d, n = model.dimension, len(faces.parts)
     blocks = model.part_blocks[faces.parts]
-    corners = bodies.corners
-    edge_vectors = corners[faces.edges[:, [1, 3]]] - corners[faces.edges[:, [0, 2]]]
-    lengths = np.sqrt((edge_vectors**2).sum(axis=2))
-    starts = np.arange(0, 2 * n + 1, 2)
+    ends = bodies.corners[faces.edges]
+    lengths = np.sqrt(((ends[:, [1, 3]] - ends[:, [0, 2]]) ** 2).sum(axis=2))
+    shortest = lengths.min(axis=1, initial=np.inf)
+    overlap = np.clip(overlap_lengths(faces.edges, bodies.corners), 0.1 * shortest, shortest)
+    area = overlap * model.thickness[blocks].min(axis=1, initial=np.inf)
+    named = properties.by_material[model.block_material[blocks[:, 0]], model.block_material[blocks[:, 1]]]
     joints = Joints(
         blocks=blocks,
-        starts=starts,
-        frames=np.zeros((n, d, d)),
-        arms=np.zeros((2 * n, 2, d)),
+        starts=np.arange(0, 2 * n + 1, 2),
+        frames=np.zeros((2 * n, d * d)),
+        levers=np.zeros((2 * n, 2 * d * model.inertias.shape[1])),
+        points=np.zeros((2 * n, d)),
         edges=faces.edges,
-        lengths=lengths,
-        kn=np.zeros(2 * n),
-        ks=np.zeros(2 * n),
-        law=np.zeros((n, properties.law.shape[1])),
-    )
-    ends = measure_ends(joints, bodies, empty_contacts(n, 2 * n, d, 0), d)
-    shortest = lengths.min(axis=1) if n else np.zeros(0)
-    overlap = np.clip(ends.overlaps, 0.1 * shortest, shortest)
-    area = overlap * model.thickness[blocks].min(axis=1) if n else overlap
-    named = properties.by_material[model.block_material[blocks[:, 0]], model.block_material[blocks[:, 1]]]
-    closest = starts[:-1] + (ends.gaps[1::2] < ends.gaps[0::2])
-    normals = ends.normals[closest]
-    frames = np.stack([normals, np.column_stack([-normals[:, 1], normals[:, 0]])], axis=1)
-    arms = ends.points[:, None, :] - bodies.positions[blocks].repeat(2, axis=0)
-    joints = joints._replace(
-        frames=np.ascontiguousarray(frames),
-        arms=np.ascontiguousarray(arms),
+        scales=np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)]),
         kn=np.repeat(properties.kn[named] * area / 2, 2),
         ks=np.repeat(properties.ks[named] * area / 2, 2),
         law=np.ascontiguousarray(properties.law[named]),
     )
-    return joints, ends
+    contacts = empty_contacts(n, 2 * n, d, n_memory)
+    measure(joints, contacts, bodies)
+    contacts.stale[:] = 0
+    return joints, contacts
 
 
-def carry_memory(old: Joints, memory: Contacts, points: np.ndarray, new: Joints, ends: Ends) -> tuple[Joints, Contacts]:
-    """Contacts of `new` with what the same points of `old` remember, and their stiffness.
+def share_frames(joints: Joints, source: np.ndarray, positions: np.ndarray) -> None:
+    """Gives both points of joint j the frame of point source[j]; 2D."""
+    joints.frames[:] = joints.frames[source].repeat(2, axis=0)
+    normals = joints.frames[:, :2]
+    for side in (0, 1):
+        arms = joints.points - positions[joints.blocks[:, side]].repeat(2, axis=0)
+        joints.levers[:, 2 * side] = arms[:, 0] * normals[:, 1] - arms[:, 1] * normals[:, 0]
+        joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
+
+
+def carry_memory(old: Joints, memory: Contacts, new: Joints, contacts: Contacts) -> None:
+    """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its joint has the same two edges and it is the same end. Where a corner
     turned over to its other edge, the point of the same two blocks that is nearest takes over.
-    points: where the old points are [m], (n_old, d).
     """
-    d = ends.points.shape[1]
-    contacts = empty_contacts(len(new.blocks), len(new.kn), d, memory.memory.shape[1])
-    key_old = _row_keys(old.edges[:, [0, 2]])
-    key_new = _row_keys(new.edges[:, [0, 2]])
+    key_old, key_new = _row_keys(old.edges[:, [0, 2]]), _row_keys(new.edges[:, [0, 2]])
     order = np.argsort(key_old, kind="stable")
+    match = np.full(len(key_new), -1)
     if len(order):
         place = np.minimum(np.searchsorted(key_old[order], key_new), len(order) - 1)
         match = np.where(key_old[order][place] == key_new, order[place], -1)
-    else:
-        match = np.full(len(key_new), -1)
     known = np.flatnonzero(match >= 0)
     target = np.concatenate([2 * known, 2 * known + 1])
     source = np.concatenate([2 * match[known], 2 * match[known] + 1])
     _copy(contacts, memory, target, source)
     new.kn[target], new.ks[target] = old.kn[source], old.ks[source]
     orphans = np.setdiff1d(np.flatnonzero(_loaded(memory)), match[known])
-    if len(orphans):
-        _adopt(old, memory, points, new, ends, contacts, orphans, np.flatnonzero(match < 0))
-    return new, contacts
+    newborn = np.flatnonzero(match < 0)
+    if len(orphans) and len(newborn):
+        _adopt(old, memory, new, contacts, orphans, newborn)
 
 
 def _row_keys(pairs: np.ndarray) -> np.ndarray:
@@ -140,12 +126,10 @@ def _copy(contacts: Contacts, memory: Contacts, target: np.ndarray, source: np.n
 def _adopt(
     old: Joints,
     memory: Contacts,
-    points: np.ndarray,
     new: Joints,
-    ends: Ends,
     contacts: Contacts,
-    orphans: Sequence[int],
-    newborn: Sequence[int],
+    orphans: np.ndarray,
+    newborn: np.ndarray,
 ) -> None:
     """Memory of loaded joints whose edges changed goes to the nearest point of a new joint of the same blocks."""
     for i in orphans:
@@ -155,5 +139,5 @@ def _adopt(
         candidates = np.array([2 * j + k for j in heirs for k in (0, 1)])
         for source in (2 * i, 2 * i + 1):
             if memory.normal[source] > 0.0:
-                distance = ((ends.points[candidates] - points[source]) ** 2).sum(axis=1)
+                distance = ((new.points[candidates] - old.points[source]) ** 2).sum(axis=1)
                 _copy(contacts, memory, candidates[[distance.argmin()]], np.array([source]))

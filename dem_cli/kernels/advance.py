@@ -34,99 +34,93 @@ from dem_cli.kernels.records import (
 
 
 @inline
-def _creep_factor(forces, loads, dead, stiffness):
+def _creep_factor(forces, dead_loads, live_loads, inverse_masses, dead, stiffness):
     """Live factor that leaves no force along the live load: q·M⁻¹(F + f0 + λ q) = 0."""
     total = 0.0
-    for i in range(forces.shape[0]):
-        for k in range(forces.shape[1]):
-            q = loads.live[i, k]
-            if q != 0.0:
-                total += q * loads.inverse_masses[i, k] * (forces[i, k] + dead * loads.dead[i, k])
+    for i in range(forces.size):
+        total += live_loads[i] * inverse_masses[i] * (forces[i] + dead * dead_loads[i])
     return -total / stiffness
 
 
 @inline
-def _kick(bodies, shape, loads, dead, live, damp, dt, ledger, like):
-    """Velocities from forces, with local damping α|F| against the motion; returns (largest force, residual power)."""
-    velocities, forces = bodies.velocities, bodies.forces
-    d = len(like)
+def _sign(x):
+    """−1, 0 or 1; without a branch."""
+    return (1.0 if x > 0.0 else 0.0) - (1.0 if x < 0.0 else 0.0)
+
+
+@inline
+def _rate_impulse(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, damp, rate, dt, stiffness):
+    """Impulse of the live load after which q·v = rate, local damping included."""
+    flow = 0.0
+    for i in range(forces.size):
+        q = live_loads[i]
+        if q != 0.0:
+            unbalanced = forces[i] + dead * dead_loads[i] + live * q
+            drag = damp * abs(unbalanced) * _sign(velocities[i])
+            flow += q * (velocities[i] + dt * inverse_masses[i] * (unbalanced - drag))
+    return (rate - flow) / stiffness
+
+
+@inline
+def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control):
+    """FIRE (Bitzek et al. 2006) in the metric of the masses: v <- keep v + steer M⁻¹F, and a stop when uphill."""
+    power = speed2 = force2 = 0.0
+    for i in range(forces.size):
+        inverse = inverse_masses[i]
+        if inverse > 0.0:
+            force = forces[i] + dead * dead_loads[i] + live * live_loads[i]
+            power += force * velocities[i]
+            speed2 += velocities[i] * velocities[i] / inverse
+            force2 += force * force * inverse
+    if power <= 0.0 or force2 == 0.0:
+        control[SINCE_UPHILL] = 0.0
+        control[FIRE_MIX] = 0.1
+        return 0.0, 0.0
+    mix = control[FIRE_MIX]
+    control[SINCE_UPHILL] += 1.0
+    if control[SINCE_UPHILL] > 5.0:
+        control[FIRE_MIX] *= 0.99
+    return 1.0 - mix, mix * math.sqrt(speed2 / force2)
+
+
+@inline
+def _kick(
+    velocities, forces, dead_loads, live_loads, inverse_masses, force_scales,
+    dead, live, damp, keep, steer, impulse, dt, ledger,
+):  # fmt: skip
+    """Velocities from forces, with local damping α|F| against the motion; returns (largest force, residual power).
+
+    Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
+    displacement; whatever steering or damping takes from the motion is booked as damping.
+    """
     external = contact = damping = support = power = largest = 0.0
-    for i in range(forces.shape[0]):
-        for k in range(forces.shape[1]):
-            old = velocities[i, k]
-            inverse = loads.inverse_masses[i, k]
-            if inverse == 0.0:
-                support -= forces[i, k] * old
-                continue
-            applied = dead * loads.dead[i, k] + live * loads.live[i, k]
-            unbalanced = forces[i, k] + applied
-            size = abs(unbalanced)
-            largest = max(largest, size if k < d else size / shape.radii[i])
-            drag = 0.0
-            if old != 0.0:
-                drag = damp * (size if old > 0.0 else -size)
-            new = old + dt * inverse * (unbalanced - drag)
-            velocities[i, k] = new
-            mean = 0.5 * (old + new)
-            external += applied * mean
-            contact += forces[i, k] * mean
-            damping += drag * mean
-            power += unbalanced * mean
-    ledger[EXTERNAL] += dt * external
+    for i in range(forces.size):
+        old = velocities[i]
+        inverse = inverse_masses[i]
+        force = forces[i]
+        if inverse == 0.0:
+            support -= force * old
+            continue
+        applied = dead * dead_loads[i] + live * live_loads[i]
+        unbalanced = force + applied
+        size = abs(unbalanced)
+        largest = max(largest, size * force_scales[i])
+        drag = damp * size * _sign(old)
+        pushed = dt * applied + impulse * live_loads[i]
+        new = keep * old + inverse * (steer * unbalanced + dt * (force - drag) + pushed)
+        velocities[i] = new
+        mean = 0.5 * (old + new)
+        external += pushed * mean
+        contact += force * mean
+        damping += drag * mean
+        if keep != 1.0:
+            damping += mean * ((1.0 - keep) * old / inverse - steer * unbalanced) / dt
+        power += unbalanced * mean
+    ledger[EXTERNAL] += external
     ledger[CONTACT] += dt * contact
     ledger[DAMPING] += dt * damping
     ledger[SUPPORT] += dt * support
     return largest, power
-
-
-@inline
-def _impose_rate(velocities, loads, rate, stiffness, ledger):
-    """v += M⁻¹q (rate − q·v)/(q·M⁻¹q): an impulse of the live load that prescribes its displacement rate."""
-    flow = 0.0
-    for i in range(velocities.shape[0]):
-        for k in range(velocities.shape[1]):
-            flow += loads.live[i, k] * velocities[i, k]
-    impulse = (rate - flow) / stiffness
-    for i in range(velocities.shape[0]):
-        for k in range(velocities.shape[1]):
-            velocities[i, k] += impulse * loads.inverse_masses[i, k] * loads.live[i, k]
-    ledger[EXTERNAL] += 0.5 * impulse * (flow + rate)
-
-
-@inline
-def _mix(bodies, loads, dead, live, control, ledger):
-    """FIRE (Bitzek et al. 2006) in the metric of the masses: steer downhill, stop when going uphill."""
-    velocities, forces = bodies.velocities, bodies.forces
-    power = speed2 = force2 = 0.0
-    for i in range(forces.shape[0]):
-        for k in range(forces.shape[1]):
-            inverse = loads.inverse_masses[i, k]
-            if inverse > 0.0:
-                force = forces[i, k] + dead * loads.dead[i, k] + live * loads.live[i, k]
-                power += force * velocities[i, k]
-                speed2 += velocities[i, k] ** 2 / inverse
-                force2 += force * force * inverse
-    keep, steer = 1.0, 0.0
-    if power > 0.0:
-        control[SINCE_UPHILL] += 1.0
-        if force2 > 0.0:
-            keep = 1.0 - control[FIRE_MIX]
-            steer = control[FIRE_MIX] * math.sqrt(speed2 / force2)
-        if control[SINCE_UPHILL] > 5.0:
-            control[FIRE_MIX] *= 0.99
-    else:
-        control[SINCE_UPHILL] = 0.0
-        control[FIRE_MIX] = 0.1
-        keep = 0.0
-    after = 0.0
-    for i in range(forces.shape[0]):
-        for k in range(forces.shape[1]):
-            inverse = loads.inverse_masses[i, k]
-            if inverse > 0.0:
-                force = forces[i, k] + dead * loads.dead[i, k] + live * loads.live[i, k]
-                velocities[i, k] = keep * velocities[i, k] + steer * inverse * force
-                after += velocities[i, k] ** 2 / inverse
-    ledger[DAMPING] += 0.5 * (speed2 - after)
 
 
 @inline
@@ -165,36 +159,55 @@ def drift_corners(bodies, shape, dt, like):
     return largest
 
 
-def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
-    """The compiled stepping loop for one contact loop and one way to move the blocks."""
+@inline
+def keep_points(joints, contacts, positions, corners):
+    """Fixed geometry: the points stay where they are."""
+
+
+def make_advance(contact_forces: Callable, place_points: Callable, drift: Callable) -> Callable:
+    """The compiled stepping loop for one contact loop, one contact geometry and one way to move the blocks."""
 
     @kernel
     def advance(n_steps, mode, dt, bodies, shape, joints, contacts, loads, control, ledger, like, like_rotation):
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
+        velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
+        dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
+        inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
+        creeps = mode == CREEP or mode == TILT_CREEP
         stiffness = 0.0
-        if mode == CREEP or mode == TILT_CREEP:
-            for i in range(loads.live.shape[0]):
-                for k in range(loads.live.shape[1]):
-                    stiffness += loads.live[i, k] ** 2 * loads.inverse_masses[i, k]
+        if creeps:
+            for i in range(live_loads.size):
+                stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
         mean_load = mean_power = 0.0
         done = 0
         for _ in range(n_steps):
-            bodies.forces[:] = 0.0
-            ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
-            if mode == CREEP or mode == TILT_CREEP:
-                factor = _creep_factor(bodies.forces, loads, control[DEAD_FACTOR], stiffness)
+            forces[:] = 0.0
+            place_points(joints, contacts, bodies.positions, bodies.corners)
+            ledger[FRICTION] += contact_forces(
+                joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation
+            )
+            keep, steer, impulse = 1.0, 0.0, 0.0
+            if creeps:
+                factor = _creep_factor(
+                    forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness
+                )
                 if mode == TILT_CREEP:  # the table turns gravity by θ: dead cos θ + live sin θ
                     factor = min(max(factor, -1.0), 1.0)
                     control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
                 control[LIVE_FACTOR] = factor
+                impulse = _rate_impulse(
+                    velocities, forces, dead_loads, live_loads, inverse_masses,
+                    control[DEAD_FACTOR], factor, control[DAMP], control[RATE], dt, stiffness,
+                )  # fmt: skip
             dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if mode == FIRE:
-                _mix(bodies, loads, dead, live, control, ledger)
+                keep, steer = _steering(
+                    velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control
+                )
             largest, power = _kick(
-                bodies, shape, loads, dead, live, control[DAMP], dt, ledger, like
-            )
-            if mode == CREEP or mode == TILT_CREEP:
-                _impose_rate(bodies.velocities, loads, control[RATE], stiffness, ledger)
+                velocities, forces, dead_loads, live_loads, inverse_masses, force_scales,
+                dead, live, control[DAMP], keep, steer, impulse, dt, ledger,
+            )  # fmt: skip
             control[UNBALANCED] = largest
             mean_load += live
             mean_power += power

@@ -10,101 +10,91 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline, kernel
-from dem_cli.kernels.vec import store
+import numpy as np
 
-BLEND = 0.02
+from dem_cli.kernels.jit import inline, kernel
+
+BLEND = 0.02  # share of the shorter edge over which the normal turns
 
 
 @inline
-def prepare(joints, bodies, contacts, joint, like):
-    """Corners and directions of the two edges; False where their overlap has no length.
+def _place(frames, levers, points, positions, a, b, point, share, gap_a, gap_b, ta, tb, corner_a, corner_b):
+    """Frame and levers of one end: `share` 1 is a corner of b on the edge of a, 0 the reverse. Returns the gap."""
+    if share >= 1.0:
+        nx, ny = ta[1], -ta[0]
+        x, y = corner_b
+    elif share <= 0.0:
+        nx, ny = -tb[1], tb[0]
+        x, y = corner_a
+    else:
+        nx = share * ta[1] - (1.0 - share) * tb[1]
+        ny = -share * ta[0] + (1.0 - share) * tb[0]
+        unit = 1.0 / math.sqrt(nx * nx + ny * ny)
+        nx *= unit
+        ny *= unit
+        x = share * corner_b[0] + (1.0 - share) * corner_a[0]
+        y = share * corner_b[1] + (1.0 - share) * corner_a[1]
+    frames[point, 0], frames[point, 1] = nx, ny
+    points[point, 0], points[point, 1] = x, y
+    arm_x, arm_y = x - positions[a, 0], y - positions[a, 1]
+    levers[point, 0] = arm_x * ny - arm_y * nx
+    levers[point, 1] = arm_x * nx + arm_y * ny
+    arm_x, arm_y = x - positions[b, 0], y - positions[b, 1]
+    levers[point, 2] = arm_x * ny - arm_y * nx
+    levers[point, 3] = arm_x * nx + arm_y * ny
+    return share * gap_a + (1.0 - share) * gap_b
+
+
+@inline
+def place_points(joints, contacts, positions, corners):
+    """Frames, arms and gaps of all points from the corners of the blocks.
 
     A joint whose overlap vanished or became shorter than its penetration is not the face that the
-    blocks touch with any more: it carries nothing and asks for a new detection (`stale`).
+    blocks touch with any more: it opens and, if it carried force or is penetrated, asks for a new
+    detection (`stale`).
     """
-    edges, corners = joints.edges, bodies.corners
-    i, j, k, m = edges[joint, 0], edges[joint, 1], edges[joint, 2], edges[joint, 3]
-    a0x, a0y, a1x, a1y = corners[i, 0], corners[i, 1], corners[j, 0], corners[j, 1]
-    b0x, b0y, b1x, b1y = corners[k, 0], corners[k, 1], corners[m, 0], corners[m, 1]
-    length_a, length_b = joints.lengths[joint, 0], joints.lengths[joint, 1]
-    tax, tay = (a1x - a0x) / length_a, (a1y - a0y) / length_a
-    tbx, tby = (b1x - b0x) / length_b, (b1y - b0y) / length_b
-    # Positions of b1 and b0 along edge a, and the clipped overlap.
-    low = (b1x - a0x) * tax + (b1y - a0y) * tay
-    high = length_a - ((b0x - a0x) * tax + (b0y - a0y) * tay)
-    overlap = length_a - max(low, 0.0) - max(high, 0.0)
-    # Distance of each corner to the other edge, positive outside; outward normal of an edge: (ty, -tx).
-    gap_b1 = (b1x - a0x) * tay - (b1y - a0y) * tax
-    gap_b0 = (b0x - a0x) * tay - (b0y - a0y) * tax
-    gap_a0 = (a0x - b0x) * tby - (a0y - b0y) * tbx
-    gap_a1 = (a1x - b0x) * tby - (a1y - b0y) * tbx
-    blend = 1.0 / (2.0 * BLEND * min(length_a, length_b))
-    share_low = min(max(0.5 + low * blend, 0.0), 1.0)
-    share_high = min(max(0.5 + high * blend, 0.0), 1.0)
-    end_low = (
-        share_low,
-        share_low * gap_b1 + (1.0 - share_low) * gap_a0,
-        share_low * b1x + (1.0 - share_low) * a0x,
-        share_low * b1y + (1.0 - share_low) * a0y,
-    )
-    end_high = (
-        share_high,
-        share_high * gap_b0 + (1.0 - share_high) * gap_a1,
-        share_high * b0x + (1.0 - share_high) * a1x,
-        share_high * b0y + (1.0 - share_high) * a1y,
-    )
-    touches = overlap > 0.0 and min(end_low[1], end_high[1]) > -overlap
-    if not touches:
-        first = joints.starts[joint]
-        was_loaded = contacts.normal[first] + contacts.normal[first + 1] > 0.0
-        if contacts.stale[joint] == 0 and (was_loaded or overlap > 0.0):
-            contacts.stale[joint] = 1
-            contacts.stale[-1] = 1
-        for point in range(first, first + 2):
-            contacts.gaps[point] = max(end_low[1], end_high[1], 0.0)
-            contacts.normal[point] = 0.0
-            contacts.shear[point, 0] = 0.0
-    return touches, (tax, tay, tbx, tby, end_low, end_high)
-
-
-@inline
-def place(joints, bodies, contacts, joint, point, shared, like):
-    """One end of the overlap: frame (normal from a to b, tangent), arms, gap."""
-    tax, tay, tbx, tby, end_low, end_high = shared
-    share, gap, x, y = end_low if point == joints.starts[joint] else end_high
-    if share >= 1.0:
-        nx, ny = tay, -tax
-    elif share <= 0.0:
-        nx, ny = -tby, tbx
-    else:
-        nx = share * tay - (1.0 - share) * tby
-        ny = -share * tax + (1.0 - share) * tbx
-        scale = 1.0 / math.sqrt(nx * nx + ny * ny)
-        nx *= scale
-        ny *= scale
-    positions = bodies.positions
-    a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
-    arm_a = (x - positions[a, 0], y - positions[a, 1])
-    arm_b = (x - positions[b, 0], y - positions[b, 1])
-    return ((nx, ny), (-ny, nx)), arm_a, arm_b, gap
+    edges, scales, blocks, starts = joints.edges, joints.scales, joints.blocks, joints.starts
+    frames, levers, points = joints.frames, joints.levers, joints.points
+    gaps, normals, stale = contacts.gaps, contacts.normal, contacts.stale
+    for joint in range(blocks.shape[0]):
+        i, j = np.uint64(edges[joint, 0]), np.uint64(edges[joint, 1])
+        k, m = np.uint64(edges[joint, 2]), np.uint64(edges[joint, 3])
+        a0, a1 = (corners[i, 0], corners[i, 1]), (corners[j, 0], corners[j, 1])
+        b0, b1 = (corners[k, 0], corners[k, 1]), (corners[m, 0], corners[m, 1])
+        length_a, per_a, per_b, blend = scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
+        ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
+        tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
+        # How far the edge of b ends inside that of a, at both ends; then the clipped overlap.
+        low = (b1[0] - a0[0]) * ta[0] + (b1[1] - a0[1]) * ta[1]
+        high = length_a - ((b0[0] - a0[0]) * ta[0] + (b0[1] - a0[1]) * ta[1])
+        overlap = length_a - max(low, 0.0) - max(high, 0.0)
+        share_low = min(max(0.5 + low * blend, 0.0), 1.0)
+        share_high = min(max(0.5 + high * blend, 0.0), 1.0)
+        # Distance of each corner to the other edge, positive outside; the outward normal is (ty, -tx).
+        gap_b1 = (b1[0] - a0[0]) * ta[1] - (b1[1] - a0[1]) * ta[0]
+        gap_b0 = (b0[0] - a0[0]) * ta[1] - (b0[1] - a0[1]) * ta[0]
+        gap_a0 = (a0[0] - b0[0]) * tb[1] - (a0[1] - b0[1]) * tb[0]
+        gap_a1 = (a1[0] - b0[0]) * tb[1] - (a1[1] - b0[1]) * tb[0]
+        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        first = np.uint64(starts[joint])
+        second = np.uint64(starts[joint] + 1)
+        gap_low = _place(
+            frames, levers, points, positions, a, b, first, share_low, gap_b1, gap_a0, ta, tb, a0, b1
+        )
+        gap_high = _place(
+            frames, levers, points, positions, a, b, second, share_high, gap_b0, gap_a1, ta, tb, a1, b0
+        )
+        if overlap <= 0.0 or min(gap_low, gap_high) <= -overlap:
+            if stale[joint] == 0 and (overlap > 0.0 or normals[first] + normals[second] > 0.0):
+                stale[joint] = 1
+                stale[-1] = 1
+            gap_low = max(gap_low, 0.0)
+            gap_high = max(gap_high, 0.0)
+        gaps[first] = gap_low
+        gaps[second] = gap_high
 
 
 @kernel
-def measure(joints, bodies, contacts, like, points_out, normals_out, gaps_out, overlaps_out):
-    """Ends of all joints as they are now: place [m], unit normal from a to b, gap [m]; overlap length [m].
-
-    points_out, normals_out (n_points, 2), gaps_out (n_points,), overlaps_out (n_joints,)
-    """
-    for joint in range(joints.blocks.shape[0]):
-        _, shared = prepare(joints, bodies, contacts, joint, like)
-        tax, tay, tbx, tby, end_low, end_high = shared
-        low = end_low[2] * tax + end_low[3] * tay
-        high = end_high[2] * tax + end_high[3] * tay
-        overlaps_out[joint] = high - low
-        for point in range(joints.starts[joint], joints.starts[joint + 1]):
-            frame, arm_a, arm_b, gap = place(joints, bodies, contacts, joint, point, shared, like)
-            a = joints.blocks[joint, 0]
-            gaps_out[point] = gap
-            store(normals_out, point, 0, frame[0])
-            store(points_out, point, 0, (arm_a[0] + bodies.positions[a, 0], arm_a[1] + bodies.positions[a, 1]))
+def measure(joints, contacts, bodies):
+    """`place_points` once, for detection and records."""
+    place_points(joints, contacts, bodies.positions, bodies.corners)

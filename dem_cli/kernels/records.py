@@ -35,10 +35,11 @@ class Joints(NamedTuple):
 
     blocks: np.ndarray  # blocks a and b, (n_joints, 2)
     starts: np.ndarray  # first point of each joint, (n_joints + 1,)
-    frames: np.ndarray  # fixed geometry: unit normal from a to b, then tangent(s), (n_joints, d, d)
-    arms: np.ndarray  # fixed geometry: point relative to the centroids of a and b [m], (n_points, 2, d)
+    frames: np.ndarray  # unit normal from a to b, then tangent(s) (2D: normal turned by +90°), (n_points, d·d)
+    levers: np.ndarray  # moments about the centroids of a and b of unit forces along the frame [m], (n_points, 2·d·r)
+    points: np.ndarray  # where the points are [m], (n_points, d)
     edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
-    lengths: np.ndarray  # 2D: lengths of the two edges [m], (n_joints, 2)
+    scales: np.ndarray  # 2D: length of edge a [m], 1/length of a and b, 1/(length of normal blending) [1/m], (n_joints, 4)
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
@@ -61,6 +62,7 @@ class Loads(NamedTuple):
     dead: np.ndarray  # [N, N m], (n_blocks, n_dof)
     live: np.ndarray  # per unit of the load multiplier [N, N m], (n_blocks, n_dof)
     inverse_masses: np.ndarray  # fictitious or real; 0: prescribed velocity, (n_blocks, n_dof)
+    force_scales: np.ndarray  # 1 for forces, 1/radius [1/m] for moments: unbalanced forces in N, (n_blocks, n_dof)
 
 
 # Slots of the vector `ledger`: sums over steps [J].

@@ -113,101 +113,114 @@ def _dot(x, y):
     return lambda x, y: x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
-def spin(rotation, arm):
-    """Velocity of a point at `arm` of a body that turns with `rotation`: ω × r."""
-    if len(arm) == 2:
-        return (-rotation[0] * arm[1], rotation[0] * arm[0])
-    return _cross(rotation, arm)
+def components(frame, vector):
+    """Components of a vector along the normal and along the tangents of a frame: a number and d − 1 numbers."""
+    return dot(frame[0], vector), tuple(dot(tangent, vector) for tangent in frame[1:])
 
 
-@overload(spin)
-def _spin(rotation, arm):
-    if len(arm) == 2:
-        return lambda rotation, arm: (-rotation[0] * arm[1], rotation[0] * arm[0])
-    return lambda rotation, arm: _cross(rotation, arm)
-
-
-def moment(arm, force):
-    """Moment of a force at `arm`: r × F, as a tuple of r components."""
-    if len(arm) == 2:
-        return (arm[0] * force[1] - arm[1] * force[0],)
-    return _cross(arm, force)
-
-
-@overload(moment)
-def _moment(arm, force):
-    if len(arm) == 2:
-        return lambda arm, force: (arm[0] * force[1] - arm[1] * force[0],)
-    return lambda arm, force: _cross(arm, force)
-
-
-@inline
-def _cross(x, y):
-    return (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
-
-
-def along_tangents(frame, vector):
-    """Components of a vector along the tangents of a frame (normal, tangent, ...): d − 1 numbers."""
-    return tuple(dot(tangent, vector) for tangent in frame[1:])
-
-
-@overload(along_tangents)
-def _along_tangents(frame, vector):
+@overload(components)
+def _components(frame, vector):
     if len(frame) == 2:
-        return lambda frame, vector: (dot(frame[1], vector),)
-    return lambda frame, vector: (dot(frame[1], vector), dot(frame[2], vector))
+        return lambda frame, vector: (dot(frame[0], vector), (dot(frame[1], vector),))
+    return lambda frame, vector: (dot(frame[0], vector), (dot(frame[1], vector), dot(frame[2], vector)))
 
 
-def compose(frame, normal_part, tangent_parts):
-    """The vector with these components along the normal and the tangents of a frame."""
-    total = tuple(normal_part * c for c in frame[0])
+def compose(frame, normal_part, tangent_parts, start):
+    """start + normal_part × normal + tangent_parts × tangents."""
+    total = axpy(normal_part, frame[0], start)
     for part, tangent in zip(tangent_parts, frame[1:], strict=True):
         total = axpy(part, tangent, total)
     return total
 
 
 @overload(compose)
-def _compose(frame, normal_part, tangent_parts):
+def _compose(frame, normal_part, tangent_parts, start):
     if len(frame) == 2:
-
-        def planar(frame, normal_part, tangent_parts):
-            n, t = frame
-            return (
-                normal_part * n[0] + tangent_parts[0] * t[0],
-                normal_part * n[1] + tangent_parts[0] * t[1],
-            )
-
-        return planar
-
-    def spatial(frame, normal_part, tangent_parts):
-        n, t, u = frame
-        a, b = tangent_parts
-        return (
-            normal_part * n[0] + a * t[0] + b * u[0],
-            normal_part * n[1] + a * t[1] + b * u[1],
-            normal_part * n[2] + a * t[2] + b * u[2],
+        return lambda frame, normal_part, tangent_parts, start: axpy(
+            tangent_parts[0], frame[1], axpy(normal_part, frame[0], start)
         )
+    return lambda frame, normal_part, tangent_parts, start: axpy(
+        tangent_parts[1], frame[2], axpy(tangent_parts[0], frame[1], axpy(normal_part, frame[0], start))
+    )
 
-    return spatial
+
+def load_levers(levers, point, side, like):
+    """The d levers of a point about the centroid of block a (side 0) or b (side 1), each with r components.
+
+    A lever is the moment of a unit force along one direction of the frame: arm × direction.
+    """
+    d = len(like)
+    r = 1 if d == 2 else 3
+    return tuple(tuple(levers[point, (side * d + k) * r : (side * d + k + 1) * r]) for k in range(d))
 
 
-def load_frame(frames, joint, like):
-    """The frame of a joint: a tuple of d unit vectors, normal first."""
-    return tuple(tuple(row) for row in frames[joint])
+@overload(load_levers)
+def _load_levers(levers, point, side, like):
+    if len(like) == 2:
+        return lambda levers, point, side, like: ((levers[point, 2 * side],), (levers[point, 2 * side + 1],))
+    return lambda levers, point, side, like: (
+        (levers[point, 9 * side], levers[point, 9 * side + 1], levers[point, 9 * side + 2]),
+        (levers[point, 9 * side + 3], levers[point, 9 * side + 4], levers[point, 9 * side + 5]),
+        (levers[point, 9 * side + 6], levers[point, 9 * side + 7], levers[point, 9 * side + 8]),
+    )
+
+
+def turn(levers, rotation):
+    """Motion of a point along the normal and the tangents when its block turns: lever · ω."""
+    return components(levers, rotation)
+
+
+@overload(turn)
+def _turn(levers, rotation):
+    if len(levers) == 2:
+        return lambda levers, rotation: (dot(levers[0], rotation), (dot(levers[1], rotation),))
+    return lambda levers, rotation: (dot(levers[0], rotation), (dot(levers[1], rotation), dot(levers[2], rotation)))
+
+
+def add_torques(levers, normal_part, tangent_parts, start):
+    """start + moment of a force given by its components along the frame."""
+    return compose(levers, normal_part, tangent_parts, start)
+
+
+@overload(add_torques)
+def _add_torques(levers, normal_part, tangent_parts, start):
+    return lambda levers, normal_part, tangent_parts, start: compose(levers, normal_part, tangent_parts, start)
+
+
+def load_frame(frames, point, like):
+    """The frame of a point: d unit vectors, normal first. In 2D the tangent is the normal turned by +90°."""
+    d = len(like)
+    return tuple(tuple(frames[point, k * d : k * d + d]) for k in range(d))
 
 
 @overload(load_frame)
-def _load_frame(frames, joint, like):
+def _load_frame(frames, point, like):
     if len(like) == 2:
-        return lambda frames, joint, like: (
-            (frames[joint, 0, 0], frames[joint, 0, 1]),
-            (frames[joint, 1, 0], frames[joint, 1, 1]),
-        )
-    return lambda frames, joint, like: (
-        (frames[joint, 0, 0], frames[joint, 0, 1], frames[joint, 0, 2]),
-        (frames[joint, 1, 0], frames[joint, 1, 1], frames[joint, 1, 2]),
-        (frames[joint, 2, 0], frames[joint, 2, 1], frames[joint, 2, 2]),
+
+        def planar(frames, point, like):
+            nx, ny = frames[point, 0], frames[point, 1]
+            return ((nx, ny), (-ny, nx))
+
+        return planar
+    return lambda frames, point, like: (
+        (frames[point, 0], frames[point, 1], frames[point, 2]),
+        (frames[point, 3], frames[point, 4], frames[point, 5]),
+        (frames[point, 6], frames[point, 7], frames[point, 8]),
     )
+
+
+def scale(a, x):
+    """a * x."""
+    return tuple(a * p for p in x)
+
+
+@overload(scale)
+def _scale(a, x):
+    if len(x) == 1:
+        return lambda a, x: (a * x[0],)
+    if len(x) == 2:
+        return lambda a, x: (a * x[0], a * x[1])
+    return lambda a, x: (a * x[0], a * x[1], a * x[2])
 
 
 @inline

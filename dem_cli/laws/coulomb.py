@@ -13,7 +13,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from dem_cli.kernels.jit import inline
-from dem_cli.kernels.vec import axpy, dot
+from dem_cli.kernels.vec import axpy, dot, scale
 from dem_cli.laws.law import Law
 from dem_cli.laws.stiffness import StiffJoint
 
@@ -46,15 +46,14 @@ class CoulombJoint(StiffJoint):
 def coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     """Normal force and shear force at a Coulomb contact point."""
     if gap >= 0.0:
-        return 0.0, axpy(-1.0, shear, shear), True
+        return 0.0, scale(0.0, shear), True
     normal = -kn * gap
     trial = axpy(-ks, slide, shear)
     limit = parameters[joint, 0] * normal
     square = dot(trial, trial)
     if square <= limit * limit:
         return normal, trial, False
-    scale = limit / square**0.5
-    return normal, axpy(scale - 1.0, trial, trial), True
+    return normal, scale(limit / math.sqrt(square), trial), True
 
 
 COULOMB = Law(

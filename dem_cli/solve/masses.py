@@ -8,19 +8,13 @@ from dem_cli.kernels.records import Bodies, Joints, Shape
 from dem_cli.model.model import Model
 
 
-def contact_rows(model: Model, joints: Joints) -> np.ndarray:
-    """|∂(relative displacement)/∂(dof)| of all points, (n_points, d directions, 2 blocks, n_dof).
-
-    2D rows along the normal and the tangent with the frames and arms of the last detection.
-    """
-    frames = np.repeat(joints.frames, np.diff(joints.starts), axis=0)  # (n, d, d)
-    arms = joints.arms  # (n, 2, d)
-    rows = np.empty((len(arms), 2, 2, 3))
-    for direction in (0, 1):
-        axis = frames[:, direction]
-        for side in (0, 1):
-            rows[:, direction, side, :2] = np.abs(axis)
-            rows[:, direction, side, 2] = np.abs(arms[:, side, 0] * axis[:, 1] - arms[:, side, 1] * axis[:, 0])
+def contact_rows(joints: Joints) -> np.ndarray:
+    """|∂(relative displacement)/∂(dof)| of all points, (n_points, d directions, 2 blocks, n_dof); 2D."""
+    normals = np.abs(joints.frames[:, :2])
+    rows = np.empty((len(normals), 2, 2, 3))
+    rows[:, 0, :, :2] = normals[:, None, :]
+    rows[:, 1, :, :2] = normals[:, None, ::-1]
+    rows[..., 2] = np.abs(joints.levers).reshape(-1, 2, 2).swapaxes(1, 2)
     return rows
 
 
@@ -32,7 +26,7 @@ def fictitious_masses(
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety).
     """
-    rows = contact_rows(model, joints)
+    rows = contact_rows(joints)
     blocks = np.repeat(joints.blocks, np.diff(joints.starts), axis=0)
     weights = np.ones(inverse_out.shape)
     weights[:, model.dimension :] = 1.0 / shape.radii[:, None]

@@ -9,18 +9,17 @@ import numpy as np
 from dem_cli.contact.assemble import (
     LIKE,
     LIKE_ROTATION,
-    Ends,
     JointProperties,
     build_joints,
     carry_memory,
-    empty_contacts,
-    measure_ends,
+    overlap_lengths,
+    share_frames,
 )
-from dem_cli.contact.detect import block_shape, find_joints, world_corners
-from dem_cli.kernels import fixed_geometry, planar_geometry
+from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.advance import drift_centroids, drift_corners, make_advance
+from dem_cli.kernels.advance import drift_centroids, drift_corners, keep_points, make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.planar_geometry import measure, place_points
 from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
@@ -35,11 +34,10 @@ ALPHA = 0.4  # local damping near failure
 @cache
 def compiled_advance(kinematics: str, law: Law):
     """The stepping loop for one kinematics and one law; compiled at its first call."""
+    forces = make_contact_forces(law.function, integrates_gap=kinematics == "fixed")
     if kinematics == "fixed":
-        forces = make_contact_forces(fixed_geometry.prepare, fixed_geometry.place, law.function, True)
-        return make_advance(forces, drift_centroids)
-    forces = make_contact_forces(planar_geometry.prepare, planar_geometry.place, law.function, False)
-    return make_advance(forces, drift_corners)
+        return make_advance(forces, keep_points, drift_centroids)
+    return make_advance(forces, place_points, drift_corners)
 
 
 class Simulation:
@@ -76,7 +74,9 @@ class Simulation:
         live = model.live_loads * live_scale
         dead[model.fixed] = 0.0
         live[model.fixed] = 0.0
-        self.loads = Loads(np.ascontiguousarray(dead), np.ascontiguousarray(live), np.zeros((n, d + r)))
+        force_scales = np.ones((n, d + r))
+        force_scales[:, d:] = 1.0 / self.shape.radii[:, None]
+        self.loads = Loads(np.ascontiguousarray(dead), np.ascontiguousarray(live), np.zeros((n, d + r)), force_scales)
         self.weight = mean_weight(dead[self.free], live[self.free], d)
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
@@ -93,30 +93,30 @@ class Simulation:
         model = self.model
         reach = self.smallest * (TOUCH if self.kinematics == "fixed" else SKIN)
         faces = find_joints(model, self.bodies.corners, reach)
-        joints, ends = build_joints(model, faces, self.bodies, self.properties)
         if self.kinematics == "fixed":
             # Faces that meet in a point only cannot carry force to first order.
-            keep = np.flatnonzero(ends.overlaps > TOUCH * joints.lengths.min(axis=1, initial=np.inf))
-            faces = faces._replace(parts=faces.parts[keep], edges=faces.edges[keep], separation=faces.separation[keep])
-            joints, ends = build_joints(model, faces, self.bodies, self.properties)
-        self.joints = joints
-        self.contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, self.law.n_memory)
-        touching = np.abs(ends.gaps) <= TOUCH * self.smallest
-        self.contacts.gaps[:] = np.where(touching, 0.0, ends.gaps)
+            keep = overlap_lengths(faces.edges, self.bodies.corners) > TOUCH * self.smallest
+            faces = Faces(*(field[keep] for field in faces))
+        self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, self.law.n_memory)
+        gaps = self.contacts.gaps
+        gaps[np.abs(gaps) <= TOUCH * self.smallest] = 0.0
+        if self.kinematics == "fixed":
+            # One frame a joint: that of its closer end.
+            closer = 2 * np.arange(len(gaps) // 2) + (gaps[1::2] < gaps[0::2])
+            share_frames(self.joints, closer, self.bodies.positions)
         self._after_detection()
 
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""
-        points = measure_ends(self.joints, self.bodies, self.contacts, self.model.dimension).points
+        old, memory = self.joints, self.contacts
         faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest)
-        joints, ends = build_joints(self.model, faces, self.bodies, self.properties)
-        little = self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest
-        before = self.joints.edges[self.contacts.stale[:-1] == 1] if little else None
-        self.joints, self.contacts = carry_memory(self.joints, self.contacts, points, joints, ends)
-        if before is not None and len(before):
+        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.law.n_memory)
+        carry_memory(old, memory, joints, contacts)
+        if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
             # Still the same faces though nothing moved: do not ask again at every step.
-            same = (self.joints.edges[:, None, :] == before[None, :, :]).all(axis=2).any(axis=1)
-            self.contacts.stale[:-1][same] = 1
+            asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
+            contacts.stale[:-1] = [tuple(row) in asked for row in joints.edges.tolist()]
+        self.joints, self.contacts = joints, contacts
         self._after_detection()
 
     def _after_detection(self) -> None:
@@ -233,14 +233,6 @@ class Simulation:
         """Largest displacement of a centroid [m]."""
         return float(np.sqrt((self.displacement()[self.free] ** 2).sum(axis=1)).max(initial=0.0))
 
-    def ends(self) -> Ends:
-        """Contact points as they are now."""
-        if self.kinematics == "large":
-            return measure_ends(self.joints, self.bodies, self.contacts, self.model.dimension)
-        a = self.joints.blocks[:, 0].repeat(2)
-        normals = self.joints.frames[:, 0].repeat(2, axis=0)
-        return Ends(self.joints.arms[:, 0] + self.model.centroids[a], normals, self.contacts.gaps, np.zeros(0))
-
     def energy(self) -> Energy:
         """The ledger since the start [J]; external counts applied loads without gravity."""
         d = self.model.dimension
@@ -258,7 +250,8 @@ class Simulation:
 
     def contact_record(self) -> ContactRecord:
         """All contact points now."""
-        ends = self.ends()
+        if self.kinematics == "large":
+            measure(self.joints, self.contacts, self.bodies)
         owner = np.repeat(np.arange(len(self.joints.blocks)), 2)
         friction = np.abs(self.contacts.shear).max(axis=1, initial=0.0)
         limit = self.joints.law[owner, 0] * self.contacts.normal
@@ -266,11 +259,11 @@ class Simulation:
         return ContactRecord(
             joint=owner,
             blocks=self.joints.blocks[owner],
-            points=ends.points.copy(),
-            normals=ends.normals.copy(),
+            points=self.joints.points.copy(),
+            normals=self.joints.frames[:, : self.model.dimension].copy(),
             normal_force=self.contacts.normal.copy(),
             shear_force=self.contacts.shear.copy(),
-            gap=ends.gaps.copy(),
+            gap=self.contacts.gaps.copy(),
             slip=self.contacts.slip.copy(),
             state=state.astype(np.int8),
         )

@@ -1,0 +1,58 @@
+"""The contract of an analysis kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import Field
+
+from dem_cli.case.base import CaseModel
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """A registered analysis.
+
+    run(case, model, observer) -> Outcome; imported when called, so that listing kinds loads no solver.
+    """
+
+    kind: str
+    parameters: type[CaseModel]
+    load: Callable[[], Callable]
+
+
+class AnalysisBase(CaseModel):
+    """What every analysis accepts."""
+
+    kinematics: Literal["auto", "fixed", "large"] = Field(
+        default="auto",
+        description="fixed: geometry of the start (exact for stiff joints); large: geometry that moves; auto chooses",
+    )
+    max_steps: int = Field(default=4_000_000, ge=1000, description="give up after so many solver steps")
+
+
+class GravityAnalysis(AnalysisBase):
+    """[analysis] with kind = "gravity": does the structure stand under its dead loads?"""
+
+    kind: Literal["gravity"] = "gravity"
+
+
+class PushoverAnalysis(AnalysisBase):
+    """[analysis] with kind = "pushover": the load multiplier at which the structure fails."""
+
+    kind: Literal["pushover"] = "pushover"
+    direction: tuple[float, float] = Field(default=(1.0, 0.0), description="direction of the horizontal load")
+    pattern: Literal["mass", "live", "tilt"] = Field(
+        default="mass", description="mass: λ × weight of each block; live: λ × live loads; tilt: table turned by atan λ"
+    )
+    resolution: float = Field(default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load")
+    follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
+    max_load: float = Field(default=100.0, gt=0.0, description="give up above this multiplier (self-locking)")
+
+
+class SettlementAnalysis(AnalysisBase):
+    """[analysis] with kind = "settlement": supports move as [[settlement]] says."""
+
+    kind: Literal["settlement"] = "settlement"

@@ -1,0 +1,31 @@
+"""All analysis kinds. A new one is one file and one line here."""
+
+from dem_cli.solve.analysis import Analysis, GravityAnalysis, PushoverAnalysis, SettlementAnalysis
+
+
+def _gravity():
+    from dem_cli.solve.gravity import run
+
+    return run
+
+
+def _pushover():
+    from dem_cli.solve.pushover import run
+
+    return run
+
+
+def _settlement():
+    from dem_cli.solve.settlement import run
+
+    return run
+
+
+ANALYSES: dict[str, Analysis] = {
+    analysis.kind: analysis
+    for analysis in (
+        Analysis("pushover", PushoverAnalysis, _pushover),
+        Analysis("gravity", GravityAnalysis, _gravity),
+        Analysis("settlement", SettlementAnalysis, _settlement),
+    )
+}
