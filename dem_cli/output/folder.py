@@ -22,7 +22,16 @@ from dem_cli.errors import DemError, OutputError, UsageError
 
 SUMMARY = "summary.json"
 OWN_NAMES = frozenset(
-    (SUMMARY, "results.h5", "contacts.vtkhdf", "case.toml", "capacity.png", "collapse.png", "energy.png", "pvd")
+    (
+        SUMMARY,
+        "results.h5",
+        "contacts.vtkhdf",
+        "case.toml",
+        "capacity.png",
+        "collapse.png",
+        "energy.png",
+        "pvd",
+    )
 )
 OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summary.json of ours has
 INTERRUPTED = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
@@ -52,13 +61,23 @@ def write_error(error: Exception, path: Path) -> DemError:
     return OutputError(f"cannot write results to {path}: {reason}")
 
 
-def is_ours(folder: Path) -> bool:
-    """Whether `folder` holds the results of a run, by its summary.json."""
+def _own_summary(folder: Path) -> dict[str, object] | None:
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return False
-    return isinstance(summary, dict) and summary.keys() >= OWN_KEYS
+        return None
+    return summary if isinstance(summary, dict) and summary.keys() >= OWN_KEYS else None
+
+
+def is_ours(folder: Path) -> bool:
+    """Whether `folder` holds the results of a run, by its summary.json."""
+    return _own_summary(folder) is not None
+
+
+def is_complete(folder: Path) -> bool:
+    """Whether `folder` holds results of a run that was not interrupted."""
+    summary = _own_summary(folder)
+    return summary is not None and summary["status"] != "interrupted"
 
 
 def foreign_names(folder: Path) -> list[str]:
@@ -69,7 +88,7 @@ def foreign_names(folder: Path) -> list[str]:
 
 
 class OutputFolder:
-    """`path` is where to write now; `commit()` puts it under the final name, leaving the block discards it."""
+    """`path` is where to write now; `commit()` gives it the final name, leaving the block discards it."""
 
     def __init__(self, final: Path | str, *, force: bool = False):
         self.name = str(final)
@@ -159,7 +178,7 @@ class OutputFolder:
         return target
 
     def _move_files(self, target: Path) -> None:
-        """In a folder that stays: the old summary goes first and the new one comes last, so none ever lies."""
+        """In a folder that stays: the old summary goes first, the new one comes last: none ever lies."""
         (target / SUMMARY).unlink(missing_ok=True)
         for name in sorted(OWN_NAMES - {SUMMARY}):
             if (self.path / name).exists():

@@ -38,7 +38,9 @@ class Frames(Sequence[Frame]):
 
     def __init__(self, columns: dict[str, np.ndarray], contacts: dict[str, np.ndarray]):
         self._columns, self._contacts = columns, contacts
-        self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
+        self._starts = np.concatenate(
+            ([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64))))
+        )
 
     def __len__(self) -> int:
         return len(self._starts) - 1
@@ -90,7 +92,9 @@ def _read_summary(folder: Path) -> dict[str, Any]:
 
 def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
     if dem.attrs["format"] != FORMAT:
-        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}")
+        raise UsageError(
+            f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}"
+        )
     history = dem["history"]
     n_rows = len(history["stage"]) if "stage" in history else 0
     columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}

@@ -18,7 +18,7 @@ class ContactRecord(NamedTuple):
     points: np.ndarray  # where it acts [m], (n, d)
     normals: np.ndarray  # unit, from a to b, (n, d)
     normal_force: np.ndarray  # compression positive [N], (n,)
-    shear_force: np.ndarray  # along the tangent(s), acting on b [N], (n, d - 1); 2D tangent = normal turned by +90°
+    shear_force: np.ndarray  # on b along the tangents [N], (n, d - 1); 2D: normal turned by +90°
     gap: np.ndarray  # positive open [m], (n,)
     slip: np.ndarray  # accumulated slip path [m], (n,)
     state: np.ndarray  # index into STATES, (n,) int8
@@ -38,7 +38,7 @@ class Frame(NamedTuple):
 
 
 class Energy(NamedTuple):
-    """The energy ledger [J], each since the start of the run; external counts applied loads without gravity."""
+    """The energy ledger [J], since the start of the run; external: applied loads without gravity."""
 
     kinetic: float
     elastic: float

@@ -20,13 +20,14 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.errors import OutputError
 from dem_cli.model.model import Model
+from dem_cli.output.columns import Columns
+from dem_cli.output.disk import HeldFile
 from dem_cli.output.folder import write_error
 from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
-from dem_cli.output.vtkhdf import GridSeries, PointSeries, grow
+from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
 FORMAT = 1
 RESULTS, CONTACTS, CASE = "results.h5", "contacts.vtkhdf", "case.toml"
@@ -49,13 +50,15 @@ class ResultWriter:
         provenance: Mapping[str, str],
         monitors: Sequence[str] = (),
         kind: str = "pushover",
+        name: Path | None = None,
     ):
         self.folder, self.model, self.monitors = Path(folder), model, tuple(monitors)
+        self.name = name or self.folder  # what messages call it
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._rows: list[HistoryRow] = []
-        self._files: list[h5py.File] = []
+        self._files: list[HeldFile] = []
         self._series: tuple[GridSeries, PointSeries] | None = None
         self._rest = rest_vertices(model)
         self._guarded(lambda: self._start(case_text, provenance, kind))
@@ -71,15 +74,15 @@ class ResultWriter:
         dem.create_dataset("case", data=case_text, dtype=_TEXT)
         dem.create_group("provenance").attrs.update(provenance)
         _store_model(dem.create_group("model"), self.model)
-        for name in ("frames", "contacts", "history"):
-            dem.create_group(name)
+        self._frames, self._contacts, self._history = (
+            Columns(dem.create_group(name)) for name in ("frames", "contacts", "history")
+        )
         dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
-        file.flush()
+        self._flush()
 
     def _open(self, name: str) -> h5py.File:
-        file = h5py.File(self.folder / name, "w", locking=False)
-        self._files.append(file)
-        return file
+        self._files.append(HeldFile(self.folder / name))
+        return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
         """Keep a snapshot; everything up to it is on disk when this returns."""
@@ -101,30 +104,23 @@ class ResultWriter:
         def finish() -> None:
             self._flush_rows()
             self.dem.attrs["status"] = str(summary["status"])
-            for file in self._files:
-                file.close()
-            self._files = []
+            while self._files:
+                self._files.pop().close()
             write_summary(self.folder, summary)
 
         self._guarded(finish)
 
     def abandon(self) -> None:
         """Close what is open without completing it, whatever the disk says."""
-        for file in self._files:
-            try:
-                file.close()
-            except (OSError, RuntimeError):
-                pass
-        self._files = []
+        while self._files:
+            self._files.pop().abandon()
 
     def _guarded(self, work: Callable[[], None]) -> None:
         try:
             work()
-        except (OSError, RuntimeError) as error:  # h5py raises RuntimeError for some failed flushes
+        except OSError as error:
             self.abandon()
-            if isinstance(error, OutputError):
-                raise
-            raise write_error(error, self.folder) from None
+            raise write_error(error, self.name) from None
 
     def _flush(self) -> None:
         self._flush_rows()
@@ -134,7 +130,7 @@ class ResultWriter:
     def _flush_rows(self) -> None:
         rows, self._rows = self._rows, []
         if rows:
-            _store_rows(self.dem["history"], rows)
+            _store_rows(self._history, rows)
 
     def _frame(self, frame: Frame) -> None:
         self._store_frame(frame)
@@ -144,10 +140,10 @@ class ResultWriter:
         vertices = placed_vertices(self.model, frame.positions, frame.orientations)
         velocities = vertex_velocities(self.model, vertices, frame.positions, frame.velocities)
         step_fields = {
-            "load_multiplier": np.array([frame.load]),
-            "control_displacement": np.array([frame.displacement]),
-            "stage": np.array([STAGES.index(frame.stage)], dtype=np.int64),
-            "step": np.array([frame.step], dtype=np.int64),
+            "load_multiplier": float(frame.load),
+            "control_displacement": float(frame.displacement),
+            "stage": STAGES.index(frame.stage),
+            "step": int(frame.step),
         }
         moved = in_space(vertices - self._rest)
         cell_fields = {}
@@ -167,19 +163,20 @@ class ResultWriter:
             "material": model.block_material[parts].astype(np.int32),
             "fixed": model.fixed[parts].astype(np.uint8),
         }
-        grid = GridSeries(self._files[0], model.part_starts, _VTK_POLYGON, cells)
+        grid = GridSeries(self._files[0].hdf, model.part_starts, _VTK_POLYGON, cells)
         return grid, PointSeries(self._open(CONTACTS))
 
     def _store_frame(self, frame: Frame) -> None:
-        group, contacts = self.dem["frames"], self.dem["contacts"]
+        frames, contacts = self._frames, self._contacts
         for name, values in frame.contacts._asdict().items():
-            grow(contacts, name, values)
+            contacts.append(name, values)
         for name in FRAME_ARRAYS:
-            grow(group, name, getattr(frame, name)[np.newaxis])
-        for name in FRAME_SCALARS:
-            grow(group, name, np.array([getattr(frame, name)]))
-        grow(group, "stage", np.array([STAGES.index(frame.stage)], dtype=np.int8))
-        grow(group, "n_contacts", np.array([len(frame.contacts.joint)], dtype=np.int64))  # last: it counts
+            frames.append(name, getattr(frame, name)[np.newaxis])
+        frames.append_one("step", frame.step)
+        for name in FRAME_SCALARS[1:]:
+            frames.append_one(name, getattr(frame, name), np.float64)
+        frames.append_one("stage", STAGES.index(frame.stage), np.int8)
+        frames.append_one("n_contacts", len(frame.contacts.joint))  # last: it counts
 
 
 def _store_model(group: h5py.Group, model: Model) -> None:
@@ -192,15 +189,16 @@ def _store_model(group: h5py.Group, model: Model) -> None:
             group.create_dataset(name, data=value)
 
 
-def _store_rows(group: h5py.Group, rows: Sequence[HistoryRow]) -> None:
+def _store_rows(history: Columns, rows: Sequence[HistoryRow]) -> None:
     for name in ROW_SCALARS:
         kind = np.int64 if name == "step" else np.float64
-        grow(group, name, np.array([getattr(row, name) for row in rows], dtype=kind))
-    energy = group.require_group("energy")
+        history.append(name, np.array([getattr(row, name) for row in rows], dtype=kind))
     for i, name in enumerate(Energy._fields):
-        grow(energy, name, np.array([row.energy[i] for row in rows]))
-    grow(group, "monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
-    grow(group, "stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8))  # last: it counts
+        history.append(f"energy/{name}", np.array([row.energy[i] for row in rows], dtype=np.float64))
+    history.append("monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
+    history.append(
+        "stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8)
+    )  # last: it counts
 
 
 def contact_forces(contacts: ContactRecord) -> np.ndarray:
@@ -223,7 +221,9 @@ def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
         "normal": in_space(contacts.normals),
         "force": in_space(contact_forces(contacts)),
         "normal_force": contacts.normal_force.astype(np.float32),
-        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
+        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(
+            np.float32
+        ),
         "gap": contacts.gap.astype(np.float32),
         "slip": contacts.slip.astype(np.float32),
         "state": contacts.state.astype(np.uint8),

@@ -73,3 +73,14 @@ def reference_verdict(failure_load: float | None, value: float, tolerance: float
     """Comparison with the `[reference]` of the case; no failure load never passes."""
     passed = failure_load is not None and abs(failure_load - value) <= tolerance
     return {"value": value, "tolerance": tolerance, "passed": passed}
+
+
+def exit_code(summary: Mapping[str, Any]) -> int:
+    """What `dem run` returns: 0 solved, 1 outside the reference, 3 gave up, 130 interrupted."""
+    status = str(summary["status"])
+    if status == "interrupted":
+        return 130
+    if status.startswith("not converged"):
+        return 3
+    reference = summary.get("reference")
+    return 1 if reference and not reference["passed"] else 0

@@ -54,17 +54,24 @@ def bed_contacts(model: Model, positions: np.ndarray, angles: np.ndarray, load: 
     rows = []
     for a in range(model.n_blocks):
         for b in range(model.n_blocks):
-            low, high = max(c[a, 0] - half[a, 0], c[b, 0] - half[b, 0]), min(c[a, 0] + half[a, 0], c[b, 0] + half[b, 0])
+            low, high = (
+                max(c[a, 0] - half[a, 0], c[b, 0] - half[b, 0]),
+                min(c[a, 0] + half[a, 0], c[b, 0] + half[b, 0]),
+            )
             if abs(c[b, 1] - half[b, 1] - c[a, 1] - half[a, 1]) < 1e-9 and high - low > 1e-9:
                 rows += [(a, b, x - c[a, 0], half[a, 1], x) for x in (low, high)]
     a, b = (np.array([row[i] for row in rows], dtype=np.int64) for i in (0, 1))
     arm = np.array([(row[2], row[3]) for row in rows])
     cos, sin = np.cos(angles[a]), np.sin(angles[a])
-    points = positions[a] + np.stack((cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]), axis=1)
+    points = positions[a] + np.stack(
+        (cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]), axis=1
+    )
     top = c[:, 1].max() + HEIGHT
     weight = DENSITY * 9.81 * DEPTH * LENGTH / 4 * (top - c[b, 1])
     lean = np.where(arm[:, 0] > 0, 1.0 + load, 1.0 - load)
-    gaps = np.linalg.norm(positions[b] - c[b] - positions[a] + c[a], axis=1) * np.where(arm[:, 0] < 0, 1.0, 0.0)
+    gaps = np.linalg.norm(positions[b] - c[b] - positions[a] + c[a], axis=1) * np.where(
+        arm[:, 0] < 0, 1.0, 0.0
+    )
     opened = gaps > 5e-5
     normal = np.where(opened, 0.0, weight * lean)
     slips = np.abs((positions[b] - c[b] - positions[a] + c[a])[:, 0])
@@ -88,7 +95,14 @@ def no_contacts(dimension: int = 2) -> ContactRecord:
     whole, real = np.zeros(0, dtype=np.int64), np.zeros(0)
     shapes = np.zeros((0, d))
     return ContactRecord(
-        whole, np.zeros((0, 2), dtype=np.int64), shapes, shapes, real, np.zeros((0, d - 1)), real, real,
+        whole,
+        np.zeros((0, 2), dtype=np.int64),
+        shapes,
+        shapes,
+        real,
+        np.zeros((0, d - 1)),
+        real,
+        real,
         np.zeros(0, dtype=np.int8),
     )
 
@@ -99,7 +113,13 @@ def wall_frames(model: Model, n_frames: int = 12, last: float = 0.02) -> list[Fr
     movers = ~model.fixed & (model.centroids[:, 1] + 0.6 * model.centroids[:, 0] > 0.065)
     for i in range(n_frames):
         stage = "gravity" if i == 0 else "loading" if i < n_frames // 2 else "collapse"
-        load = 0.0 if i == 0 else min(0.64, 0.64 * i / (n_frames // 2 - 1)) if stage == "loading" else 0.64 - 0.01 * i
+        load = (
+            0.0
+            if i == 0
+            else min(0.64, 0.64 * i / (n_frames // 2 - 1))
+            if stage == "loading"
+            else 0.64 - 0.01 * i
+        )
         d = 1e-6 * i if stage != "collapse" else last * (i - n_frames // 2 + 1) / (n_frames - n_frames // 2)
         grade = (model.centroids[:, 1] / model.centroids[:, 1].max()) * movers
         angles = -2.0 * d * grade * (model.centroids[:, 0] > 0.06) / 0.1
@@ -114,13 +134,15 @@ def wall_frames(model: Model, n_frames: int = 12, last: float = 0.02) -> list[Fr
 
 def history_rows(frames: list[Frame], per_frame: int = 10, n_monitors: int = 1) -> list[HistoryRow]:
     """Rows between the frames, linear in load and displacement."""
-    rows, old = [], frames[0]
+    rows, old = [], frames[0] if frames else None
     for frame in frames:
         for k in range(1, per_frame + 1):
             t = k / per_frame
             load = old.load + t * (frame.load - old.load)
             d = old.displacement + t * (frame.displacement - old.displacement)
-            energy = Energy(1e-6 * d, 1e-4 * load, 0.2 * d, 0.5 * load * d, 0.2 * load * d, 0.05 * load * d, 0.0)
+            energy = Energy(
+                1e-6 * d, 1e-4 * load, 0.2 * d, 0.5 * load * d, 0.2 * load * d, 0.05 * load * d, 0.0
+            )
             rows.append(HistoryRow(frame.stage, old.step + k, load, d, 1e-5, 1e-9, energy, (d,) * n_monitors))
         old = frame
     return rows

@@ -120,7 +120,12 @@ def test_a_damaged_file_is_reported(tmp_path):
 
 
 def test_summary_is_strict_json_in_a_fixed_order():
-    numbers = {"extra": np.array([np.nan, 1.0]), "warnings": (), "title": "x", "failure_load": np.float64(0.1) + 0.2}
+    numbers = {
+        "extra": np.array([np.nan, 1.0]),
+        "warnings": (),
+        "title": "x",
+        "failure_load": np.float64(0.1) + 0.2,
+    }
     text = to_json({**numbers, "time_step": float("inf"), "blocks": np.int64(3)})
     found = json.loads(text, parse_constant=pytest.fail)
     assert list(found) == ["title", "failure_load", "blocks", "time_step", "warnings", "extra"]

@@ -1,0 +1,173 @@
+"""Every line that a user of `dem run` reads: progress on stderr, the answer on stdout."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+_FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
+_BAR_EVERY = 0.1  # s
+_LINE_EVERY = 10.0  # s
+
+
+def metres(value: float) -> str:
+    """A length with a readable unit: 1.2e-05 -> "12 µm"."""
+    for scale, unit in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
+        if abs(value) >= scale or unit == "µm":
+            return f"{value / scale:.3g} {unit}"
+    raise AssertionError("unreachable")
+
+
+def seconds(value: float) -> str:
+    """A duration as people say it."""
+    if value < 0.995:
+        return f"{1000 * value:.0f} ms"
+    if value < 120:
+        return f"{value:.1f} s" if value < 10 else f"{value:.0f} s"
+    return f"{value / 60:.0f} min" if value < 7200 else f"{value / 3600:.1f} h"
+
+
+class Progress:
+    """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
+
+    def __init__(self, quiet: bool = False, stream: TextIO | None = None):
+        self.quiet = quiet
+        self.stream = stream or sys.stderr
+        self.on_terminal = self.stream.isatty()
+        self.start = time.monotonic()
+        self._next = self.start + (_FIRST_BAR if self.on_terminal else _LINE_EVERY)
+        self._bar: Any = None
+
+    def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Say where the run stands; cheap enough to be called often."""
+        now = time.monotonic()
+        if self.quiet or now < self._next:
+            return
+        self._next = now + (_BAR_EVERY if self.on_terminal else _LINE_EVERY)
+        where = f"load {load:.4f}, displacement {metres(displacement)}"
+        if self.on_terminal:
+            self._draw(stage, where, fraction)
+        else:
+            print(f"{stage}: {where}{self._left(now, fraction)}", file=self.stream, flush=True)
+
+    def _left(self, now: float, fraction: float | None) -> str:
+        elapsed = now - self.start
+        if not fraction:
+            return f", {seconds(elapsed)} so far"
+        return f", {100 * fraction:.0f} %, about {seconds(elapsed * (1 - fraction) / fraction)} left"
+
+    def _draw(self, stage: str, where: str, fraction: float | None) -> None:
+        if self._bar is None:
+            self._bar = _new_bar(self.stream)
+            self._task = self._bar.add_task(stage, total=None, where=where)
+            self._bar.start()
+        total = None if fraction is None else 1.0
+        self._bar.update(self._task, description=stage, total=total, completed=fraction or 0.0, where=where)
+
+    def stop(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.stop()
+
+
+def _new_bar(stream: TextIO) -> Any:
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.description:<8}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.fields[where]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    return Bar(*columns, console=Console(file=stream), transient=True)
+
+
+def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
+    """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
+    lines = [str(summary["title"])]
+    rows = [*_load_rows(summary), *_sureness_rows(summary), *_cost_rows(summary)]
+    rows += [("warning", text) for text in summary.get("warnings", ())]
+    if verbose:
+        rows += [("skipped", text) for text in summary.get("skipped", ())]
+    rows.append(("written to", f"{folder} ({', '.join(files)})"))
+    return "\n".join(lines + [f"  {label:<14} {text}" for label, text in rows])
+
+
+def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    if summary["status"] != "ok":
+        rows.append(("status", str(summary["status"])))
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    if load is not None:
+        between = (
+            f"  (between {_load(bracket[0])} and {_load(bracket[1])})"
+            if bracket and None not in bracket
+            else ""
+        )
+        rows.append(("failure load", f"{_load(load)}{between}"))
+    if summary.get("failure_mode"):
+        rows.append(("failure mode", str(summary["failure_mode"])))
+    reached = summary.get("reached")
+    if reached:
+        where = f"load {_load(reached['load'])}, displacement {metres(reached['displacement'])}"
+        rows.append(("reached", f"{reached['stage']}, {where}"))
+    return rows
+
+
+def _load(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4f}" if abs(value) < 100 else f"{value:.6g}"
+
+
+def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    parts = []
+    if load and bracket and None not in bracket:
+        parts.append(f"±{50 * (bracket[1] - bracket[0]) / abs(load):.2g} %")
+    if summary.get("energy_closure") is not None:
+        parts.append(f"energy closes to {summary['energy_closure']:.1g}")
+    if parts:
+        rows.append(("how sure", ", ".join(parts)))
+    limits = {k: v for k, v in (summary.get("limit_analysis") or {}).items() if isinstance(v, (int, float))}
+    if limits:
+        text = ", ".join(f"{_load(value)} {name.replace('_', '-')}" for name, value in limits.items())
+        rows.append(("limit analysis", text))
+    reference = summary.get("reference")
+    if reference:
+        verdict = "passed" if reference["passed"] else "FAILED"
+        rows.append(("reference", f"{reference['value']:g} ± {reference['tolerance']:g}: {verdict}"))
+    return rows
+
+
+def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    counts = [
+        f"{summary[key]:,} {key}" for key in ("blocks", "joints", "steps") if summary.get(key) is not None
+    ]
+    time_text = seconds(summary["solve_seconds"]) if summary.get("solve_seconds") is not None else ""
+    return [("solved in", " · ".join([time_text, *counts] if time_text else counts))] if counts else []
+
+
+def show(lines: str) -> None:
+    """Print the answer, on stdout."""
+    print(lines, flush=True)
+
+
+def note(line: str, quiet: bool = False) -> None:
+    """Print a remark, on stderr."""
+    if not quiet:
+        print(line, file=sys.stderr, flush=True)

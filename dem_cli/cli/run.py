@@ -1,0 +1,239 @@
+"""`dem run`: validate, build, solve, write; print the failure load and how sure it is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import click
+
+from dem_cli import __version__
+from dem_cli.cli import console
+from dem_cli.cli.interrupt import Interrupts
+from dem_cli.errors import DemError, SolverError
+
+if TYPE_CHECKING:
+    from dem_cli.case.reader import LoadedCase
+    from dem_cli.case.schema import Case, Monitor
+    from dem_cli.model.model import Model
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.record import Frame, HistoryRow, Observer
+    from dem_cli.output.store import ResultWriter
+
+
+class Outcome(Protocol):
+    """What a solver returns."""
+
+    summary: dict[str, Any]
+
+
+Solve = Callable[["Case", "Model", "Observer"], Outcome]
+
+
+class Recorder:
+    """The observer of a run: keeps what comes, says where it stands, lets nothing interrupt a write."""
+
+    def __init__(self, writer: ResultWriter, progress: console.Progress, interrupts: Interrupts):
+        self.writer, self.bar, self.interrupts = writer, progress, interrupts
+
+    def frame(self, frame: Frame) -> None:
+        with self.interrupts.shielded():
+            self.writer.frame(frame)
+
+    def row(self, row: HistoryRow) -> None:
+        with self.interrupts.shielded():
+            self.writer.row(row)
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        self.bar.update(stage, load, displacement, fraction)
+
+
+@click.command("run")
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME.")
+@click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Change a value of the case.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
+@click.option("-v", "--verbose", is_flag=True, help="Say what was skipped because the case does not need it.")
+@click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
+@click.option("--plot/--no-plot", default=False, help="Draw capacity.png and collapse.png as well.")
+def command(
+    case: Path,
+    output: Path | None,
+    overrides: Sequence[str],
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    force: bool,
+    plot: bool,
+) -> int:
+    """Solve CASE and write its results to DIR."""
+    from dem_cli import api
+    from dem_cli.output.summary import exit_code, to_json
+
+    started = time.perf_counter()
+    loaded = api.load_case(case, overrides)
+    model = api.build_model(loaded)
+    summary, folder = execute(
+        loaded, model, output or Path("results") / case.stem, started, force=force, quiet=quiet, plot=plot
+    )
+    if as_json:
+        console.show(to_json(summary).rstrip())
+    else:
+        console.show(console.answer(summary, shown(folder), file_names(folder), verbose))
+    return exit_code(summary)
+
+
+def execute(
+    loaded: LoadedCase,
+    model: Model,
+    output: Path,
+    started: float,
+    *,
+    force: bool = False,
+    quiet: bool = False,
+    plot: bool = False,
+    solve: Solve | None = None,
+) -> tuple[dict[str, Any], Path]:
+    """Solve and write; returns the summary and where the results are. Nothing is left where it fails."""
+    from dem_cli.case.writer import case_text
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.provenance import provenance
+    from dem_cli.output.store import ResultWriter
+
+    case = loaded.case
+    with Interrupts() as interrupts, OutputFolder(output, force=force) as folder:
+        with interrupts.shielded():
+            names = monitor_names(case.monitor)
+            text, kind = case_text(case), case.analysis.kind
+            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, name=output)
+        with abandoning(writer), console.Progress(quiet) as bar:
+            recorder = Recorder(writer, bar, interrupts)
+            found = solved(solve or load_solver(case), case, model, recorder)
+            interrupts.ignore()
+            bar.stop()
+            summary = completed(found, loaded, model, started)
+            writer.close(summary)
+            if plot:
+                draw(folder.path, quiet)
+            return summary, put_in_place(folder, summary, quiet)
+
+
+def load_solver(case: Case) -> Solve:
+    """The solver, imported only when a case is ready to be solved."""
+    from dem_cli.solve.run import run
+
+    return run
+
+
+def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:
+    """The solver's summary; where it was interrupted or gave up, how far it came."""
+    writer = recorder.writer
+    try:
+        return solve(case, model, recorder).summary
+    except KeyboardInterrupt:
+        if writer.last_row is None and writer.last_frame is None:
+            raise
+        return stopped("interrupted", writer, ["interrupted: the results end at the state in 'reached'"])
+    except SolverError as error:
+        return stopped("not converged", writer, [str(error)])
+
+
+def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str, Any]:
+    """Summary of a run that did not reach its end."""
+    known = [x for x in (writer.last_row, writer.last_frame) if x is not None]
+    last = max(known, key=lambda x: x.step, default=None)
+    reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
+    points = writer.last_frame.contacts.joint if writer.last_frame else None
+    return {
+        "status": status,
+        "failure_load": None,
+        "failure_load_bracket": None,
+        "failure_mode": None,
+        "displacement_at_failure": None,
+        "reached": reached,
+        "joints": None if points is None else len(set(points.tolist())),
+        "contacts": None if points is None else len(points),
+        "steps": last.step if last else 0,
+        "time_step": None,
+        "solve_seconds": None,
+        "energy_closure": None,
+        "warnings": warnings,
+    }
+
+
+def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: float) -> dict[str, Any]:
+    """The solver's summary with everything that is not the solver's."""
+    from dem_cli.output.summary import ordered, reference_verdict
+
+    case = loaded.case
+    summary = dict(found)
+    summary |= {"title": case.title or loaded.path.stem, "kind": case.analysis.kind, "version": __version__}
+    summary["blocks"] = model.n_blocks
+    summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
+    if case.reference is not None:
+        reference = case.reference
+        load = found.get("failure_load")
+        summary["reference"] = reference_verdict(load, reference.failure_load, reference.tolerance)
+    summary["wall_seconds"] = time.perf_counter() - started
+    return ordered(summary)
+
+
+@contextmanager
+def abandoning(writer: ResultWriter):  # type: ignore[no-untyped-def]
+    """Close the files of a run that ends without results."""
+    try:
+        yield
+    finally:
+        writer.abandon()
+
+
+def draw(folder: Path, quiet: bool) -> None:
+    """Pictures are welcome, not needed: what goes wrong with them is only said."""
+    try:
+        from dem_cli.post.plots import draw_all
+
+        draw_all(folder, folder)
+    except (DemError, OSError) as error:
+        console.note(f"no pictures: {error}", quiet)
+
+
+def put_in_place(folder: OutputFolder, summary: dict[str, Any], quiet: bool) -> Path:
+    """Commit; an interrupted run goes beside earlier complete results, not over them."""
+    from dem_cli.output.folder import INTERRUPTED, is_complete
+
+    if summary["status"] != "interrupted" or not is_complete(folder.final):
+        return folder.commit()
+    place = folder.commit(folder.final.name + INTERRUPTED)
+    console.note(f"the earlier, complete results stay in {shown(folder.final)}", quiet)
+    return place
+
+
+def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
+    """A different name for each, such as "top-right displacement x"."""
+    names: list[str] = []
+    for monitor in monitors:
+        place = monitor.block if monitor.block is not None else "({:g}, {:g})".format(*monitor.point or ())
+        name = " ".join(filter(None, (place, monitor.quantity, monitor.component)))
+        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in names)
+        names.append(name if count == 1 else f"{name} #{count}")
+    return names
+
+
+def file_names(folder: Path) -> list[str]:
+    """Our files in `folder`, the summary first."""
+    from dem_cli.output.folder import OWN_NAMES, SUMMARY
+
+    here = sorted(path.name for path in folder.iterdir() if path.name in OWN_NAMES)
+    return sorted(here, key=lambda name: name != SUMMARY)
+
+
+def shown(folder: Path) -> Path:
+    """A path as the user would type it."""
+    try:
+        return folder.relative_to(Path.cwd())
+    except ValueError:
+        return folder
