@@ -43,10 +43,14 @@ class StructureBase(CaseModel):
     After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks.
     """
 
-    id: str = Field("", description="prefix of the block names; default: the kind, made unique")
-    material: str = Field("", description="a name in [materials]; may be left out when there is only one")
-    origin: Pair = Field((0.0, 0.0), description="where the structure's own origin is placed [m]")
-    rotation_deg: float = Field(0.0, description="turned about its origin, counter-clockwise [degrees]")
+    id: str = Field(default="", description="prefix of the block names; default: the kind, made unique")
+    material: str = Field(
+        default="", description="a name in [materials]; may be left out when there is only one"
+    )
+    origin: Pair = Field(default=(0.0, 0.0), description="where the structure's own origin is placed [m]")
+    rotation_deg: float = Field(
+        default=0.0, description="turned about its origin, counter-clockwise [degrees]"
+    )
 
     @property
     def rotation(self) -> float:

@@ -109,7 +109,9 @@ def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Spot
     """Walk the declared types along `loc`, leaving out the items that only name a member of a union."""
     path: KeyPath = ()
     kinds: tuple[Kind, ...] = (Kind(model),)
-    owner, union, choices = None, None, ()
+    owner: type[BaseModel] | None = None
+    union: KeyPath | None = None
+    choices: tuple[Kind, ...] = ()
     for i, item in enumerate(loc):
         if len(kinds) == 1 and len(kinds[0].choices) > 1:
             members = kinds[0].choices

@@ -23,8 +23,10 @@ class Material(CaseModel):
     """[materials.NAME]"""
 
     density: Positive = Field(description="mass per volume [kg/m3]")
-    young: Positive | None = Field(None, description="Young's modulus [Pa]; not used by rigid blocks")
-    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(None, description="Poisson's ratio")
+    young: Positive | None = Field(default=None, description="Young's modulus [Pa]; not used by rigid blocks")
+    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(
+        default=None, description="Poisson's ratio"
+    )
 
 
 class Interface(CaseModel):
@@ -38,13 +40,16 @@ class BlockTable(CaseModel):
     """[[block]]: one block, drawn by hand."""
 
     id: Name = Field(description="name of the block")
-    vertices: Polygon | None = Field(None, description="corners of a convex block, in any order [m]")
+    vertices: Polygon | None = Field(default=None, description="corners of a convex block, in any order [m]")
     parts: Annotated[tuple[Polygon, ...], Field(min_length=1)] | None = Field(
-        None, description="instead of vertices: convex pieces of a concave block, which move as one [m]"
+        default=None,
+        description="instead of vertices: convex pieces of a concave block, which move as one [m]",
     )
-    material: str = Field("", description="a name in [materials]; may be left out when there is only one")
-    thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    fixed: bool = Field(False, description="cannot move (base, support)")
+    material: str = Field(
+        default="", description="a name in [materials]; may be left out when there is only one"
+    )
+    thickness: Positive = Field(default=1.0, description="depth out of plane [m]")
+    fixed: bool = Field(default=False, description="cannot move (base, support)")
 
     @model_validator(mode="after")
     def _one_shape(self) -> BlockTable:
@@ -59,16 +64,22 @@ class Load(CaseModel):
 
     block: str = Field(description="id of the block that it acts on")
     force: Pair = Field(description="force [N]")
-    at: Pair | None = Field(None, description="point of application [m]; default: centroid of the block")
-    kind: Literal["dead", "live"] = Field("dead", description="dead: constant; live: times the multiplier")
+    at: Pair | None = Field(
+        default=None, description="point of application [m]; default: centroid of the block"
+    )
+    kind: Literal["dead", "live"] = Field(
+        default="dead", description="dead: constant; live: times the multiplier"
+    )
 
 
 class Settlement(CaseModel):
     """[[settlement]]: a support that is moved."""
 
     block: str = Field(description="id of a fixed block")
-    displacement: Pair = Field((0.0, 0.0), description="how far its centroid moves [m]")
-    rotation_deg: float = Field(0.0, description="turn about its centroid, counter-clockwise [degrees]")
+    displacement: Pair = Field(default=(0.0, 0.0), description="how far its centroid moves [m]")
+    rotation_deg: float = Field(
+        default=0.0, description="turn about its centroid, counter-clockwise [degrees]"
+    )
 
     @property
     def rotation(self) -> float:
@@ -79,12 +90,14 @@ class Settlement(CaseModel):
 class Monitor(CaseModel):
     """[[monitor]]: a number followed through the run."""
 
-    block: str | None = Field(None, description="id of a block: its centroid is followed")
-    point: Pair | None = Field(None, description="instead of block: a point of the undeformed structure [m]")
-    quantity: Literal["displacement", "rotation", "velocity", "acceleration"] = Field(
-        "displacement", description="[m], [rad], [m/s] or [m/s2]"
+    block: str | None = Field(default=None, description="id of a block: its centroid is followed")
+    point: Pair | None = Field(
+        default=None, description="instead of block: a point of the undeformed structure [m]"
     )
-    component: Literal["x", "y"] | None = Field(None, description="default: the length of the vector")
+    quantity: Literal["displacement", "rotation", "velocity", "acceleration"] = Field(
+        default="displacement", description="[m], [rad], [m/s] or [m/s2]"
+    )
+    component: Literal["x", "y"] | None = Field(default=None, description="default: the length of the vector")
 
     @model_validator(mode="after")
     def _one_place(self) -> Monitor:
@@ -99,7 +112,7 @@ class Monitor(CaseModel):
 class Output(CaseModel):
     """[output]"""
 
-    frames: int = Field(20, ge=0, description="snapshots kept; 0 for none")
+    frames: int = Field(default=20, ge=0, description="snapshots kept; 0 for none")
 
 
 class Reference(CaseModel):
@@ -107,7 +120,7 @@ class Reference(CaseModel):
 
     failure_load: NonNegative = Field(description="expected load multiplier at failure")
     tolerance: Positive = Field(description="largest difference that passes, on the multiplier itself")
-    source: str = Field("", description="where the number comes from")
+    source: str = Field(default="", description="where the number comes from")
 
 
 class WrittenBy(CaseModel):
@@ -119,23 +132,25 @@ class WrittenBy(CaseModel):
 class Case(CaseModel):
     """A whole case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
 
-    title: str = Field("", description="one line; default: the name of the file")
-    dimension: Literal[2] = Field(2, description="only 2 so far")
-    gravity: NonNegative = Field(9.81, description="acceleration towards −y [m/s2]")
-    seed: int = Field(1, ge=0, description="makes whatever is random reproducible")
-    dem: WrittenBy | None = Field(None, description="written by the program")
+    title: str = Field(default="", description="one line; default: the name of the file")
+    dimension: Literal[2] = Field(default=2, description="only 2 so far")
+    gravity: NonNegative = Field(default=9.81, description="acceleration towards −y [m/s2]")
+    seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
+    dem: WrittenBy | None = Field(default=None, description="written by the program")
     materials: dict[str, Material] = Field(min_length=1, description="materials by name")
     joints: dict[str, Any] = Field(min_length=1, description="joints by name; the first is the default one")
-    interface: tuple[Interface, ...] = Field((), description="other joints between two materials")
-    structure: tuple[Any, ...] = Field((), description="generated blocks")
-    block: tuple[BlockTable, ...] = Field((), description="blocks drawn by hand")
-    load: tuple[Load, ...] = Field((), description="forces on blocks")
-    settlement: tuple[Settlement, ...] = Field((), description="supports that are moved")
+    interface: tuple[Interface, ...] = Field(default=(), description="other joints between two materials")
+    structure: tuple[Any, ...] = Field(default=(), description="generated blocks")
+    block: tuple[BlockTable, ...] = Field(default=(), description="blocks drawn by hand")
+    load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
+    settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     analysis: Any = Field(description="what is computed")
-    output: Output = Field(Output(), description="what is kept")
-    monitor: tuple[Monitor, ...] = Field((), description="numbers followed through the run")
-    reference: Reference | None = Field(None, description="what the answer is compared with")
-    sweep: dict[str, Any] | None = Field(None, description="values to be combined; `dem run` ignores it")
+    output: Output = Field(default=Output(), description="what is kept")
+    monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
+    reference: Reference | None = Field(default=None, description="what the answer is compared with")
+    sweep: dict[str, Any] | None = Field(
+        default=None, description="values to be combined; `dem run` ignores it"
+    )
 
     @property
     def default_joint(self) -> str:
@@ -160,7 +175,7 @@ def case_model(
     analysis = one_of(analyses, "kind", default="pushover")
     fields = Case.model_fields
     narrowed: dict[str, Any] = {
-        "structure": (tuple[structure, ...], Field((), description=fields["structure"].description)),  # type: ignore[valid-type]
+        "structure": (tuple[structure, ...], Field(default=(), description=fields["structure"].description)),  # type: ignore[valid-type]
         "joints": (dict[str, joint], Field(min_length=1, description=fields["joints"].description)),  # type: ignore[valid-type]
         "analysis": (
             analysis,
@@ -177,7 +192,7 @@ def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None =
         if field is None or field.annotation != Literal[kind]:  # type: ignore[valid-type]
             raise TypeError(f"{parameters.__name__} must declare {key}: Literal[{kind!r}]")
     classes = list(kinds.values())
-    table = reduce(or_, classes)
+    table: Any = reduce(or_, classes)
     if len(classes) > 1:
         table = Annotated[table, Field(discriminator=key)]
     return Annotated[table, BeforeValidator(with_default(key, default))] if default in kinds else table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
@@ -26,9 +27,7 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
     warn(loaded)
     found = rows(loaded.case, model)
     if find_spec("dem_cli.solve.estimate"):
-        from dem_cli.solve import estimate
-
-        found += estimate.describe(loaded.case, model)
+        found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))
