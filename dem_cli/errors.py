@@ -9,6 +9,7 @@ DemError
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -71,7 +72,9 @@ def dotted(path: KeyPath) -> str:
 
     A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
     """
-    return ".".join(str(key) if BARE.fullmatch(str(key)) else f'"{key}"' for key in path)
+    return ".".join(
+        str(key) if BARE.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path
+    )
 
 
 def plain(problem: CaseProblem) -> str:

@@ -127,7 +127,7 @@ def either(names: Sequence[Any]) -> str:
 def show(value: Any) -> str:
     """A value as it stands in the file, not longer than a glance."""
     if isinstance(value, str):
-        text = f"'{value}'"
+        text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
     elif isinstance(value, bool):
         text = "true" if value else "false"
     elif isinstance(value, float):
