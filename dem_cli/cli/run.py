@@ -13,6 +13,7 @@ import click
 from dem_cli import __version__
 from dem_cli.cli import console
 from dem_cli.cli.interrupt import Interrupts
+from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.errors import DemError, SolverError
 
 if TYPE_CHECKING:
@@ -52,18 +53,18 @@ class Recorder:
 
 
 @click.command("run")
-@click.argument("case", type=click.Path(path_type=Path))
+@case_argument
+@overrides_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME.")
-@click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Change a value of the case.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
 @click.option("-v", "--verbose", is_flag=True, help="Say what was skipped because the case does not need it.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
 @click.option("--plot/--no-plot", default=False, help="Draw capacity.png and collapse.png as well.")
 def command(
-    case: Path,
-    output: Path | None,
+    case: str,
     overrides: Sequence[str],
+    output: Path | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -78,7 +79,13 @@ def command(
     loaded = api.load_case(case, overrides)
     model = api.build_model(loaded)
     summary, folder = execute(
-        loaded, model, output or Path("results") / case.stem, started, force=force, quiet=quiet, plot=plot
+        loaded,
+        model,
+        output or Path("results") / loaded.path.stem,
+        started,
+        force=force,
+        quiet=quiet,
+        plot=plot,
     )
     if as_json:
         console.show(to_json(summary).rstrip())

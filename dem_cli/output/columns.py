@@ -1,4 +1,4 @@
-"""Datasets of an HDF5 group that grow row by row; handles are kept, since opening one costs more than a row."""
+"""Datasets of an HDF5 group that grow row by row; handles are kept: opening one costs more than a row."""
 
 from __future__ import annotations
 

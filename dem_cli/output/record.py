@@ -7,7 +7,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
-STAGES = ("gravity", "loading", "collapse")  # meaning of Frame.stage and HistoryRow.stage, in their order
+STAGES = (
+    "gravity",
+    "loading",
+    "collapse",
+    "settlement",
+)  # meaning of Frame.stage and HistoryRow.stage, in their order
 
 
 class ContactRecord(NamedTuple):

@@ -157,13 +157,8 @@ class ResultWriter:
         self._flush()
 
     def _start_series(self) -> tuple[GridSeries, PointSeries]:
-        model, parts = self.model, self.model.part_blocks
-        cells = {
-            "block_id": parts.astype(np.int32),
-            "material": model.block_material[parts].astype(np.int32),
-            "fixed": model.fixed[parts].astype(np.uint8),
-        }
-        grid = GridSeries(self._files[0].hdf, model.part_starts, _VTK_POLYGON, cells)
+        cells = block_fields(self.model)
+        grid = GridSeries(self._files[0].hdf, self.model.part_starts, _VTK_POLYGON, cells)
         return grid, PointSeries(self._open(CONTACTS))
 
     def _store_frame(self, frame: Frame) -> None:
@@ -209,6 +204,16 @@ def contact_forces(contacts: ContactRecord) -> np.ndarray:
         tangents = np.stack((-normals[:, 1], normals[:, 0]), axis=1)
         forces = forces + contacts.shear_force * tangents
     return forces
+
+
+def block_fields(model: Model) -> dict[str, np.ndarray]:
+    """What ParaView shows on the blocks, the same at all times; a value per convex part."""
+    parts = model.part_blocks
+    return {
+        "block_id": parts.astype(np.int32),
+        "material": model.block_material[parts].astype(np.int32),
+        "fixed": model.fixed[parts].astype(np.uint8),
+    }
 
 
 def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:

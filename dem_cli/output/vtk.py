@@ -1,0 +1,166 @@
+"""Files for other programs: geometry of a model, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
+
+from __future__ import annotations
+
+import base64
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.model.model import Model
+from dem_cli.output.folder import write_error
+from dem_cli.output.reader import Results
+from dem_cli.output.record import Frame
+from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
+from dem_cli.output.store import block_fields, contact_fields
+
+Fields = Mapping[str, np.ndarray]
+_POLYGON = 7
+_TYPES = {
+    np.dtype(np.float32): "Float32",
+    np.dtype(np.float64): "Float64",
+    np.dtype(np.int32): "Int32",
+    np.dtype(np.int64): "Int64",
+    np.dtype(np.uint8): "UInt8",
+}
+
+
+def write_geometry(path: Path, model: Model) -> None:
+    """The undeformed blocks: .vtu, or any other format by its suffix that meshio writes."""
+    path = Path(path)
+    vertices = in_space(rest_vertices(model))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.suffix == ".vtu":
+            _write_whole(path, _grid(model, vertices, {}, block_fields(model), {}))
+        else:
+            _write_foreign(path, model, vertices)
+    except OSError as error:
+        raise write_error(error, path) from None
+
+
+def export_pvd(results: Results, folder: Path) -> list[Path]:
+    """Every frame as blocks_0000.vtu and contacts_0000.vtp, with blocks.pvd and contacts.pvd over them."""
+    if not len(results.frames):
+        raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to export")
+    model, digits = results.model, max(4, len(str(len(results.frames))))
+    series: dict[str, list[str]] = {"blocks": [], "contacts": []}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for i, frame in enumerate(results.frames):
+            files = {
+                f"blocks_{i:0{digits}}.vtu": _blocks(model, frame),
+                f"contacts_{i:0{digits}}.vtp": _points(frame),
+            }
+            for name, text in files.items():
+                _write_whole(folder / name, text)
+                series[name.split("_")[0]].append(name)
+        for kind, names in series.items():
+            _write_whole(folder / f"{kind}.pvd", _collection(names))
+    except OSError as error:
+        raise write_error(error, folder) from None
+    return [folder / f"{kind}.pvd" for kind in series]
+
+
+def _write_whole(path: Path, text: str) -> None:
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(text, encoding="utf-8", newline="\n")
+    os.replace(part, path)
+
+
+def _write_foreign(path: Path, model: Model, vertices: np.ndarray) -> None:
+    import meshio
+
+    cells = [
+        ("polygon", np.arange(a, b)[np.newaxis]) for a, b in zip(model.part_starts, model.part_starts[1:])
+    ]
+    try:
+        meshio.Mesh(vertices, cells).write(path)
+    except (meshio.ReadError, meshio.WriteError, KeyError, SystemExit) as error:
+        reason = str(error).splitlines()[0] if str(error) else "not a format for polygons"
+        raise UsageError(f"{path}: cannot be written ({reason}); .vtu always can") from None
+
+
+def _blocks(model: Model, frame: Frame) -> str:
+    vertices = placed_vertices(model, frame.positions, frame.orientations)
+    velocities = vertex_velocities(model, vertices, frame.positions, frame.velocities)
+    moved = in_space(vertices - rest_vertices(model))
+    fields = {"displacement": moved, "velocity": in_space(velocities)}
+    return _grid(model, in_space(vertices), fields, block_fields(model), _step_fields(frame))
+
+
+def _step_fields(frame: Frame) -> Fields:
+    return {
+        "load_multiplier": np.array([frame.load]),
+        "control_displacement": np.array([frame.displacement]),
+        "step": np.array([frame.step], dtype=np.int64),
+    }
+
+
+def _grid(model: Model, vertices: np.ndarray, points: Fields, cells: Fields, steps: Fields) -> str:
+    topology = {
+        "connectivity": np.arange(len(vertices), dtype=np.int64),
+        "offsets": model.part_starts[1:].astype(np.int64),
+        "types": np.full(model.n_parts, _POLYGON, dtype=np.uint8),
+    }
+    piece = f'NumberOfPoints="{len(vertices)}" NumberOfCells="{model.n_parts}"'
+    sections = (
+        ("PointData", points),
+        ("CellData", cells),
+        ("Points", {"points": vertices}),
+        ("Cells", topology),
+    )
+    return _file("UnstructuredGrid", piece, sections, steps)
+
+
+def _points(frame: Frame) -> str:
+    contacts = frame.contacts
+    n = len(contacts.joint)
+    topology = {"connectivity": np.arange(n, dtype=np.int64), "offsets": np.arange(1, n + 1, dtype=np.int64)}
+    piece = f'NumberOfPoints="{n}" NumberOfVerts="{n}"'
+    sections = (
+        ("PointData", contact_fields(contacts)),
+        ("Points", {"points": in_space(contacts.points)}),
+        ("Verts", topology),
+    )
+    return _file("PolyData", piece, sections, _step_fields(frame))
+
+
+def _file(kind: str, piece: str, sections: tuple[tuple[str, Fields], ...], steps: Fields) -> str:
+    inner = "".join(_section(name, fields) for name, fields in sections)
+    field_data = _section("FieldData", steps, 'NumberOfTuples="1" ')
+    return (
+        f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" '
+        f'header_type="UInt64">\n<{kind}>\n{field_data}<Piece {piece}>\n{inner}</Piece>\n'
+        f"</{kind}>\n</VTKFile>\n"
+    )
+
+
+def _section(name: str, fields: Fields, extra: str = "") -> str:
+    return (
+        f"<{name}>\n" + "".join(_array(key, values, extra) for key, values in fields.items()) + f"</{name}>\n"
+    )
+
+
+def _array(name: str, values: np.ndarray, extra: str) -> str:
+    width = values.shape[1] if values.ndim > 1 else 1
+    raw = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).tobytes()
+    text = base64.b64encode(np.array([len(raw)], dtype="<u8").tobytes() + raw).decode("ascii")
+    return (
+        f'<DataArray type="{_TYPES[values.dtype]}" Name={quoteattr(name)} NumberOfComponents="{width}" '
+        f'{extra}format="binary">{text}</DataArray>\n'
+    )
+
+
+def _collection(names: list[str]) -> str:
+    rows = "".join(
+        f'<DataSet timestep="{i}" part="0" file={quoteattr(name)}/>\n' for i, name in enumerate(names)
+    )
+    return (
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+        f"<Collection>\n{rows}</Collection>\n</VTKFile>\n"
+    )

@@ -1,0 +1,112 @@
+"""capacity.png: load multiplier against control displacement, up to failure and over the whole collapse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli.output.reader import Results
+from dem_cli.post import style
+
+_ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farther than failure
+
+
+def draw_capacity(results: Results, path: Path) -> None:
+    """Draw the capacity curve; one panel more where the way to failure would be invisible."""
+    history, summary = results.history, results.summary
+    farthest = float(history["displacement"].max(initial=0.0))
+    to_failure = _failure_displacement(results)
+    panels = [farthest]
+    if to_failure and farthest > _ZOOM_FROM * to_failure:
+        panels = [2.0 * to_failure, farthest]
+    with style.figure(path, figsize=(4.9 * len(panels) + 1.2, 4.3)) as figure:
+        axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+        for i, (axis, limit) in enumerate(zip(axes, panels, strict=True)):
+            _draw_curve(axis, results, limit)
+            _draw_answers(axis, summary, labelled=i == len(axes) - 1)
+            if len(panels) > 1:
+                axis.set_title(("up to failure", "whole collapse")[i], fontweight="normal", color=style.GREY)
+            if i == 0:
+                _mark_failure(axis, summary, to_failure)
+        axes[0].set_ylabel("load multiplier λ")
+        _limit_loads(axes[0], results)
+        handles, labels = axes[-1].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(5, max(1, len(labels))))
+        figure.suptitle(_title(summary), x=0.01, ha="left", fontsize=12, fontweight="bold")
+
+
+def _title(summary: dict[str, Any]) -> str:
+    title = summary.get("title", "")
+    load = summary.get("failure_load")
+    if load is None:
+        return f"{title}: {summary.get('status', 'running')}"
+    mode = summary.get("failure_mode")
+    return f"{title}: fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
+
+
+def _failure_displacement(results: Results) -> float | None:
+    """Where failure is, from the summary or the end of loading."""
+    given = results.summary.get("displacement_at_failure")
+    if given:
+        return float(given)
+    loading = results.history["displacement"][results.history["stage"] == "loading"]
+    return float(loading.max()) if len(loading) and loading.max() > 0 else None
+
+
+def _draw_curve(axis: Any, results: Results, limit: float) -> None:
+    history = results.history
+    factor, unit = style.length_unit(limit)
+    x, y = factor * history["displacement"], history["load"]
+    for stage, colour in style.STAGE_COLOURS.items():
+        rows = np.flatnonzero(history["stage"] == stage)
+        if len(rows):
+            rows = np.concatenate(([max(0, rows[0] - 1)], rows))  # joined to the stage before
+            axis.plot(x[rows], y[rows], color=colour, label=stage)
+    axis.set_xlim(-0.02 * factor * limit, 1.03 * factor * limit or 1.0)
+    axis.locator_params(axis="x", nbins=6)
+    axis.set_xlabel(f"control displacement [{unit}]")
+
+
+def _draw_answers(axis: Any, summary: dict[str, Any], labelled: bool) -> None:
+    """Horizontal lines: failure load with its bracket, limit analysis, reference."""
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    if load is not None:
+        if bracket and None not in bracket:
+            axis.axhspan(*bracket, color=style.FAILURE, alpha=0.13, lw=0, label="bracket")
+        axis.axhline(load, color=style.FAILURE, lw=0.9, label=f"failure load {load:.4g}")
+    limits = summary.get("limit_analysis") or {}
+    for name, dashes in (("associated", (5, 2)), ("non_associated", (2, 2))):
+        if isinstance(limits.get(name), (int, float)):
+            label = f"limit analysis, {name.replace('_', '-')} {limits[name]:.4g}"
+            axis.axhline(limits[name], color=style.LIMIT, lw=1.2, ls=(0, dashes), label=label)
+    reference = summary.get("reference")
+    if reference:
+        label = f"reference {reference['value']:g} ± {reference['tolerance']:g}"
+        axis.axhline(reference["value"], color=style.REFERENCE, lw=1.2, ls=(0, (1, 1.5)), label=label)
+
+
+def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None) -> None:
+    load = summary.get("failure_load")
+    if load is None or not displacement:
+        return
+    factor = {"m": 1.0, "mm": 1e3, "µm": 1e6}[axis.get_xlabel().split("[")[1].rstrip("]")]
+    place = (factor * displacement, load)
+    axis.plot(*place, "o", ms=7, mfc="white", mec=style.FAILURE, mew=1.6, zorder=5)
+    bracket = summary.get("failure_load_bracket")
+    text = f"λ = {load:.4g}"
+    if bracket and None not in bracket:
+        text += f"\n{bracket[0]:.4g} … {bracket[1]:.4g}"
+    axis.annotate(
+        text, place, (10, -12), textcoords="offset points", va="top", fontsize=9, color=style.FAILURE
+    )
+
+
+def _limit_loads(axis: Any, results: Results) -> None:
+    loads = [results.history["load"].max(initial=0.0), results.summary.get("failure_load") or 0.0]
+    loads += [
+        v for v in (results.summary.get("limit_analysis") or {}).values() if isinstance(v, (int, float))
+    ]
+    top = max(loads) or 1.0
+    axis.set_ylim(min(0.0, 1.1 * results.history["load"].min(initial=0.0)) - 0.02 * top, 1.12 * top)

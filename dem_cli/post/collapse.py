@@ -1,0 +1,191 @@
+"""collapse.png: the structure at failure and at the end; joints by state, thrust line or force vectors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.reader import Results
+from dem_cli.output.record import STATES, Frame
+from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.post import measures, style
+
+_WIDEST_FORCE = 6.0  # points
+_LEGEND_ROOM = 0.65  # inches
+
+
+def draw_collapse(results: Results, path: Path) -> None:
+    """One panel at failure, one at the last frame; one only where they are the same."""
+    model, panels = results.model, _panels(results)
+    corners = [rest_vertices(model)]
+    drawn = []
+    for name, frame in panels:
+        scale = measures.visible_scale(model, frame)
+        shown = measures.scaled(model, frame, scale)
+        corners.append(placed_vertices(model, shown.positions, shown.orientations))
+        drawn.append((name, frame, shown, scale))
+    low, high = _window(model, corners)
+    width, height, rows, columns = _layout(high - low, len(panels))
+    with style.figure(path, figsize=(width, height)) as figure:
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis, (name, frame, shown, scale) in zip(axes, drawn, strict=True):
+            _draw_panel(axis, model, shown, low, high)
+            axis.set_title(_panel_title(name, frame, scale), fontsize=10, fontweight="normal")
+        _legend(figure, any(len(measures.chains(model, measures.resultants(f.contacts))) for _, f in panels))
+        figure.suptitle(_title(results.summary), x=0.01, ha="left", fontsize=12, fontweight="bold")
+
+
+def _panels(results: Results) -> list[tuple[str, Frame]]:
+    """The frame at failure (the last one of loading) and the last one."""
+    frames = results.frames
+    if not len(frames):
+        return []
+    loading = [i for i in range(len(frames)) if frames[i].stage != "collapse"]
+    failed = results.summary.get("failure_load") is not None
+    panels = [("at failure" if failed else "last state under load", frames[loading[-1]])] if loading else []
+    if not loading or loading[-1] != len(frames) - 1:
+        panels.append(("collapse", frames[len(frames) - 1]))
+    return panels
+
+
+def _title(summary: dict[str, Any]) -> str:
+    title, load, mode = (summary.get(key) for key in ("title", "failure_load", "failure_mode"))
+    if load is None:
+        return f"{title}: {summary.get('status', 'running')}"
+    return f"{title}: fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
+
+
+def _panel_title(name: str, frame: Frame, scale: float) -> str:
+    factor, unit = style.length_unit(frame.displacement)
+    drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
+    return f"{name}: λ = {frame.load:.4g}, moved {factor * frame.displacement:.3g} {unit}, {drawn}"
+
+
+def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """What all panels show: everything, with a margin; of the ground only what is near."""
+    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    moving = np.concatenate([c[free] if free.any() else c for c in corners])
+    everything = np.concatenate(corners)
+    margin = 0.05 * np.ptp(moving, axis=0).max()
+    low = np.maximum(everything.min(axis=0), moving.min(axis=0) - 2.0 * margin)
+    high = np.minimum(everything.max(axis=0), moving.max(axis=0) + 2.0 * margin)
+    return low - 0.3 * margin, high + 0.3 * margin
+
+
+def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
+    """Figure size [inches] and grid: side by side for tall structures, one above the other for long ones."""
+    columns = n_panels if extent[0] < 2.2 * extent[1] else 1
+    rows = n_panels // columns if n_panels else 1
+    columns = max(1, columns)
+    width = 5.4 if columns > 1 else 8.0
+    panel = (width, width * extent[1] / extent[0])
+    if panel[1] > 6.0:
+        panel = (max(3.2, 6.0 * extent[0] / extent[1]), 6.0)
+    return max(6.4, columns * panel[0]), rows * (panel[1] + 0.35) + _LEGEND_ROOM, rows, columns
+
+
+def _draw_panel(axis: Any, model: Model, frame: Frame, low: np.ndarray, high: np.ndarray) -> None:
+    _draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
+    _draw_rest(axis, model)
+    _draw_joints(axis, model, frame)
+    _draw_thrust(axis, model, frame)
+    axis.set_aspect("equal")
+    axis.set_xlim(low[0], high[0])
+    axis.set_ylim(low[1], high[1])
+    axis.axis("off")
+
+
+def _polygons(model: Model, corners: np.ndarray) -> list[np.ndarray]:
+    return [corners[a:b] for a, b in zip(model.part_starts, model.part_starts[1:])]
+
+
+def _draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
+    from matplotlib.collections import PolyCollection
+
+    fixed = model.fixed[model.part_blocks]
+    faces = [style.GROUND if f else style.STONE for f in fixed]
+    axis.add_collection(
+        PolyCollection(
+            _polygons(model, corners), facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6
+        )
+    )
+
+
+def _draw_rest(axis: Any, model: Model) -> None:
+    from matplotlib.collections import PolyCollection
+
+    rest = _polygons(model, rest_vertices(model))
+    axis.add_collection(
+        PolyCollection(rest, facecolors="none", edgecolors="#b9b9c2", linewidths=0.7, linestyles=(0, (3, 2)))
+    )
+
+
+def _draw_joints(axis: Any, model: Model, frame: Frame) -> None:
+    """Each contact point colours its half of the joint."""
+    from matplotlib.collections import LineCollection
+
+    contacts = frame.contacts
+    order = np.argsort(contacts.joint, kind="stable")
+    joints, points = contacts.joint[order], contacts.points[order]
+    width = float(np.clip(60.0 / np.sqrt(model.n_blocks + 1), 1.2, 3.2))
+    halves, colours, singles = [], [], []
+    _, starts, counts = np.unique(joints, return_index=True, return_counts=True)
+    for start, count in zip(starts, counts, strict=True):
+        group = range(start, start + count)
+        middle = points[start : start + count].mean(axis=0)
+        for i in group:
+            colour = style.STATE_COLOURS[STATES[contacts.state[order[i]]]]
+            if count == 1:
+                singles.append((points[i], colour))
+            halves.append((points[i], middle))
+            colours.append(colour)
+    axis.add_collection(LineCollection(halves, colors=colours, linewidths=width, capstyle="butt", zorder=3))
+    for point, colour in singles:
+        axis.plot(*point, "o", ms=1.4 * width, color=colour, zorder=3)
+
+
+def _draw_thrust(axis: Any, model: Model, frame: Frame) -> None:
+    """Thickness grows with the force: a line through arches and columns, one stroke per joint in walls."""
+    from matplotlib.collections import LineCollection
+
+    found = measures.resultants(frame.contacts)
+    sizes = np.linalg.norm(found.forces, axis=1)
+    if not len(sizes):
+        return
+    widest = _WIDEST_FORCE if model.n_blocks < 60 else _WIDEST_FORCE * (60 / model.n_blocks) ** 0.35
+    widths = np.maximum(0.4, widest * sizes / sizes.max())
+    lines = measures.chains(model, found)
+    if lines:
+        strokes = [(found.points[a], found.points[b]) for chain in lines for a, b in zip(chain, chain[1:])]
+        widths = [(widths[a] + widths[b]) / 2 for chain in lines for a, b in zip(chain, chain[1:])]
+    else:
+        reach = 0.4 * _block_reach(model, found.blocks)
+        arms = found.forces / sizes[:, np.newaxis] * reach[:, np.newaxis]
+        strokes = list(zip(found.points - arms, found.points + arms))
+    axis.add_collection(
+        LineCollection(strokes, colors=style.THRUST, linewidths=widths, alpha=0.8, capstyle="round", zorder=4)
+    )
+
+
+def _block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
+    """Half the smaller extent of the smaller block at each joint [m]."""
+    extents = np.full(model.n_blocks, np.inf)
+    for part, block in enumerate(model.part_blocks):
+        corners = model.vertices[model.part_starts[part] : model.part_starts[part + 1]]
+        extents[block] = min(extents[block], np.ptp(corners, axis=0).min())
+    return 0.5 * extents[pairs].min(axis=1)
+
+
+def _legend(figure: Any, has_line: bool) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=f"{name} joint") for name in STATES
+    ]
+    thrust = "thrust line" if has_line else "joint force"
+    handles.append(Line2D([], [], color=style.THRUST, lw=3, alpha=0.8, label=f"{thrust} (thickness: size)"))
+    handles.append(Line2D([], [], color="#b9b9c2", lw=1, ls=(0, (3, 2)), label="undeformed"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=9, handlelength=1.8)

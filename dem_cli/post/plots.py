@@ -1,0 +1,28 @@
+"""The pictures of a run, drawn from its results only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from dem_cli.output.reader import Results, read
+from dem_cli.post.capacity import draw_capacity
+from dem_cli.post.collapse import draw_collapse
+from dem_cli.post.energy import draw_energy
+
+PICTURES: dict[str, Callable[[Results, Path], None]] = {
+    "capacity.png": draw_capacity,
+    "collapse.png": draw_collapse,
+    "energy.png": draw_energy,
+}
+
+
+def draw_all(folder: Path, output: Path) -> list[Path]:
+    """Draw every picture that the results in `folder` allow; returns the files written."""
+    results = read(folder)
+    written = []
+    for name, draw in PICTURES.items():
+        if len(results.frames) if name == "collapse.png" else len(results.history["load"]):
+            draw(results, output / name)
+            written.append(output / name)
+    return written

@@ -1,0 +1,64 @@
+"""How all pictures look: colours that everybody tells apart, one style, matplotlib without a display."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from dem_cli.errors import UsageError
+
+INK, GREY, FAINT = "#26262b", "#7c7c86", "#d5d5da"
+STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
+STATE_COLOURS = {"open": "#c51b7d", "sticking": "#9aa3ad", "sliding": "#e08214"}
+STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8c5b", "collapse": "#c0392b"}
+THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
+DPI = 160
+
+_STYLE = {
+    "font.size": 10,
+    "axes.titlesize": 11,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": "#ececef",
+    "text.color": INK,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "lines.linewidth": 1.8,
+    "lines.solid_capstyle": "round",
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+
+
+@contextmanager
+def figure(path: Path, **options: Any) -> Iterator[Any]:
+    """A new figure that is saved to `path` at the end of the block."""
+    try:
+        import matplotlib
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
+    with matplotlib.rc_context(_STYLE):
+        drawn = Figure(layout="constrained", **options)
+        FigureCanvasAgg(drawn)
+        yield drawn
+        drawn.savefig(path, dpi=DPI, metadata={"Software": None})
+
+
+def length_unit(largest: float) -> tuple[float, str]:
+    """Factor from metres and unit name, so that the largest value reads well."""
+    if largest >= 1.0:
+        return 1.0, "m"
+    return (1e3, "mm") if largest >= 1e-4 else (1e6, "µm")
