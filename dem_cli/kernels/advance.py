@@ -15,6 +15,7 @@ from dem_cli.kernels.records import (
     CONTACT,
     CREEP,
     DAMP,
+    DAMP_CHANGE,
     DAMPING,
     DEAD_FACTOR,
     EXTERNAL,
@@ -49,14 +50,26 @@ def _sign(x):
 
 
 @inline
-def _rate_impulse(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, damp, rate, dt, stiffness):
+def _drag(unbalanced, previous, velocity, damp, damp_change):
+    """Damping force against the motion: (α sgn v − α' sgn ΔF)|F|, local and combined damping (Cundall 1987).
+
+    The part with the change of force damps vibrations of a block that drifts, where sgn v cannot.
+    """
+    return abs(unbalanced) * (damp * _sign(velocity) - damp_change * _sign(unbalanced - previous))
+
+
+@inline
+def _rate_impulse(
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses,
+    dead, live, damp, damp_change, rate, dt, stiffness,
+):  # fmt: skip
     """Impulse of the live load after which q·v = rate, local damping included."""
     flow = 0.0
     for i in range(forces.size):
         q = live_loads[i]
         if q != 0.0:
             unbalanced = forces[i] + dead * dead_loads[i] + live * q
-            drag = damp * abs(unbalanced) * _sign(velocities[i])
+            drag = _drag(unbalanced, previous[i], velocities[i], damp, damp_change)
             flow += q * (velocities[i] + dt * inverse_masses[i] * (unbalanced - drag))
     return (rate - flow) / stiffness
 
@@ -85,10 +98,10 @@ def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, 
 
 @inline
 def _kick(
-    velocities, forces, dead_loads, live_loads, inverse_masses, force_scales,
-    dead, live, damp, keep, steer, impulse, dt, ledger,
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales,
+    dead, live, damp, damp_change, keep, steer, impulse, dt, ledger,
 ):  # fmt: skip
-    """Velocities from forces, with local damping α|F| against the motion; returns (largest force, residual power).
+    """Velocities from forces, damped; returns (largest force, residual power).
 
     Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
     displacement; whatever steering or damping takes from the motion is booked as damping.
@@ -105,7 +118,8 @@ def _kick(
         unbalanced = force + applied
         size = abs(unbalanced)
         largest = max(largest, size * force_scales[i])
-        drag = damp * size * _sign(old)
+        drag = _drag(unbalanced, previous[i], old, damp, damp_change)
+        previous[i] = unbalanced
         pushed = dt * applied + impulse * live_loads[i]
         new = keep * old + inverse * (steer * unbalanced + dt * (force - drag) + pushed)
         velocities[i] = new
@@ -171,6 +185,7 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
     def advance(n_steps, mode, dt, bodies, shape, joints, contacts, loads, control, ledger, like, like_rotation):
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
         velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
+        previous = bodies.unbalanced.ravel()
         dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
         inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
         creeps = mode == CREEP or mode == TILT_CREEP
@@ -196,8 +211,8 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
                     control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
                 control[LIVE_FACTOR] = factor
                 impulse = _rate_impulse(
-                    velocities, forces, dead_loads, live_loads, inverse_masses,
-                    control[DEAD_FACTOR], factor, control[DAMP], control[RATE], dt, stiffness,
+                    velocities, forces, previous, dead_loads, live_loads, inverse_masses,
+                    control[DEAD_FACTOR], factor, control[DAMP], control[DAMP_CHANGE], control[RATE], dt, stiffness,
                 )  # fmt: skip
             dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if mode == FIRE:
@@ -205,8 +220,8 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
                     velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control
                 )
             largest, power = _kick(
-                velocities, forces, dead_loads, live_loads, inverse_masses, force_scales,
-                dead, live, control[DAMP], keep, steer, impulse, dt, ledger,
+                velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales,
+                dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt, ledger,
             )  # fmt: skip
             control[UNBALANCED] = largest
             mean_load += live

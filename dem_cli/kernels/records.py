@@ -18,6 +18,7 @@ class Bodies(NamedTuple):
     orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1)
     velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
+    unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)
     corners: np.ndarray  # world coordinates of all corners [m], (n_vertices, d); kept only by moving geometry
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
@@ -73,14 +74,15 @@ N_LEDGER = 5
 DEAD_FACTOR = 0  # multiplies dead loads
 LIVE_FACTOR = 1  # multiplies live loads
 RATE = 2  # creep: prescribed live·v per step
-DAMP = 3  # local damping coefficient
+DAMP = 3  # local damping: share of |F| against the velocity
 UNBALANCED = 4  # out: largest unbalanced force [N] of the last step
 MEAN_LOAD = 5  # out: mean live factor over the call
 MEAN_POWER = 6  # out: sum of residual·v over the call
 TRAVEL_LIMIT = 7  # stop when a corner may have moved that far since detection [m]
 FIRE_MIX = 8  # state of FIRE: current mixing
 SINCE_UPHILL = 9  # state of FIRE: steps since the power was negative
-N_CONTROL = 10
+DAMP_CHANGE = 10  # combined damping: share of |F| against its own change
+N_CONTROL = 11
 
 # What the step is driven by.
 HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,6 +41,13 @@ def compiled_advance(kinematics: str, law: Law):
     return make_advance(forces, place_points, drift_corners)
 
 
+class EnergySums(NamedTuple):
+    """Work since the start [J]."""
+
+    given: float  # by dead and live loads
+    taken: float  # by friction and by the joints' springs
+
+
 class Simulation:
     """Blocks, joints and loads that advance in time.
 
@@ -66,8 +74,9 @@ class Simulation:
         positions, orientations = model.centroids.copy(), np.zeros((n, 1 if d == 2 else 4))
         corners = world_corners(self.shape, positions, orientations)
         self.bodies = Bodies(
-            positions, orientations, np.zeros((n, d + r)), np.zeros((n, d + r)), corners, np.zeros(n)
-        )
+            positions, orientations, np.zeros((n, d + r)), np.zeros((n, d + r)), np.zeros((n, d + r)), corners,
+            np.zeros(n),
+        )  # fmt: skip
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
         dead = model.dead_loads.copy()
@@ -181,6 +190,13 @@ class Simulation:
         """Largest unbalanced force of the last step over the mean block weight."""
         return self.control[slot.UNBALANCED] / self.weight
 
+    def use(self, safety: float, damping: float = ALPHA, change: float = 0.0) -> None:
+        """Local and combined damping, and fictitious masses with another safety."""
+        self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = damping, change
+        if safety != self.safety:
+            self.safety = safety
+            self.set_masses()
+
     # -- state -------------------------------------------------------------------------------------
 
     def save(self) -> tuple:
@@ -192,11 +208,12 @@ class Simulation:
             self.control.copy(),
             self.ledger.copy(),
             self.loads.inverse_masses.copy(),
+            self.safety,
         )
 
     def restore(self, saved: tuple) -> None:
         """Back to a saved state (steps go on counting)."""
-        bodies, contacts, joints, control, ledger, inverse_masses = saved
+        bodies, contacts, joints, control, ledger, inverse_masses, self.safety = saved
         for target, source in zip(self.bodies, bodies, strict=True):
             target[...] = source
         self.contacts = Contacts(*(a.copy() for a in contacts))
@@ -220,6 +237,15 @@ class Simulation:
     def displacement(self) -> np.ndarray:
         """Displacement of all centroids [m], (n_blocks, d)."""
         return self.bodies.positions - self.reference_positions
+
+    def save_places(self) -> np.ndarray:
+        """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
+        return np.column_stack([self.bodies.positions, self.bodies.orientations * self.shape.radii[:, None]])
+
+    def energy_sums(self) -> EnergySums:
+        """What the loads gave since the start, and what friction and joints took [J]."""
+        given = float(self.ledger[slot.EXTERNAL])
+        return EnergySums(given, float(self.ledger[slot.FRICTION]) + self.elastic_energy())
 
     def live_displacement(self) -> float:
         """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""

@@ -1,0 +1,201 @@
+"""The failure load: decelerating creep, a hold that proves an equilibrium, a load above that proves failure.
+
+Equilibrium exists at every prescribed displacement, so nothing has to be guessed about failure: the live
+load is replaced by a prescribed rate of its own displacement q·u, and its multiplier is found as a
+reaction. The rate is halved several times and then set to zero; what is left after the structure
+calmed down is a proven equilibrium. The load is then raised by half the wanted bracket at a time
+until failure is proven as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.errors import SolverError
+from dem_cli.kernels import records as slot
+from dem_cli.solve.equilibrium import (
+    CHUNK,
+    GRAVITY_TOLERANCE,
+    TOLERANCE,
+    Budget,
+    Verdict,
+    check_finite,
+    relax,
+    settle_or_fail,
+)
+
+if TYPE_CHECKING:
+    from dem_cli.solve.simulation import Simulation
+
+PHASES = 5  # times that the rate is halved
+FIRST_PASS = 1000  # steps of the first creep phase, doubled from pass to pass
+REACH = 15.0  # displacement of the first creep phase, in elastic displacements at multiplier 1
+MOST_PASSES = 9
+PROBE = 0.02  # internal multiplier of the first load
+HOLD_STEPS = 60_000
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One creep and its hold, or one constant load; multipliers as users know them."""
+
+    kind: str  # "creep" | "load"
+    steps: int
+    load: float  # held equilibrium, or the constant load
+    state: str  # "equilibrium" | "failure" | "unknown"
+    power_load: float | None = None  # multiplier from the power balance of the last creep phase
+
+
+@dataclass
+class Search:
+    """What was found, and the way to it."""
+
+    low: float | None = None  # highest proven equilibrium
+    high: float | None = None  # lowest proven failure
+    status: str = "not converged"  # "ok" | "not converged" | "no failure" | "does not stand"
+    peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
+    held: tuple | None = None  # state of the highest equilibrium
+    failing: Verdict | None = None
+    passes: list[Pass] = field(default_factory=list)
+
+
+def stand(sim: Simulation, budget: Budget) -> Verdict:
+    """Equilibrium under dead loads alone, or proof that there is none."""
+    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE)
+    if verdict.state == "equilibrium":
+        return verdict
+    return settle_or_fail(sim, 0.0, budget, GRAVITY_TOLERANCE)
+
+
+def compliance(sim: Simulation) -> float:
+    """q·u per unit of multiplier [J] for small loads; the state is left as it was.
+
+    Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
+    """
+    before, saved = sim.live_displacement(), sim.save()
+    load, value = PROBE, 0.0
+    for _ in range(4):
+        verdict = relax(sim, load, TOLERANCE, 20_000)
+        value = (sim.live_displacement() - before) / load
+        sim.restore(saved)
+        if verdict.state == "equilibrium":
+            break
+        load /= 10.0
+    return value
+
+
+def find_failure(
+    sim: Simulation, resolution: float, max_load: float, budget: Budget, watch: Callable[[str, float], None]
+) -> Search:
+    """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
+
+    max_load is the multiplier, as users know it, above which the structure counts as self-locking.
+    watch(doing, share) is called between passes.
+    """
+    search = Search(low=0.0, held=sim.save())
+    soft = compliance(sim)
+    if soft <= 0.0:
+        raise SolverError("the live load moves nothing: no free block has a live load")
+    start, limit = sim.save(), max_load / sim.live_scale
+    n, reach, previous = FIRST_PASS, REACH, None
+    for number in range(MOST_PASSES):
+        watch(f"creep {number + 1}", 0.1 + 0.08 * number)
+        sim.restore(start)
+        held, power = _creep(sim, n, reach * soft, budget)
+        if held is None:
+            search.passes.append(Pass("creep", n, sim.load * sim.live_scale, "unknown", power * sim.live_scale))
+            n *= 2
+            continue
+        search.passes.append(Pass("creep", n, held * sim.live_scale, "equilibrium", power * sim.live_scale))
+        _keep(search, sim, held)
+        if held >= limit:
+            return _never(sim, search, max_load)
+        if held > 0.5 * reach:  # still elastic: go on further
+            reach *= 4.0
+            continue
+        if previous is not None and abs(held - previous) < 2 * resolution * abs(held):
+            break
+        previous, n = held, 2 * n
+    return _raise_to_failure(sim, search, resolution, limit, max_load, budget, watch)
+
+
+def _creep(sim: Simulation, n: int, distance: float, budget: Budget) -> tuple[float | None, float]:
+    """Decelerating creep over about `distance` [J] and a hold; (held multiplier or None, power multiplier)."""
+    rate = distance / n
+    sim.control[slot.RATE] = rate
+    sim.advance(n, sim.creep_mode)
+    for _ in range(PHASES):
+        rate *= 0.5
+        sim.control[slot.RATE] = rate
+        sim.advance(n // 2, sim.creep_mode)
+    check_finite(sim)
+    power = sim.control[slot.MEAN_LOAD] - sim.control[slot.MEAN_POWER] / (rate * (n // 2))
+    budget.spend(n + PHASES * (n // 2), "creeping to failure")
+    sim.control[slot.RATE] = 0.0
+    calm = 0
+    for _ in range(HOLD_STEPS // CHUNK):
+        sim.advance(CHUNK, sim.creep_mode)
+        budget.spend(CHUNK, "holding an equilibrium")
+        calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+        if calm == 2:
+            load = sim.load
+            sim.rest()
+            return load, power
+    return None, power
+
+
+def _keep(search: Search, sim: Simulation, load: float) -> None:
+    if search.low is None or load * sim.live_scale >= search.low:
+        search.low, search.held = load * sim.live_scale, sim.save()
+        search.peak_displacement = sim.largest_displacement()
+
+
+def _never(sim: Simulation, search: Search, max_load: float) -> Search:
+    search.status = "no failure"
+    return search
+
+
+def _raise_to_failure(
+    sim: Simulation,
+    search: Search,
+    resolution: float,
+    limit: float,
+    max_load: float,
+    budget: Budget,
+    watch: Callable[[str, float], None],
+) -> Search:
+    """From the highest equilibrium up, half a bracket at a time, later faster, then back by halves."""
+    low = search.low / sim.live_scale
+    width = 0.5 * resolution
+    step, high, failed = width * max(abs(low), 1e-3), None, None
+    while high is None or high - low > 2.0 * width * abs(low) + 1e-12:
+        load = low + step if high is None else 0.5 * (low + high)
+        if load >= limit:
+            return _never(sim, search, max_load)
+        watch(f"load {load * sim.live_scale:.4g}", 0.85)
+        sim.restore(search.held)
+        before = sim.steps
+        verdict = settle_or_fail(sim, load, budget)
+        search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
+        if verdict.state == "equilibrium":
+            low = load
+            _keep(search, sim, load)
+            step *= 1.5 if high is None else 1.0
+        else:
+            high, failed = load, (verdict, sim.save())
+    search.high, search.failing, search.status = high * sim.live_scale, failed[0], "ok"
+    sim.restore(failed[1])
+    return search
+
+
+def mechanism(sim: Simulation, held: tuple) -> np.ndarray:
+    """How far each block moved on the way into failure [m], largest of translation and rotation × radius."""
+    bodies = held[0]
+    d = sim.model.dimension
+    shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
+    turn = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1) * sim.shape.radii
+    return np.maximum(shift, turn) if d == 2 else np.hypot(shift, turn)
