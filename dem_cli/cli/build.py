@@ -16,11 +16,10 @@ from dem_cli.cli.options import case_argument, overrides_option, warn
 def command(case: str, overrides: tuple[str, ...], output: str) -> None:
     """Write the blocks of CASE to FILE: .vtu (ParaView) or another format that meshio writes."""
     from dem_cli import api
+    from dem_cli.output.vtk import write_geometry
 
     loaded = api.load_case(case, overrides)
     model = api.build_model(loaded)
     warn(loaded)
-    from dem_cli.output.vtk import write_geometry
-
     write_geometry(Path(output), model)
     click.echo(f"{model.n_blocks:,} blocks written to {output}")

@@ -87,7 +87,7 @@ def quiet_pipe() -> int:
     return 0
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group("dem", cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="dem", message="%(prog)s %(version)s")
 def main() -> None:
     """How much earthquake can a dry-stone wall, arch or column take?

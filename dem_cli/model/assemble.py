@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.names import check_names
-from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
@@ -110,8 +110,7 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
     for block in blocks:
         other = first.setdefault(block.id, block)
         if other is not block:
-            where = f"{other.path[0]} {other.path[1] + 1}"
-            message = f"the name '{block.id}' is taken by a block of {where}; give another"
+            message = f"the name '{block.id}' is taken by a block of {dotted(other.path)}; give another"
             problems.append(CaseProblem((*block.path, "id"), message))
             if block.path[0] == "structure":
                 break  # all of its blocks would follow

@@ -111,6 +111,8 @@ def test_build_writes_the_geometry(tmp_path):
 
 
 def test_build_where_nothing_can_be_written(tmp_path):
-    result = dem("build", str(TEMPLATES / "arch.toml"), "-o", str(tmp_path / "no" / "model.vtu"))
+    (tmp_path / "file").touch()
+    result = dem("build", str(TEMPLATES / "arch.toml"), "-o", str(tmp_path / "file" / "model.vtu"))
     assert result.exit_code == 3
     assert result.stderr.startswith("error: ")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]

@@ -161,7 +161,7 @@ def test_a_name_taken_twice(case_of, wall):
     with pytest.raises(CaseError) as error:
         assemble(case_of(structure=[wall], block=[SQUARE | {"id": "wall-2-3"}]))
     assert (
-        str(error.value) == "block.0.id: the name 'wall-2-3' is taken by a block of structure 1; give another"
+        str(error.value) == "block.0.id: the name 'wall-2-3' is taken by a block of structure.0; give another"
     )
 
 
