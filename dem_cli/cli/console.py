@@ -12,6 +12,7 @@ from typing import Any, TextIO
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
 _LINE_EVERY = 10.0  # s
+_COMPILING = "compiling"
 
 
 def metres(value: float) -> str:
@@ -45,9 +46,14 @@ class Progress:
     def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Say where the run stands; cheap enough to be called often."""
         now = time.monotonic()
-        if self.quiet or now < self._next:
-            return
-        self._next = now + (_BAR_EVERY if self.on_terminal else _LINE_EVERY)
+        if not self.quiet and stage.startswith(_COMPILING):  # said at once: it takes seconds
+            self.stop()
+            print(stage, file=self.stream, flush=True)
+        elif not self.quiet and now >= self._next:
+            self._next = now + (_BAR_EVERY if self.on_terminal else _LINE_EVERY)
+            self._say(now, stage, load, displacement, fraction)
+
+    def _say(self, now: float, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         where = f"load {load:.4f}, displacement {metres(displacement)}"
         if self.on_terminal:
             self._draw(stage, where, fraction)

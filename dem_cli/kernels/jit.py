@@ -17,7 +17,7 @@ from pathlib import Path
 import numba
 from numba.extending import overload, register_jitable
 
-__all__ = ["cache_folder", "inline", "kernel", "overload"]
+__all__ = ["cache_folder", "cache_is_cold", "inline", "kernel", "overload"]
 
 _ROOT = Path(__file__).resolve().parent.parent
 
@@ -48,6 +48,11 @@ def cache_folder() -> Path:
         return folder
     uid = os.getuid() if hasattr(os, "getuid") else 0
     return Path(tempfile.gettempdir()) / f"dem-cli-{uid}" / folder.name
+
+
+def cache_is_cold() -> bool:
+    """True where nothing was compiled yet for these sources."""
+    return next(Path(numba.config.CACHE_DIR).rglob("*.nbi"), None) is None
 
 
 numba.config.CACHE_DIR = str(cache_folder())

@@ -190,7 +190,8 @@ def _store_rows(history: Columns, rows: Sequence[HistoryRow]) -> None:
         history.append(name, np.array([getattr(row, name) for row in rows], dtype=kind))
     for i, name in enumerate(Energy._fields):
         history.append(f"energy/{name}", np.array([row.energy[i] for row in rows], dtype=np.float64))
-    history.append("monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
+    if rows[0].monitors:
+        history.append("monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
     history.append(
         "stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8)
     )  # last: it counts

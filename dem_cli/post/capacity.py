@@ -21,7 +21,7 @@ def draw_capacity(results: Results, path: Path) -> None:
     panels = [farthest]
     if to_failure and farthest > _ZOOM_FROM * to_failure:
         panels = [2.0 * to_failure, farthest]
-    with style.figure(path, figsize=(4.9 * len(panels) + 1.2, 4.3)) as figure:
+    with style.figure(path, figsize=(7.4 if len(panels) == 1 else 11.0, 4.3)) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
         for i, (axis, limit) in enumerate(zip(axes, panels, strict=True)):
             _draw_curve(axis, results, limit)
@@ -34,16 +34,7 @@ def draw_capacity(results: Results, path: Path) -> None:
         _limit_loads(axes[0], results)
         handles, labels = axes[-1].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=min(5, max(1, len(labels))))
-        figure.suptitle(_title(summary), x=0.01, ha="left", fontsize=12, fontweight="bold")
-
-
-def _title(summary: dict[str, Any]) -> str:
-    title = summary.get("title", "")
-    load = summary.get("failure_load")
-    if load is None:
-        return f"{title}: {summary.get('status', 'running')}"
-    mode = summary.get("failure_mode")
-    return f"{title}: fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
+        style.headline(figure, summary)
 
 
 def _failure_displacement(results: Results) -> float | None:
@@ -98,9 +89,12 @@ def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None
     text = f"λ = {load:.4g}"
     if bracket and None not in bracket:
         text += f"\n{bracket[0]:.4g} … {bracket[1]:.4g}"
-    axis.annotate(
-        text, place, (10, -12), textcoords="offset points", va="top", fontsize=9, color=style.FAILURE
-    )
+    if place[0] > 0.6 * axis.get_xlim()[1]:  # beside the point it would lie on the curve
+        axis.text(0.98, 0.05, text, transform=axis.transAxes, ha="right", fontsize=9, color=style.FAILURE)
+    else:
+        axis.annotate(
+            text, place, (10, -12), textcoords="offset points", va="top", fontsize=9, color=style.FAILURE
+        )
 
 
 def _limit_loads(axis: Any, results: Results) -> None:

@@ -14,7 +14,8 @@ from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.post import measures, style
 
 _WIDEST_FORCE = 6.0  # points
-_LEGEND_ROOM = 0.65  # inches
+_HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
+_LEGEND_ROOM = 0.85  # inches
 
 
 def draw_collapse(results: Results, path: Path) -> None:
@@ -32,10 +33,10 @@ def draw_collapse(results: Results, path: Path) -> None:
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, (name, frame, shown, scale) in zip(axes, drawn, strict=True):
-            _draw_panel(axis, model, shown, low, high)
+            _draw_panel(axis, model, shown, scale, low, high)
             axis.set_title(_panel_title(name, frame, scale), fontsize=10, fontweight="normal")
         _legend(figure, any(len(measures.chains(model, measures.resultants(f.contacts))) for _, f in panels))
-        figure.suptitle(_title(results.summary), x=0.01, ha="left", fontsize=12, fontweight="bold")
+        style.headline(figure, results.summary)
 
 
 def _panels(results: Results) -> list[tuple[str, Frame]]:
@@ -51,17 +52,10 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
     return panels
 
 
-def _title(summary: dict[str, Any]) -> str:
-    title, load, mode = (summary.get(key) for key in ("title", "failure_load", "failure_mode"))
-    if load is None:
-        return f"{title}: {summary.get('status', 'running')}"
-    return f"{title}: fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
-
-
 def _panel_title(name: str, frame: Frame, scale: float) -> str:
     factor, unit = style.length_unit(frame.displacement)
     drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
-    return f"{name}: λ = {frame.load:.4g}, moved {factor * frame.displacement:.3g} {unit}, {drawn}"
+    return f"{name}: λ = {frame.load:.4g}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
 
 
 def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -87,10 +81,12 @@ def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
     return max(6.4, columns * panel[0]), rows * (panel[1] + 0.35) + _LEGEND_ROOM, rows, columns
 
 
-def _draw_panel(axis: Any, model: Model, frame: Frame, low: np.ndarray, high: np.ndarray) -> None:
+def _draw_panel(
+    axis: Any, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray
+) -> None:
     _draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
     _draw_rest(axis, model)
-    _draw_joints(axis, model, frame)
+    _draw_joints(axis, model, frame, scale)
     _draw_thrust(axis, model, frame)
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
@@ -123,21 +119,24 @@ def _draw_rest(axis: Any, model: Model) -> None:
     )
 
 
-def _draw_joints(axis: Any, model: Model, frame: Frame) -> None:
+def _draw_joints(axis: Any, model: Model, frame: Frame, scale: float) -> None:
     """Each contact point colours its half of the joint."""
     from matplotlib.collections import LineCollection
 
     contacts = frame.contacts
     order = np.argsort(contacts.joint, kind="stable")
     joints, points = contacts.joint[order], contacts.points[order]
-    width = float(np.clip(60.0 / np.sqrt(model.n_blocks + 1), 1.2, 3.2))
+    width = float(np.clip(32.0 / np.sqrt(model.n_blocks + 1), 0.6, 3.2))
+    hairline = _HAIRLINE * measures.largest_displacement(model, frame) / scale
     halves, colours, singles = [], [], []
     _, starts, counts = np.unique(joints, return_index=True, return_counts=True)
     for start, count in zip(starts, counts, strict=True):
         group = range(start, start + count)
         middle = points[start : start + count].mean(axis=0)
         for i in group:
-            colour = style.STATE_COLOURS[STATES[contacts.state[order[i]]]]
+            state = STATES[contacts.state[order[i]]]
+            faint = state == "open" and contacts.gap[order[i]] < hairline
+            colour = (style.STATE_COLOURS[state], 0.3 if faint else 1.0)
             if count == 1:
                 singles.append((points[i], colour))
             halves.append((points[i], middle))
@@ -182,10 +181,10 @@ def _block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
 def _legend(figure: Any, has_line: bool) -> None:
     from matplotlib.lines import Line2D
 
-    handles = [
-        Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=f"{name} joint") for name in STATES
-    ]
+    columns = 5 if figure.get_figwidth() > 9.0 else 3
+    labels = {name: f"{name} joint" for name in STATES} | {"open": "open joint (faint: hairline)"}
+    handles = [Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=labels[name]) for name in STATES]
     thrust = "thrust line" if has_line else "joint force"
     handles.append(Line2D([], [], color=style.THRUST, lw=3, alpha=0.8, label=f"{thrust} (thickness: size)"))
     handles.append(Line2D([], [], color="#b9b9c2", lw=1, ls=(0, (3, 2)), label="undeformed"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=9, handlelength=1.8)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=9, handlelength=1.8)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -55,6 +55,18 @@ def figure(path: Path, **options: Any) -> Iterator[Any]:
         FigureCanvasAgg(drawn)
         yield drawn
         drawn.savefig(path, dpi=DPI, metadata={"Software": None})
+
+
+def headline(figure: Any, summary: Mapping[str, Any]) -> None:
+    """Title of the run and its answer, small enough to fit on one line."""
+    load, mode = summary.get("failure_load"), summary.get("failure_mode")
+    text = str(summary.get("title", ""))
+    if load is None:
+        text += f": {summary.get('status', 'unfinished')}"
+    else:
+        text += f": fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
+    size = min(12.0, 12.0 * 8.5 * figure.get_figwidth() / len(text))
+    figure.suptitle(text, x=0.01, ha="left", fontsize=size, fontweight="bold")
 
 
 def length_unit(largest: float) -> tuple[float, str]:

@@ -9,7 +9,6 @@ until failure is proven as well.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -30,11 +29,13 @@ from dem_cli.solve.equilibrium import (
 
 if TYPE_CHECKING:
     from dem_cli.solve.simulation import Simulation
+    from dem_cli.solve.track import Track
 
 PHASES = 5  # times that the rate is halved
 FIRST_PASS = 1000  # steps of the first creep phase, doubled from pass to pass
 REACH = 15.0  # displacement of the first creep phase, in elastic displacements at multiplier 1
 MOST_PASSES = 9
+ROWS = 20  # history rows of the first phase
 PROBE = 0.02  # internal multiplier of the first load
 HOLD_STEPS = 60_000
 
@@ -57,6 +58,8 @@ class Search:
     low: float | None = None  # highest proven equilibrium
     high: float | None = None  # lowest proven failure
     status: str = "not converged"  # "ok" | "not converged" | "no failure" | "does not stand"
+    compliance: float = 0.0  # q·u per unit of internal multiplier while elastic [J]
+    elastic: float = 0.0  # largest displacement per unit of internal multiplier while elastic [m]
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: tuple | None = None  # state of the highest equilibrium
     failing: Verdict | None = None
@@ -68,44 +71,47 @@ def stand(sim: Simulation, budget: Budget) -> Verdict:
     verdict = relax(sim, 0.0, GRAVITY_TOLERANCE)
     if verdict.state == "equilibrium":
         return verdict
-    return settle_or_fail(sim, 0.0, budget, GRAVITY_TOLERANCE)
+    return settle_or_fail(sim, 0.0, budget, sim.dead_scale(), GRAVITY_TOLERANCE)
 
 
-def compliance(sim: Simulation) -> float:
-    """q·u per unit of multiplier [J] for small loads; the state is left as it was.
+def compliance(sim: Simulation) -> tuple[float, float]:
+    """q·u [J] and largest displacement [m] per unit of multiplier for small loads; the state is left as it was.
 
     Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
     """
-    before, saved = sim.live_displacement(), sim.save()
-    load, value = PROBE, 0.0
+    before, places, saved = sim.live_displacement(), sim.save_places(), sim.save()
+    load, value, largest = PROBE, 0.0, 0.0
     for _ in range(4):
         verdict = relax(sim, load, TOLERANCE, 20_000)
         value = (sim.live_displacement() - before) / load
+        largest = float(np.abs(sim.save_places() - places).max()) / load
         sim.restore(saved)
         if verdict.state == "equilibrium":
             break
         load /= 10.0
-    return value
+    return value, largest
 
 
 def find_failure(
-    sim: Simulation, resolution: float, max_load: float, budget: Budget, watch: Callable[[str, float], None]
+    sim: Simulation, resolution: float, max_load: float, budget: Budget, track: Track, search: Search
 ) -> Search:
     """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
 
-    max_load is the multiplier, as users know it, above which the structure counts as self-locking.
-    watch(doing, share) is called between passes.
+    max_load is the multiplier, as users know it, above which the structure counts as self-locking. What
+    is found goes to `search` as it is found, so that it is not lost where the budget ends; rows of the
+    last creep stay in the track.
     """
-    search = Search(low=0.0, held=sim.save())
-    soft = compliance(sim)
+    search.low, search.held = 0.0, sim.save()
+    search.compliance, search.elastic = compliance(sim)
+    soft = search.compliance
     if soft <= 0.0:
         raise SolverError("the live load moves nothing: no free block has a live load")
     start, limit = sim.save(), max_load / sim.live_scale
     n, reach, previous = FIRST_PASS, REACH, None
     for number in range(MOST_PASSES):
-        watch(f"creep {number + 1}", 0.1 + 0.08 * number)
+        track.observer.progress(f"creep {number + 1}", search.low, search.peak_displacement, 0.1 + 0.08 * number)
         sim.restore(start)
-        held, power = _creep(sim, n, reach * soft, budget)
+        held, power = _creep(sim, n, reach * soft, budget, track)
         if held is None:
             search.passes.append(Pass("creep", n, sim.load * sim.live_scale, "unknown", power * sim.live_scale))
             n *= 2
@@ -113,25 +119,30 @@ def find_failure(
         search.passes.append(Pass("creep", n, held * sim.live_scale, "equilibrium", power * sim.live_scale))
         _keep(search, sim, held)
         if held >= limit:
-            return _never(sim, search, max_load)
+            search.status = "no failure"
+            return search
         if held > 0.5 * reach:  # still elastic: go on further
             reach *= 4.0
             continue
         if previous is not None and abs(held - previous) < 2 * resolution * abs(held):
             break
         previous, n = held, 2 * n
-    return _raise_to_failure(sim, search, resolution, limit, max_load, budget, watch)
+    return _raise_to_failure(sim, search, resolution, limit, budget, track)
 
 
-def _creep(sim: Simulation, n: int, distance: float, budget: Budget) -> tuple[float | None, float]:
+def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Track) -> tuple[float | None, float]:
     """Decelerating creep over about `distance` [J] and a hold; (held multiplier or None, power multiplier)."""
     rate = distance / n
     sim.control[slot.RATE] = rate
-    sim.advance(n, sim.creep_mode)
+    track.kept.clear()
+    for _ in range(ROWS):
+        sim.advance(n // ROWS, sim.creep_mode)
+        track.keep("loading")
     for _ in range(PHASES):
         rate *= 0.5
         sim.control[slot.RATE] = rate
         sim.advance(n // 2, sim.creep_mode)
+        track.keep("loading")
     check_finite(sim)
     power = sim.control[slot.MEAN_LOAD] - sim.control[slot.MEAN_POWER] / (rate * (n // 2))
     budget.spend(n + PHASES * (n // 2), "creeping to failure")
@@ -154,19 +165,13 @@ def _keep(search: Search, sim: Simulation, load: float) -> None:
         search.peak_displacement = sim.largest_displacement()
 
 
-def _never(sim: Simulation, search: Search, max_load: float) -> Search:
-    search.status = "no failure"
-    return search
-
-
 def _raise_to_failure(
     sim: Simulation,
     search: Search,
     resolution: float,
     limit: float,
-    max_load: float,
     budget: Budget,
-    watch: Callable[[str, float], None],
+    track: Track,
 ) -> Search:
     """From the highest equilibrium up, half a bracket at a time, later faster, then back by halves."""
     low = search.low / sim.live_scale
@@ -175,11 +180,12 @@ def _raise_to_failure(
     while high is None or high - low > 2.0 * width * abs(low) + 1e-12:
         load = low + step if high is None else 0.5 * (low + high)
         if load >= limit:
-            return _never(sim, search, max_load)
-        watch(f"load {load * sim.live_scale:.4g}", 0.85)
+            search.status = "no failure"
+            return search
+        track.observer.progress("raising the load", load * sim.live_scale, search.peak_displacement, 0.85)
         sim.restore(search.held)
         before = sim.steps
-        verdict = settle_or_fail(sim, load, budget)
+        verdict = settle_or_fail(sim, load, budget, search.elastic * max(abs(load), PROBE))
         search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
         if verdict.state == "equilibrium":
             low = load
@@ -191,11 +197,3 @@ def _raise_to_failure(
     sim.restore(failed[1])
     return search
 
-
-def mechanism(sim: Simulation, held: tuple) -> np.ndarray:
-    """How far each block moved on the way into failure [m], largest of translation and rotation × radius."""
-    bodies = held[0]
-    d = sim.model.dimension
-    shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
-    turn = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1) * sim.shape.radii
-    return np.maximum(shift, turn) if d == 2 else np.hypot(shift, turn)

@@ -29,6 +29,7 @@ from dem_cli.solve.masses import fictitious_masses
 
 TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
 SKIN = 0.02  # detection reach as a share of the smallest edge
+LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 ALPHA = 0.4  # local damping near failure
 
 
@@ -130,6 +131,7 @@ class Simulation:
 
     def _after_detection(self) -> None:
         self.detections += 1
+        self.longest = max(100, LONGEST_CALL // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.control[slot.TRAVEL_LIMIT] = 0.5 * SKIN * self.smallest
         self.set_masses()
@@ -148,17 +150,34 @@ class Simulation:
         left, load, power = n_steps, 0.0, 0.0
         while left > 0:
             done = run(
-                left, mode, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
+                min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
                 self.control, self.ledger, self.like, self.like_rotation,
             )  # fmt: skip
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
             power += self.control[slot.MEAN_POWER]
-            if self.kinematics == "large" and (left > 0 or self._detection_due()):
+            if self.kinematics == "large" and self._detection_due():
                 self.detect()
         self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
         self.control[slot.MEAN_POWER] = power
+
+    def compile(self) -> None:
+        """Compile or load the stepping loop; no step is done."""
+        control = self.control.copy()
+        compiled_advance(self.kinematics, self.law)(
+            0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
+            self.control, self.ledger, self.like, self.like_rotation,
+        )  # fmt: skip
+        self.control[:] = control
+
+    def accelerations(self, block: int) -> np.ndarray:
+        """Of the last step, per unit of the solver's time, (n_dof,)."""
+        return self.bodies.unbalanced[block] * self.loads.inverse_masses[block]
+
+    def largest_overlap(self) -> float:
+        """Deepest penetration of a contact point [m]."""
+        return float(max(0.0, -self.contacts.gaps.min(initial=0.0)))
 
     def _detection_due(self) -> bool:
         moved = self.bodies.travel.max(initial=0.0) > self.control[slot.TRAVEL_LIMIT]
@@ -254,6 +273,11 @@ class Simulation:
         if d == 2:
             travel += (self.loads.live[:, 2] * self.bodies.orientations[:, 0]).sum()
         return float(travel)
+
+    def dead_scale(self) -> float:
+        """Displacement of a typical contact point under all dead loads [m]: no elastic one is larger by much."""
+        total = np.sqrt((self.loads.dead[self.free, : self.model.dimension] ** 2).sum(axis=1)).sum()
+        return float(total / np.median(self.joints.kn)) if len(self.joints.kn) else self.smallest
 
     def largest_displacement(self) -> float:
         """Largest displacement of a centroid [m]."""

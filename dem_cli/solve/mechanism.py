@@ -1,0 +1,52 @@
+"""Who takes part in a failure, and how: from the motion between the last equilibrium and proven failure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dem_cli.kernels import records as slot
+from dem_cli.solve.simulation import Simulation
+
+ROCKING, SLIDING = 0.02, 0.9  # share of friction in the released work: below rocking, above sliding
+TAKES_PART = 0.1  # of the largest motion
+LISTED = 20  # names in a summary
+
+
+def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
+    """failure_mode, share of friction work, and the blocks and joints that take part.
+
+    sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
+    """
+    bodies, contacts, joints, _, ledger = held[:5]
+    d = sim.model.dimension
+    shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
+    turn = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1) * sim.shape.radii
+    motion = np.maximum(shift, turn)
+    weights = -sim.loads.dead[:, d - 1]
+    lifted = float((weights * (sim.bodies.positions - bodies.positions)[:, d - 1]).sum())
+    external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
+    released = max(external, 0.0) + max(-lifted, 0.0)
+    friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
+    share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
+    mode = "rocking" if share < ROCKING else "sliding" if share > SLIDING else "mixed"
+    moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
+    found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
+    if joints.edges.shape == sim.joints.edges.shape and (joints.edges == sim.joints.edges).all():
+        slip = (sim.contacts.slip - contacts.slip).reshape(-1, 2).max(axis=1)
+        opening = (sim.contacts.gaps - contacts.gaps).reshape(-1, 2).max(axis=1)
+        for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
+            found["mechanism"][key] = _pairs(sim, np.flatnonzero(values > TAKES_PART * motion.max(initial=0.0)))
+    return found
+
+
+def _names(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+    names = [sim.model.block_ids[i] for i in blocks[:LISTED]]
+    return {"count": len(blocks), "first": names}
+
+
+def _pairs(sim: Simulation, joints: np.ndarray) -> dict[str, Any]:
+    ids = sim.model.block_ids
+    pairs = [[ids[a], ids[b]] for a, b in sim.joints.blocks[joints[:LISTED]]]
+    return {"count": len(joints), "first": pairs}
