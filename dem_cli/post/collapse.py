@@ -77,7 +77,7 @@ def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
     width = 5.4 if columns > 1 else 8.0
     panel = (width, width * extent[1] / extent[0])
     if panel[1] > 6.0:
-        panel = (max(3.2, 6.0 * extent[0] / extent[1]), 6.0)
+        panel = (max(3.8, 6.0 * extent[0] / extent[1]), 6.0)
     return max(6.4, columns * panel[0]), rows * (panel[1] + 0.35) + _LEGEND_ROOM, rows, columns
 
 

@@ -190,3 +190,10 @@ def test_answer_without_a_failure_load(tmp_path):
     text = console.answer(summary, tmp_path, ["summary.json"])
     assert "how sure" not in text
     assert "reached        loading, load 0.4000, displacement 10 µm" in text
+
+
+def test_compiling_is_said_at_once():
+    stream = io.StringIO()
+    console.Progress(stream=stream).update("compiling (once)", 0.0, 0.0, None)
+    console.Progress(stream=stream, quiet=True).update("compiling (once)", 0.0, 0.0, None)
+    assert stream.getvalue() == "compiling (once)\n"

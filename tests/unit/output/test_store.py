@@ -67,6 +67,14 @@ def test_a_run_without_frames_is_readable(tmp_path):
     assert not (tmp_path / "contacts.vtkhdf").exists()
 
 
+def test_rows_without_monitors(tmp_path):
+    model = wall_model()
+    frames = wall_frames(model)
+    write(tmp_path, frames, history_rows(frames, n_monitors=0), model, ())
+    assert len(read(tmp_path).history["load"]) == 120
+    assert read(tmp_path).monitors == {}
+
+
 def test_the_same_run_gives_the_same_bytes(tmp_path):
     model = wall_model()
     frames = wall_frames(model)
