@@ -146,7 +146,7 @@ def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     if load and bracket and None not in bracket:
         parts.append(f"±{50 * (bracket[1] - bracket[0]) / abs(load):.2g} %")
     if summary.get("energy_closure") is not None:
-        parts.append(f"energy closes to {summary['energy_closure']:.1g}")
+        parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
     if parts:
         rows.append(("how sure", ", ".join(parts)))
     limits = {k: v for k, v in (summary.get("limit_analysis") or {}).items() if isinstance(v, (int, float))}

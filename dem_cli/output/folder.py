@@ -57,7 +57,7 @@ def write_error(error: Exception, path: Path) -> DemError:
         number = int(hidden.group(1))
     if number == errno.ENOTDIR:
         return UsageError(f"cannot write results to {path}: {_REASONS[number]}")
-    reason = _REASONS.get(number) or getattr(error, "strerror", None) or str(error).splitlines()[0]
+    reason = _REASONS.get(number or 0) or getattr(error, "strerror", None) or str(error).splitlines()[0]
     return OutputError(f"cannot write results to {path}: {reason}")
 
 

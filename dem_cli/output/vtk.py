@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -102,7 +102,7 @@ def _step_fields(frame: Frame) -> Fields:
 
 
 def _grid(model: Model, vertices: np.ndarray, points: Fields, cells: Fields, steps: Fields) -> str:
-    topology = {
+    topology: Fields = {
         "connectivity": np.arange(len(vertices), dtype=np.int64),
         "offsets": model.part_starts[1:].astype(np.int64),
         "types": np.full(model.n_parts, _POLYGON, dtype=np.uint8),
@@ -130,7 +130,7 @@ def _points(frame: Frame) -> str:
     return _file("PolyData", piece, sections, _step_fields(frame))
 
 
-def _file(kind: str, piece: str, sections: tuple[tuple[str, Fields], ...], steps: Fields) -> str:
+def _file(kind: str, piece: str, sections: Iterable[tuple[str, Fields]], steps: Fields) -> str:
     inner = "".join(_section(name, fields) for name, fields in sections)
     field_data = _section("FieldData", steps, 'NumberOfTuples="1" ')
     return (

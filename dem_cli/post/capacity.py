@@ -53,11 +53,20 @@ def _draw_curve(axis: Any, results: Results, limit: float) -> None:
     for stage, colour in style.STAGE_COLOURS.items():
         rows = np.flatnonzero(history["stage"] == stage)
         if len(rows):
-            rows = np.concatenate(([max(0, rows[0] - 1)], rows))  # joined to the stage before
-            axis.plot(x[rows], y[rows], color=colour, label=stage)
+            before = max(0, rows[0] - 1)
+            if history["step"][before] <= history["step"][rows[0]]:
+                rows = np.concatenate(([before], rows))  # joined to the stage before
+            places, loads = with_breaks(history["step"][rows], x[rows], y[rows])
+            axis.plot(places, loads, color=colour, label=stage)
     axis.set_xlim(-0.02 * factor * limit, 1.03 * factor * limit or 1.0)
     axis.locator_params(axis="x", nbins=6)
     axis.set_xlabel(f"control displacement [{unit}]")
+
+
+def with_breaks(steps: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
+    """The columns with a gap wherever the steps start anew: another simulation of the same run."""
+    starts = np.flatnonzero(np.diff(steps) < 0) + 1
+    return [np.insert(column.astype(float), starts, np.nan) for column in columns]
 
 
 def _draw_answers(axis: Any, summary: dict[str, Any], labelled: bool) -> None:

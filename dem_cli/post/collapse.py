@@ -40,16 +40,36 @@ def draw_collapse(results: Results, path: Path) -> None:
 
 
 def _panels(results: Results) -> list[tuple[str, Frame]]:
-    """The frame at failure (the last one of loading) and the last one."""
+    """The frame at failure, or the last one under load where there is no failure, and the last one of all."""
     frames = results.frames
     if not len(frames):
         return []
-    loading = [i for i in range(len(frames)) if frames[i].stage != "collapse"]
-    failed = results.summary.get("failure_load") is not None
-    panels = [("at failure" if failed else "last state under load", frames[loading[-1]])] if loading else []
-    if not loading or loading[-1] != len(frames) - 1:
-        panels.append(("collapse", frames[len(frames) - 1]))
+    last = len(frames) - 1
+    first = _failure_frame(results)
+    if first is None:
+        name = "last state under load"
+        first = max((i for i in range(len(frames)) if frames[i].stage != "collapse"), default=last)
+    else:
+        load = results.summary["failure_load"]
+        name = "at failure" if abs(frames[first].load - load) <= 0.02 * abs(load) else "near failure"
+    panels = [(name, frames[first])]
+    if first != last:
+        panels.append((frames[last].stage, frames[last]))
     return panels
+
+
+def _failure_frame(results: Results) -> int | None:
+    """The frame whose load and displacement are those of failure, as nearly as there is one."""
+    load, moved = (results.summary.get(key) for key in ("failure_load", "displacement_at_failure"))
+    if load is None:
+        return None
+    frames = list(results.frames)
+    near = [i for i, frame in enumerate(frames) if abs(frame.load - load) <= 0.05 * abs(load)]
+    loading = [i for i in near if frames[i].stage == "loading"]
+    candidates = loading or near or range(len(frames))
+    if loading or moved is None:
+        return min(candidates, key=lambda i: abs(frames[i].load - load))
+    return min(candidates, key=lambda i: abs(frames[i].displacement - moved))
 
 
 def _panel_title(name: str, frame: Frame, scale: float) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from dem_cli.output.reader import Results
 from dem_cli.post import style
+from dem_cli.post.capacity import with_breaks
 
 _COLOURS = {
     "external": "#1f5fa8",
@@ -26,7 +27,7 @@ def draw_energy(results: Results, path: Path) -> None:
         for name, colour in _COLOURS.items():
             values = results.energy.get(name)
             if values is not None and (values != 0.0).any():
-                axis.plot(steps, values, color=colour, label=name)
+                axis.plot(*with_breaks(steps, steps, values), color=colour, label=name)
         axis.axhline(0.0, color=style.GREY, lw=0.8)
         axis.set_xlabel("solver step")
         axis.set_ylabel("energy since the start [J]")

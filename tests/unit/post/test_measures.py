@@ -8,6 +8,7 @@ from synthetic import boxes_model, no_contacts, wall_frames, wall_model
 
 from dem_cli.output.record import ContactRecord, Frame
 from dem_cli.post import measures
+from dem_cli.post.capacity import with_breaks
 
 
 def column_contacts(model, n_drums, forces=(1.0, 3.0), shear=0.5):
@@ -84,3 +85,9 @@ def test_scaled_contacts_stay_on_their_block(column):
     turned = np.array(((np.cos(0.1), -np.sin(0.1)), (np.sin(0.1), np.cos(0.1)))) @ corner
     np.testing.assert_allclose(shown.positions[2], column.centroids[2] + (0.01, 0.0))
     np.testing.assert_allclose(shown.contacts.points[0], shown.positions[2] + turned)
+
+
+def test_curves_break_where_another_simulation_starts():
+    steps, loads = np.array((1, 5, 9, 2, 4)), np.arange(5)
+    (found,) = with_breaks(steps, loads)
+    np.testing.assert_array_equal(found, (0, 1, 2, np.nan, 3, 4))
