@@ -160,9 +160,9 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
 
 
 def _keep(search: Search, sim: Simulation, load: float) -> None:
-    if search.low is None or load * sim.live_scale >= search.low:
-        search.low, search.held = load * sim.live_scale, sim.save()
-        search.peak_displacement = sim.largest_displacement()
+    """The equilibrium of the slowest path so far; a faster path may have passed a higher one by its momentum."""
+    search.low, search.held = load * sim.live_scale, sim.save()
+    search.peak_displacement = sim.largest_displacement()
 
 
 def _raise_to_failure(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FALLS = "does not stand under its dead loads"
 
 
-def begin(case: Case, model: Model, observer: Observer, clock: Clock) -> tuple[Simulation, list[str]]:
+def begin(case: Case, model: Model, clock: Clock) -> tuple[Simulation, list[str]]:
     """The simulation that a case starts with, compiled, and what it can do without."""
     kinematics, skipped = case.analysis.kinematics, []
     sim = simulation(case, model, "fixed" if kinematics == "auto" else kinematics)
@@ -32,7 +32,7 @@ def begin(case: Case, model: Model, observer: Observer, clock: Clock) -> tuple[S
             skipped += ["large-displacement kernel: all joints are closed, the geometry of the start is exact"]
     if sim.kinematics == "fixed":
         skipped.append("detection: done once, nothing moves visibly before failure")
-    clock.compile(sim, observer)
+    clock.compile(sim)
     return sim, skipped
 
 
@@ -46,9 +46,9 @@ def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a gravity analysis; status "ok" means that it stands."""
-    clock = Clock()
-    sim, skipped = begin(case, model, observer, clock)
-    track = Track(sim, observer, Monitors(case, model), case.output.frames)
+    clock = Clock(observer)
+    sim, skipped = begin(case, model, clock)
+    track = Track(sim, clock, Monitors(case, model), case.output.frames)
     try:
         verdict = settle(sim, track, Budget(case.analysis.max_steps))
         status, why = ("ok" if verdict.state == "equilibrium" else FALLS), []

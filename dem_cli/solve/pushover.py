@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a pushover; raises SolverError only where a number is no number."""
-    clock = Clock()
-    sim, skipped = begin(case, model, observer, clock)
-    monitors, frames = Monitors(case, model), case.output.frames
+    clock = Clock(observer)
+    sim, skipped = begin(case, model, clock)
+    monitors = Monitors(case, model)
     budget = Budget(case.analysis.max_steps)
-    search, sim, why = _search(case, model, sim, observer, monitors, budget, clock, skipped)
+    search, sim, why = _search(case, model, sim, monitors, budget, clock, skipped)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
     if search.status == "ok":
         found |= describe(sim, search.held)
         if case.analysis.follow > 0.0:
-            falling, peak = _follow(case, model, sim, search, observer, monitors, budget, clock, why)
+            falling, peak = _follow(case, model, sim, search, monitors, budget, clock, why)
             sims.append(falling)
             found["displacement_at_failure"] = peak["displacement"]
             found["peak_of_curve"] = peak["load"] * sim.live_scale
@@ -48,7 +48,6 @@ def _search(
     case: Case,
     model: Model,
     sim: Simulation,
-    observer: Observer,
     monitors: Monitors,
     budget: Budget,
     clock: Clock,
@@ -59,7 +58,7 @@ def _search(
     frames = case.output.frames if analysis.follow == 0.0 else 0
     search = Search()
     while True:
-        track = Track(sim, observer, monitors, frames)
+        track = Track(sim, clock, monitors, frames)
         try:
             if settle(sim, track, budget).state != "equilibrium":
                 search.status = FALLS
@@ -74,7 +73,7 @@ def _search(
             return search, sim, []
         skipped[:] = [f"fixed geometry: the given joints are so soft that blocks move {search.peak_displacement:.2g} m"]
         search, sim = Search(), simulation(case, model, "large")
-        clock.compile(sim, observer)
+        clock.compile(sim)
 
 
 def _follow(
@@ -82,7 +81,6 @@ def _follow(
     model: Model,
     sim: Simulation,
     search: Search,
-    observer: Observer,
     monitors: Monitors,
     budget: Budget,
     clock: Clock,
@@ -90,8 +88,8 @@ def _follow(
 ) -> tuple[Simulation, dict[str, float]]:
     load = search.low / sim.live_scale
     falling, softer = follow.simulate(case, model, search.elastic, load, sim.smallest)
-    clock.compile(falling, observer)
-    track = Track(falling, observer, monitors, case.output.frames)
+    clock.compile(falling)
+    track = Track(falling, clock, monitors, case.output.frames)
     rate = search.compliance * softer / follow.STEPS
     try:
         return falling, follow.follow(

@@ -10,7 +10,7 @@ import numpy as np
 
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.registry import ANALYSES
 from dem_cli.solve.simulation import TOUCH, Simulation
@@ -35,21 +35,40 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
 
 
 class Clock:
-    """Seconds of solving, without the compilation of kernels."""
+    """Seconds of solving, without the compilation of kernels and what the observer does with results.
 
-    def __init__(self) -> None:
-        self.started, self.compiling = time.perf_counter(), 0.0
+    It is an observer itself and hands everything on.
+    """
 
-    def compile(self, sim: Simulation, observer: Observer) -> None:
+    def __init__(self, observer: Observer) -> None:
+        self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
+        self.observer = observer
+
+    def frame(self, frame: Frame) -> None:
+        begun = time.perf_counter()
+        self.observer.frame(frame)
+        self.observing += time.perf_counter() - begun
+
+    def row(self, row: HistoryRow) -> None:
+        begun = time.perf_counter()
+        self.observer.row(row)
+        self.observing += time.perf_counter() - begun
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        begun = time.perf_counter()
+        self.observer.progress(stage, load, displacement, fraction)
+        self.observing += time.perf_counter() - begun
+
+    def compile(self, sim: Simulation) -> None:
         """Compile (or load) the kernel of a simulation, off the clock."""
         begun = time.perf_counter()
         if cache_is_cold():
-            observer.progress("compiling (once)", 0.0, 0.0, None)
+            self.progress("compiling (once)", 0.0, 0.0, None)
         sim.compile()
         self.compiling += time.perf_counter() - begun
 
     def seconds(self) -> float:
-        return time.perf_counter() - self.started - self.compiling
+        return time.perf_counter() - self.started - self.compiling - self.observing
 
 
 def live_scale(model: Model) -> float:
