@@ -151,8 +151,7 @@ def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[s
 
 def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str, Any]:
     """Summary of a run that did not reach its end."""
-    known = [x for x in (writer.last_row, writer.last_frame) if x is not None]
-    last = max(known, key=lambda x: x.step, default=None)
+    last = writer.last_row or writer.last_frame
     reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
     points = writer.last_frame.contacts.joint if writer.last_frame else None
     return {
@@ -181,7 +180,7 @@ def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: 
     summary |= {"title": case.title or loaded.path.stem, "kind": case.analysis.kind, "version": __version__}
     summary["blocks"] = model.n_blocks
     summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
-    if case.reference is not None:
+    if case.reference is not None and found["status"] != "interrupted":
         reference = case.reference
         load = found.get("failure_load")
         summary["reference"] = reference_verdict(load, reference.failure_load, reference.tolerance)

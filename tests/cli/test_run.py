@@ -78,6 +78,7 @@ def test_interrupted(tmp_path):
     summary, folder = run(tmp_path, interrupted(4))
     assert exit_code(summary) == 130
     assert summary["status"] == read(folder).status == "interrupted"
+    assert "reference" not in summary
     assert len(read(folder).frames) == 4
 
 
