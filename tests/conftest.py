@@ -1,4 +1,4 @@
-"""Shared by all tests: one cache of compiled code for every process, no display."""
+"""Shared by all tests: one cache of compiled code, no display, `python -m dem_cli` from any folder."""
 
 from __future__ import annotations
 
@@ -9,3 +9,4 @@ ROOT = Path(__file__).resolve().parents[1]
 
 os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))

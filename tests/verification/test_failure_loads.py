@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from casefiles import CASES, FILES, case_id, read
+from casefiles import CASES, FILES, case_id, read, scene
 
 REFERENCED = [path for path in FILES if "reference" in read(path)]
 SLOW = {"wall_3", "wall_2", "wall_with_door"}
@@ -71,3 +71,14 @@ def test_weight_and_units_do_not_matter(tmp_path):
     options = [word for change in changes for word in ("--set", change)]
     summary = run(CASES / "verification" / "wall_21.toml", tmp_path, *options)
     assert summary["failure_load"] == pytest.approx(0.6, abs=0.0018)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted((CASES / "gallery").glob("*.toml")), ids=case_id)
+def test_gallery(path, tmp_path):
+    """No reference; but the energy closes, and no load is above the associated one by more than the bracket."""
+    summary = run(path, tmp_path)
+    assert summary["status"] == "ok"
+    assert abs(summary["energy_closure"]) < 0.01
+    upper = scene(path).limit().multiplier
+    assert 0.9 * upper < summary["failure_load"] <= upper * (1 + read(path)["analysis"]["resolution"])
