@@ -40,7 +40,8 @@ def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
     """All pairs of faces of different blocks that are closer than `reach` [m].
 
     corners: world coordinates of all corners [m], (n_vertices, d), see `world_corners`.
-    Two fixed blocks have no joint. A pair of convex parts has at most one.
+    Two fixed blocks have no joint. Two convex parts have one, and a second one, crosswise, where they meet
+    corner to corner; of these at most one can touch.
     """
     starts = model.part_starts
     low = np.minimum.reduceat(corners, starts[:-1], axis=0)
@@ -58,7 +59,7 @@ def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
         if n <= capacity:
             break
         capacity = n
-    by_part = np.lexsort((parts[:n, 1], parts[:n, 0]))
+    by_part = np.lexsort((edges[:n, 1], edges[:n, 0], parts[:n, 1], parts[:n, 0]))
     parts, edges = parts[by_part], edges[by_part]
     following = np.arange(1, len(corners) + 1)
     following[starts[1:] - 1] = starts[:-1]

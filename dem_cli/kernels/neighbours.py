@@ -13,14 +13,22 @@ import numpy as np
 from dem_cli.kernels.jit import inline, kernel
 
 
+ACROSS = 0.7  # |cosine| below which two edges count as crosswise
+
+
 @inline
-def _deepest_edge(corners, s0, s1, t0, t1):
-    """Edge of polygon s with the largest separation from polygon t, and that separation."""
+def _deepest_edge(corners, s0, s1, t0, t1, along_x, along_y):
+    """Edge of polygon s with the largest separation from polygon t, and that separation.
+
+    Edges that run along (along_x, along_y) are left out; a zero vector leaves out none.
+    """
     best, best_edge = -math.inf, s0
     for i in range(s0, s1):
         j = i + 1 if i + 1 < s1 else s0
         tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
         length = math.sqrt(tx * tx + ty * ty)
+        if abs(tx * along_x + ty * along_y) > ACROSS * length:
+            continue
         nx, ny = ty / length, -tx / length
         separation = math.inf
         for k in range(t0, t1):
@@ -45,15 +53,41 @@ def _opposite_edge(corners, i, j, t0, t1):
     return best_edge
 
 
+@inline
+def _facing_edges(corners, a0, a1, b0, b1, along_x, along_y):
+    """(separation, edge of a, edge of b) along the best axis that is not crosswise to the given direction."""
+    from_a, edge_a = _deepest_edge(corners, a0, a1, b0, b1, along_x, along_y)
+    from_b, edge_b = _deepest_edge(corners, b0, b1, a0, a1, along_x, along_y)
+    if from_a >= from_b:
+        edge_b = _opposite_edge(corners, edge_a, edge_a + 1 if edge_a + 1 < a1 else a0, b0, b1)
+    else:
+        edge_a = _opposite_edge(corners, edge_b, edge_b + 1 if edge_b + 1 < b1 else b0, a0, a1)
+    return max(from_a, from_b), edge_a, edge_b
+
+
+@inline
+def _direction_and_overlap(corners, i, j, k, m):
+    """Unit direction of edge (i, j), and the length over which edge (k, m) lies opposite to it."""
+    tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+    length = math.sqrt(tx * tx + ty * ty)
+    tx /= length
+    ty /= length
+    low = (corners[m, 0] - corners[i, 0]) * tx + (corners[m, 1] - corners[i, 1]) * ty
+    high = (corners[k, 0] - corners[i, 0]) * tx + (corners[k, 1] - corners[i, 1]) * ty
+    return tx, ty, min(high, length) - max(low, 0.0)
+
+
 @kernel
 def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, parts_out, edges_out, distance_out):
-    """Pairs of convex parts closer than `reach` [m], in the order of their parts.
+    """Pairs of faces of convex parts closer than `reach` [m].
 
     order         parts sorted by the left side of their box, (n_parts,)
     boxes         (left, right, bottom, top) of each part [m], (n_parts, 4)
     parts_out     the two parts, (capacity, 2)
     edges_out     first corners of the edge of part a and of part b, (capacity, 2)
-    distance_out  separation [m], negative: overlap, (capacity,)
+    distance_out  separation of the two parts [m], negative: overlap, (capacity,)
+    Two parts have one pair of faces, and a second, crosswise one where they meet corner to corner: a
+    block that slides off an edge goes on along the other face. At most one of them can touch.
     Returns the number of pairs, which may exceed the capacity: call again with more room.
     """
     count = 0
@@ -71,21 +105,24 @@ def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, pa
                 continue
             a, b = (p, q) if p < q else (q, p)
             a0, a1, b0, b1 = part_starts[a], part_starts[a + 1], part_starts[b], part_starts[b + 1]
-            from_a, edge_a = _deepest_edge(corners, a0, a1, b0, b1)
-            if from_a > reach:
+            separation, i, k = _facing_edges(corners, a0, a1, b0, b1, 0.0, 0.0)
+            if separation > reach:
                 continue
-            from_b, edge_b = _deepest_edge(corners, b0, b1, a0, a1)
-            if from_b > reach:
-                continue
-            if from_a >= from_b:
-                edge_b = _opposite_edge(corners, edge_a, edge_a + 1 if edge_a + 1 < a1 else a0, b0, b1)
-            else:
-                edge_a = _opposite_edge(corners, edge_b, edge_b + 1 if edge_b + 1 < b1 else b0, a0, a1)
-            if count < parts_out.shape[0]:
-                parts_out[count, 0], parts_out[count, 1] = a, b
-                edges_out[count, 0], edges_out[count, 1] = edge_a, edge_b
-                distance_out[count] = max(from_a, from_b)
-            count += 1
+            along_x, along_y = 0.0, 0.0
+            for crosswise in range(2):
+                if crosswise:
+                    across, i, k = _facing_edges(corners, a0, a1, b0, b1, along_x, along_y)
+                    if across < -4.0 * reach:
+                        break
+                if count < parts_out.shape[0]:
+                    parts_out[count, 0], parts_out[count, 1] = a, b
+                    edges_out[count, 0], edges_out[count, 1] = i, k
+                    distance_out[count] = separation
+                count += 1
+                j, m = i + 1 if i + 1 < a1 else a0, k + 1 if k + 1 < b1 else b0
+                along_x, along_y, overlap = _direction_and_overlap(corners, i, j, k, m)
+                if overlap > 2.0 * reach:
+                    break
     return count
 
 
