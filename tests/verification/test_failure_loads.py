@@ -76,7 +76,7 @@ def test_weight_and_units_do_not_matter(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((CASES / "gallery").glob("*.toml")), ids=case_id)
 def test_gallery(path, tmp_path):
-    """No reference; but the energy closes, and no load is above the associated one by more than the bracket."""
+    """No reference; but the energy closes, and no load is above the associated one."""
     summary = run(path, tmp_path)
     assert summary["status"] == "ok"
     assert abs(summary["energy_closure"]) < 0.01
