@@ -134,7 +134,7 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
     """Decelerating creep over about `distance` [J] and a hold; (held multiplier or None, power multiplier)."""
     rate = distance / n
     sim.control[slot.RATE] = rate
-    track.kept.clear()
+    del track.kept[1:]  # rows of the pass before; the first is that of gravity
     for _ in range(ROWS):
         sim.advance(n // ROWS, sim.creep_mode)
         track.keep("loading")

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from dem_cli.solve.simulation import Simulation
 
 ELASTIC = 2e-3  # elastic displacement at failure that "auto" joints may show, in smallest edges
-STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one
+STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one, at least
+FEWEST = 40_000  # steps of the whole way, about: fewer would throw the blocks about
+GROWTH = 1.15  # of the rate from one look to the next, so that nothing is thrown at the start
 ROWS = 250  # history rows
 SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
 NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
@@ -41,14 +43,15 @@ def follow(
 ) -> dict[str, float]:
     """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
 
-    failure: internal multiplier of failure; rows and frames go to the track as they come.
+    failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is
+    {"load": the highest multiplier, "displacement": where the curve first came within 1 % of it}.
     """
     relax(sim, 0.0, GRAVITY_TOLERANCE)
     track.write("gravity")
     sim.use(CREEP_SAFETY, COMBINED, COMBINED)
-    sim.control[slot.RATE] = rate
+    sim.control[slot.RATE] = rate / GROWTH**30
     stage, next_frame, chunk = "loading", 0.0, 50
-    peak = {"load": 0.0, "displacement": 0.0}
+    curve: list[tuple[float, float]] = []
     while True:
         before = sim.largest_displacement()
         sim.advance(chunk, sim.creep_mode)
@@ -56,18 +59,20 @@ def follow(
         check_finite(sim)
         moved = sim.largest_displacement()
         load = sim.control[slot.MEAN_LOAD] / sim.control[slot.DEAD_FACTOR]
-        if load > peak["load"] and stage == "loading":
-            peak = {"load": load, "displacement": moved}
+        curve.append((load, moved))
         done = moved >= until
-        wants_frame = done or moved >= next_frame
-        if stage == "loading" and load >= NEAR_PEAK * failure:
-            stage, wants_frame = "collapse", True
-        track.write(stage, frame=wants_frame)
+        if load >= NEAR_PEAK * failure:
+            stage = "collapse"
+        track.write(stage)
+        if done or (stage == "collapse" and moved >= next_frame):
+            track.frame("collapse")
+            next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            return peak
-        if wants_frame:
-            next_frame = moved + until / max(frames - 2, 1)
+            highest = max(load for load, _ in curve)
+            reached = next(moved for load, moved in curve if load >= 0.99 * highest)
+            return {"load": highest, "displacement": reached}
+        sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)
         pace = abs(moved - before) / chunk
         chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, 20_000))
 

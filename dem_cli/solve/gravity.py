@@ -37,10 +37,11 @@ def begin(case: Case, model: Model, clock: Clock) -> tuple[Simulation, list[str]
 
 
 def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
-    """Dead loads, recorded."""
+    """Dead loads; the row is kept in the track, the frame handed over."""
     track.observer.progress("gravity", 0.0, 0.0, 0.02)
     verdict = stand(sim, budget)
-    track.write("gravity")
+    track.keep("gravity")
+    track.frame("gravity")
     return verdict
 
 
@@ -51,6 +52,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     track = Track(sim, clock, Monitors(case, model), case.output.frames)
     try:
         verdict = settle(sim, track, Budget(case.analysis.max_steps))
+        track.flush()
         status, why = ("ok" if verdict.state == "equilibrium" else FALLS), []
     except SolverError as error:
         status, why = "not converged", [str(error)]

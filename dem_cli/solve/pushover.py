@@ -25,12 +25,18 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a pushover; raises SolverError only where a number is no number."""
     clock = Clock(observer)
     sim, skipped = begin(case, model, clock)
-    monitors = Monitors(case, model)
+    monitors, frames = Monitors(case, model), case.output.frames
     budget = Budget(case.analysis.max_steps)
     search, sim, why = _search(case, model, sim, monitors, budget, clock, skipped)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
+    track = Track(sim, clock, monitors, frames)
     if search.status == "ok":
         found |= describe(sim, search.held)
+        failing = sim.save()
+        sim.restore(search.held)
+        track.frame("loading")
+        sim.restore(failing)
+        track.frame("collapse")
         if case.analysis.follow > 0.0:
             falling, peak = _follow(case, model, sim, search, monitors, budget, clock, why)
             sims.append(falling)
@@ -39,6 +45,8 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         else:
             skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
+    elif search.status != FALLS:
+        track.frame("loading")
     summary = common_summary(sims, clock, skipped)
     summary["warnings"] += why
     return Outcome(summary | _answer(search, sim, case) | found)
@@ -55,22 +63,22 @@ def _search(
 ) -> tuple[Search, Simulation, list[str]]:
     """Gravity and the failure search; again with moving geometry where the joints are too soft to freeze it."""
     analysis = case.analysis
-    frames = case.output.frames if analysis.follow == 0.0 else 0
-    search = Search()
+    search, why = Search(), []
     while True:
-        track = Track(sim, clock, monitors, frames)
+        track = Track(sim, clock, monitors, case.output.frames)
         try:
             if settle(sim, track, budget).state != "equilibrium":
                 search.status = FALLS
-                return search, sim, []
-            search = find_failure(sim, analysis.resolution, analysis.max_load, budget, track, search)
+            else:
+                find_failure(sim, analysis.resolution, analysis.max_load, budget, track, search)
         except SolverError as error:
-            return search, sim, [str(error)]
+            why = [str(error)]
         soft = search.peak_displacement / sim.smallest > 0.5 * analysis.resolution
         given = all(joint.kn != "auto" for joint in case.joints.values())
         if not (soft and given and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
-            track.flush()
-            return search, sim, []
+            if search.status != "ok" or analysis.follow == 0.0:
+                track.flush()  # else the rows of the collapse tell the whole way
+            return search, sim, why
         skipped[:] = [f"fixed geometry: the given joints are so soft that blocks move {search.peak_displacement:.2g} m"]
         search, sim = Search(), simulation(case, model, "large")
         clock.compile(sim)
@@ -88,9 +96,11 @@ def _follow(
 ) -> tuple[Simulation, dict[str, float]]:
     load = search.low / sim.live_scale
     falling, softer = follow.simulate(case, model, search.elastic, load, sim.smallest)
+    falling.steps = sim.steps
     clock.compile(falling)
     track = Track(falling, clock, monitors, case.output.frames)
-    rate = search.compliance * softer / follow.STEPS
+    fast = search.compliance * softer / follow.STEPS
+    rate = min(fast, search.compliance / search.elastic * case.analysis.follow / follow.FEWEST)
     try:
         return falling, follow.follow(
             falling, track, rate, load, case.analysis.follow, case.output.frames, budget

@@ -30,16 +30,17 @@ class Track:
         """Remember a row until `flush`."""
         self.kept.append(self.row(stage))
 
+    def frame(self, stage: str) -> None:
+        """Hand over a frame where frames are wanted."""
+        if self.frames > 0:
+            self.observer.frame(self.sim.frame(stage))
+
     def flush(self) -> None:
         """Hand over what was kept."""
         for row in self.kept:
             self.observer.row(row)
         self.kept.clear()
 
-    def write(self, stage: str, frame: bool = True) -> HistoryRow:
-        """Hand over a row now, and a frame where frames are wanted."""
-        row = self.row(stage)
-        self.observer.row(row)
-        if frame and self.frames > 0:
-            self.observer.frame(self.sim.frame(stage))
-        return row
+    def write(self, stage: str) -> None:
+        """Hand over a row now."""
+        self.observer.row(self.row(stage))

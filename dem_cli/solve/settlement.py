@@ -1,0 +1,93 @@
+"""kind = "settlement": supports move as [[settlement]] says, slowly, with geometry that moves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.kernels import records as slot
+from dem_cli.model.assemble import assembly
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer
+from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, GRAVITY_TOLERANCE, TOLERANCE, Budget, check_finite
+from dem_cli.solve.equilibrium import settle_or_fail
+from dem_cli.solve.failure import stand
+from dem_cli.solve.gravity import FALLS
+from dem_cli.solve.monitors import Monitors
+from dem_cli.solve.run import Clock, Outcome, common_summary, simulation
+from dem_cli.solve.simulation import Simulation
+from dem_cli.solve.track import Track
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+ROWS = 200  # looks along the way
+PER_STEP = 0.05  # movement of a support in a step, in elastic displacements under the dead loads
+FEWEST = 20_000  # steps of the whole movement, at least
+OVERLAP = 1e-3  # overlap that the dead loads may cause in "auto" joints, in smallest edges
+
+
+def run(case: Case, model: Model, observer: Observer) -> Outcome:
+    """Outcome of a settlement; status "ok" means that the structure stands afterwards."""
+    clock = Clock(observer)
+    if not case.settlement:
+        raise CaseError([CaseProblem((), "analysis.kind = 'settlement' needs at least one [[settlement]]")])
+    sim = simulation(case, model, "large", _ratio(case, model))
+    clock.compile(sim)
+    track = Track(sim, clock, Monitors(case, model), case.output.frames)
+    budget, found = Budget(case.analysis.max_steps), {}
+    try:
+        clock.progress("gravity", 0.0, 0.0, 0.0)
+        status = "ok" if stand(sim, budget).state == "equilibrium" else FALLS
+        track.write("gravity")
+        track.frame("gravity")
+        why: list[str] = []
+        if status == "ok":
+            status, found = _move(case, sim, track, budget)
+    except SolverError as error:
+        status, why = "not converged", [str(error)]
+    summary = common_summary([sim], clock, ["failure search: the supports move, the load does not"])
+    summary["warnings"] += why
+    return Outcome(summary | {"status": status, "largest_displacement": sim.largest_displacement()} | found)
+
+
+def _ratio(case: Case, model: Model) -> float:
+    """kn·h/W of "auto" joints that keeps overlaps small: the whole weight may stand on one joint."""
+    return float((~model.fixed).sum()) / OVERLAP
+
+
+def _motions(case: Case, sim: Simulation) -> np.ndarray:
+    """Whole movement of every block, zero but for the settling supports, (n_blocks, n_dof) [m, rad]."""
+    names = assembly(case).block_map
+    motion = np.zeros_like(sim.bodies.velocities)
+    for table in case.settlement:
+        motion[names[table.block]] += [*table.displacement, table.rotation]
+    return motion
+
+
+def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> tuple[str, dict[str, Any]]:
+    """Moves the supports, then waits for equilibrium; (status, summary keys)."""
+    motion = _motions(case, sim)
+    largest = float(np.abs(motion * np.column_stack([np.ones((len(motion), 2)), sim.shape.radii])).max())
+    elastic = max(sim.largest_displacement(), 1e-9 * sim.smallest)
+    chunk = max(int(np.ceil(max(largest / (PER_STEP * elastic), FEWEST) / ROWS)), 1)
+    frames = max(case.output.frames - 2, 1)
+    sim.use(CREEP_SAFETY, COMBINED, COMBINED)
+    sim.set_load(0.0)
+    sim.bodies.velocities[sim.model.fixed] = (motion / (chunk * ROWS))[sim.model.fixed]
+    for number in range(1, ROWS + 1):
+        sim.advance(chunk, slot.HOLD_LOAD)
+        budget.spend(chunk, "moving the supports")
+        check_finite(sim)
+        track.write("settlement")
+        if number * frames // ROWS > (number - 1) * frames // ROWS:
+            track.frame("settlement")
+        clock_share = number / ROWS
+        track.observer.progress("settlement", clock_share, sim.largest_displacement(), 0.95 * clock_share)
+    sim.bodies.velocities[sim.model.fixed] = 0.0
+    verdict = settle_or_fail(sim, 0.0, budget, sim.dead_scale(), max(TOLERANCE, GRAVITY_TOLERANCE))
+    track.write("settlement")
+    track.frame("settlement")
+    return ("ok" if verdict.state == "equilibrium" else "collapsed under the settlement"), {}
