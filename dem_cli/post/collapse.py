@@ -59,17 +59,11 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
 
 
 def _failure_frame(results: Results) -> int | None:
-    """The frame whose load and displacement are those of failure, as nearly as there is one."""
-    load, moved = (results.summary.get(key) for key in ("failure_load", "displacement_at_failure"))
-    if load is None:
+    """The frame on the way into failure, under the lowest load that the structure did not stand."""
+    if results.summary.get("failure_load") is None:
         return None
-    frames = list(results.frames)
-    near = [i for i, frame in enumerate(frames) if abs(frame.load - load) <= 0.05 * abs(load)]
-    loading = [i for i in near if frames[i].stage == "loading"]
-    candidates = loading or near or range(len(frames))
-    if loading or moved is None:
-        return min(candidates, key=lambda i: abs(frames[i].load - load))
-    return min(candidates, key=lambda i: abs(frames[i].displacement - moved))
+    high = results.summary["failure_load_bracket"][1]
+    return min(range(len(results.frames)), key=lambda i: abs(results.frames[i].load - high))
 
 
 def _panel_title(name: str, frame: Frame, scale: float) -> str:

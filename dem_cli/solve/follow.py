@@ -19,22 +19,27 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.solve.simulation import Simulation
 
-ELASTIC = 2e-3  # elastic displacement at failure that "auto" joints may show, in smallest edges
+ELASTIC = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
 STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one, at least
-FEWEST = 40_000  # steps of the whole way, about: fewer would throw the blocks about
+FEWEST, MOST = 40_000, 60_000  # steps of the whole way, about: fewer would throw the blocks about
 GROWTH = 1.15  # of the rate from one look to the next, so that nothing is thrown at the start
 ROWS = 250  # history rows
 SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
 NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
 
 
-def simulate(case: Case, model: Model, elastic: float, load: float, scale: float) -> tuple[Simulation, float]:
-    """A simulation with moving geometry, and how much softer its joints are.
+def simulate(
+    case: Case, model: Model, elastic: float, load: float, edge: float, until: float
+) -> tuple[Simulation, float]:
+    """A simulation with moving geometry, and how much softer its "auto" joints are.
 
-    elastic: largest elastic displacement at failure of the stiff simulation [m]; scale: smallest edge [m].
+    The joints are as stiff as ELASTIC asks, unless the way would then take more than MOST steps.
+    elastic: largest elastic displacement per unit of multiplier of the stiff simulation [m];
+    edge: smallest edge [m]; until: displacement to be followed [m].
     """
-    ratio = min(max(FIXED_RATIO * elastic * load / (ELASTIC * scale), SOFTEST), STIFFEST)
     automatic = any(joint.kn == "auto" for joint in case.joints.values())
+    softer = max(ELASTIC * edge / (elastic * load), STEPS * until / (elastic * MOST))
+    ratio = min(max(FIXED_RATIO / softer, SOFTEST), STIFFEST)
     return simulation(case, model, "large", ratio), (FIXED_RATIO / ratio if automatic else 1.0)
 
 
@@ -52,6 +57,7 @@ def follow(
     sim.control[slot.RATE] = rate / GROWTH**30
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []
+    highest = 0.0
     while True:
         before = sim.largest_displacement()
         sim.advance(chunk, sim.creep_mode)
@@ -61,7 +67,8 @@ def follow(
         load = sim.control[slot.MEAN_LOAD] / sim.control[slot.DEAD_FACTOR]
         curve.append((load, moved))
         done = moved >= until
-        if load >= NEAR_PEAK * failure:
+        highest = max(highest, load)
+        if load >= NEAR_PEAK * failure or (highest > 0.8 * failure and load < NEAR_PEAK * highest):
             stage = "collapse"
         track.write(stage)
         if done or (stage == "collapse" and moved >= next_frame):
@@ -69,7 +76,6 @@ def follow(
             next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            highest = max(load for load, _ in curve)
             reached = next(moved for load, moved in curve if load >= 0.99 * highest)
             return {"load": highest, "displacement": reached}
         sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)

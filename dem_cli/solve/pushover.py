@@ -95,7 +95,9 @@ def _follow(
     why: list[str],
 ) -> tuple[Simulation, dict[str, float]]:
     load = search.low / sim.live_scale
-    falling, softer = follow.simulate(case, model, search.elastic, load, sim.smallest)
+    falling, softer = follow.simulate(
+        case, model, search.elastic, load, sim.smallest, case.analysis.follow
+    )
     falling.steps = sim.steps
     clock.compile(falling)
     track = Track(falling, clock, monitors, case.output.frames)
