@@ -188,7 +188,7 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
         previous = bodies.unbalanced.ravel()
         dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
         inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
-        creeps = mode == CREEP or mode == TILT_CREEP
+        creeps = mode in (CREEP, TILT_CREEP)
         stiffness = 0.0
         if creeps:
             for i in range(live_loads.size):

@@ -12,7 +12,6 @@ import numpy as np
 
 from dem_cli.kernels.jit import inline, kernel
 
-
 ACROSS = 0.7  # |cosine| below which two edges count as crosswise
 
 

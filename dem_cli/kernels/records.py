@@ -37,10 +37,10 @@ class Joints(NamedTuple):
     blocks: np.ndarray  # blocks a and b, (n_joints, 2)
     starts: np.ndarray  # first point of each joint, (n_joints + 1,)
     frames: np.ndarray  # unit normal from a to b, then tangent(s) (2D: normal turned by +90°), (n_points, d·d)
-    levers: np.ndarray  # moments about the centroids of a and b of unit forces along the frame [m], (n_points, 2·d·r)
+    levers: np.ndarray  # moments of unit forces along the frame about both centroids [m], (n_points, 2·d·r)
     points: np.ndarray  # where the points are [m], (n_points, d)
     edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
-    scales: np.ndarray  # 2D: length of edge a [m], 1/length of a and b, 1/(length of normal blending) [1/m], (n_joints, 4)
+    scales: np.ndarray  # 2D: length of edge a [m]; 1/length of a, of b, of normal blending [1/m], (n_joints, 4)
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
@@ -54,7 +54,7 @@ class Contacts(NamedTuple):
     normal: np.ndarray  # normal force, compression positive [N], (n_points,)
     slip: np.ndarray  # accumulated slip path [m], (n_points,)
     memory: np.ndarray  # whatever the law remembers, (n_points, n_memory)
-    stale: np.ndarray  # 1: faces no longer are the touching ones; the last entry asks for detection, (n_joints + 1,) int8
+    stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
 
 
 class Loads(NamedTuple):

@@ -24,8 +24,8 @@ class Model(NamedTuple):
     inertias: np.ndarray  # about the centroid [kg m2], (n_blocks, r)
     centroids: np.ndarray  # undeformed place [m], (n_blocks, d)
     part_blocks: np.ndarray  # block that each convex part belongs to, (n_parts,) int64, ascending
-    part_starts: np.ndarray  # corners of part p are vertices[part_starts[p]:part_starts[p + 1]], (n_parts + 1,) int64
-    vertices: np.ndarray  # corners relative to the centroid of their block [m], (n_vertices, d); counter-clockwise in 2D
+    part_starts: np.ndarray  # part p has the corners part_starts[p]:part_starts[p + 1], (n_parts + 1,) int64
+    vertices: np.ndarray  # corners from the centroid of their block [m], (n_vertices, d); counter-clockwise in 2D
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
 

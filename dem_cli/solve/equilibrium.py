@@ -46,7 +46,7 @@ class Budget:
     def spend(self, steps: int, doing: str) -> None:
         self.left -= steps
         if self.left < 0:
-            raise SolverError(f"gave up {doing}: analysis.max_steps is used up; allow more, or look at the bracket so far")
+            raise SolverError(f"gave up {doing}: all steps of analysis.max_steps are used up")
 
 
 def check_finite(sim: Simulation) -> None:

@@ -10,7 +10,7 @@ until failure is proven as well.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -38,6 +38,7 @@ MOST_PASSES = 9
 ROWS = 20  # history rows of the first phase
 PROBE = 0.02  # internal multiplier of the first load
 HOLD_STEPS = 60_000
+SOFTENS = 0.05  # drop from the highest load of a creep to the held one that means the peak was passed
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,15 @@ class Search:
     held: tuple | None = None  # state of the highest equilibrium
     failing: Verdict | None = None
     passes: list[Pass] = field(default_factory=list)
+
+
+class _Creep(NamedTuple):
+    """What a creep found; internal multipliers."""
+
+    held: float | None  # proven equilibrium at its end
+    power: float  # from the power balance of its last phase
+    highest: float  # mean over the best twentieth of its first phase
+    where: float  # share of the first phase at which that was
 
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
@@ -111,13 +121,16 @@ def find_failure(
     for number in range(MOST_PASSES):
         track.observer.progress(f"creep {number + 1}", search.low, search.peak_displacement, 0.1 + 0.08 * number)
         sim.restore(start)
-        held, power = _creep(sim, n, reach * soft, budget, track)
+        held, power, highest, where = _creep(sim, n, reach * soft, budget, track)
         if held is None:
             search.passes.append(Pass("creep", n, sim.load * sim.live_scale, "unknown", power * sim.live_scale))
             n *= 2
             continue
         search.passes.append(Pass("creep", n, held * sim.live_scale, "equilibrium", power * sim.live_scale))
         _keep(search, sim, held)
+        if highest > (1.0 + SOFTENS) * abs(held) and reach > 1.0:  # past the peak: stop where it was
+            reach, previous, n = max(reach * where, 1.0), None, 2 * n
+            continue
         if held >= limit:
             search.status = "no failure"
             return search
@@ -130,14 +143,17 @@ def find_failure(
     return _raise_to_failure(sim, search, resolution, limit, budget, track)
 
 
-def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Track) -> tuple[float | None, float]:
-    """Decelerating creep over about `distance` [J] and a hold; (held multiplier or None, power multiplier)."""
+def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Track) -> _Creep:
+    """Decelerating creep over about `distance` [J] and a hold."""
     rate = distance / n
     sim.control[slot.RATE] = rate
     del track.kept[1:]  # rows of the pass before; the first is that of gravity
+    loads = []
     for _ in range(ROWS):
         sim.advance(n // ROWS, sim.creep_mode)
+        loads.append(sim.control[slot.MEAN_LOAD])
         track.keep("loading")
+    where = (1 + int(np.argmax(loads))) / ROWS
     for _ in range(PHASES):
         rate *= 0.5
         sim.control[slot.RATE] = rate
@@ -155,8 +171,8 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
         if calm == 2:
             load = sim.load
             sim.rest()
-            return load, power
-    return None, power
+            return _Creep(load, power, max(loads), where)
+    return _Creep(None, power, max(loads), where)
 
 
 def _keep(search: Search, sim: Simulation, load: float) -> None:
@@ -177,7 +193,7 @@ def _raise_to_failure(
     low = search.low / sim.live_scale
     width = 0.5 * resolution
     step, high, failed = width * max(abs(low), 1e-3), None, None
-    while high is None or high - low > 2.0 * width * abs(low) + 1e-12:
+    while high is None or high - low > 2.0 * width * max(abs(low), 1e-3):
         load = low + step if high is None else 0.5 * (low + high)
         if load >= limit:
             search.status = "no failure"

@@ -9,10 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.kernels import records as slot
-from dem_cli.model.model import Model
 from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, GRAVITY_TOLERANCE, Budget, check_finite, relax
 from dem_cli.solve.joints import FIXED_RATIO
-from dem_cli.solve.run import simulation
 from dem_cli.solve.track import Track
 
 if TYPE_CHECKING:
@@ -28,19 +26,17 @@ SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
 NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
 
 
-def simulate(
-    case: Case, model: Model, elastic: float, load: float, edge: float, until: float
-) -> tuple[Simulation, float]:
-    """A simulation with moving geometry, and how much softer its "auto" joints are.
+def softness(case: Case, elastic: float, load: float, edge: float, until: float) -> tuple[float, float]:
+    """kn·h/W for "auto" joints in a collapse, and how much softer that is than in the failure search.
 
-    The joints are as stiff as ELASTIC asks, unless the way would then take more than MOST steps.
-    elastic: largest elastic displacement per unit of multiplier of the stiff simulation [m];
-    edge: smallest edge [m]; until: displacement to be followed [m].
+    As stiff as ELASTIC asks, unless the way would then take more than MOST steps.
+    elastic: largest elastic displacement per unit of multiplier in the search [m]; edge: smallest edge [m];
+    until: displacement to be followed [m].
     """
-    automatic = any(joint.kn == "auto" for joint in case.joints.values())
     softer = max(ELASTIC * edge / (elastic * load), STEPS * until / (elastic * MOST))
     ratio = min(max(FIXED_RATIO / softer, SOFTEST), STIFFEST)
-    return simulation(case, model, "large", ratio), (FIXED_RATIO / ratio if automatic else 1.0)
+    automatic = any(joint.kn == "auto" for joint in case.joints.values())
+    return ratio, (FIXED_RATIO / ratio if automatic else 1.0)
 
 
 def follow(

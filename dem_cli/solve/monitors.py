@@ -44,7 +44,8 @@ class Monitors:
         angle = float(bodies.orientations[block, 0])
         if monitor.quantity == "rotation":
             return angle
-        turned = np.array([np.cos(angle) * arm[0] - np.sin(angle) * arm[1], np.sin(angle) * arm[0] + np.cos(angle) * arm[1]])
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turned = np.array([cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]])
         if monitor.quantity == "displacement":
             vector = bodies.positions[block] - sim.reference_positions[block] + turned - arm
         else:
@@ -57,7 +58,9 @@ class Monitors:
 
 def block_at(model: Model, point: np.ndarray) -> int | None:
     """Number of the block that contains a point of the undeformed structure (edges count), or None."""
-    vertices, starts = model.vertices + model.centroids[np.repeat(model.part_blocks, np.diff(model.part_starts))], model.part_starts
+    starts = model.part_starts
+    owners = np.repeat(model.part_blocks, np.diff(starts))
+    vertices = model.vertices + model.centroids[owners]
     following = np.arange(1, len(vertices) + 1)
     following[starts[1:] - 1] = starts[:-1]
     edges, to_point = vertices[following] - vertices, point - vertices

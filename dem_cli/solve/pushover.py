@@ -8,28 +8,24 @@ from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.solve import follow
-from dem_cli.solve.equilibrium import Budget
 from dem_cli.solve.failure import Search, find_failure
-from dem_cli.solve.gravity import FALLS, begin, settle
+from dem_cli.solve.gravity import FALLS, settle
 from dem_cli.solve.mechanism import describe
-from dem_cli.solve.monitors import Monitors
-from dem_cli.solve.run import Clock, Outcome, common_summary, simulation
+from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
-from dem_cli.solve.track import Track
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
+SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
+
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
-    """Outcome of a pushover; raises SolverError only where a number is no number."""
-    clock = Clock(observer)
-    sim, skipped = begin(case, model, clock)
-    monitors, frames = Monitors(case, model), case.output.frames
-    budget = Budget(case.analysis.max_steps)
-    search, sim, why = _search(case, model, sim, monitors, budget, clock, skipped)
+    """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
+    job = Job.start(case, model, observer)
+    search, sim = _search(job)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
-    track = Track(sim, clock, monitors, frames)
+    track = job.track(sim)
     if search.status == "ok":
         found |= describe(sim, search.held)
         failing = sim.save()
@@ -38,77 +34,55 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         sim.restore(failing)
         track.frame("collapse")
         if case.analysis.follow > 0.0:
-            falling, peak = _follow(case, model, sim, search, monitors, budget, clock, why)
+            falling, peak = _fall(job, sim, search)
             sims.append(falling)
             found["displacement_at_failure"] = peak["displacement"]
             found["peak_of_curve"] = peak["load"] * sim.live_scale
         else:
-            skipped.append("collapse: analysis.follow = 0")
+            job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
-    summary = common_summary(sims, clock, skipped)
-    summary["warnings"] += why
-    return Outcome(summary | _answer(search, sim, case) | found)
+    return job.outcome(sims, _answer(search, sim, case) | found)
 
 
-def _search(
-    case: Case,
-    model: Model,
-    sim: Simulation,
-    monitors: Monitors,
-    budget: Budget,
-    clock: Clock,
-    skipped: list[str],
-) -> tuple[Search, Simulation, list[str]]:
-    """Gravity and the failure search; again with moving geometry where the joints are too soft to freeze it."""
-    analysis = case.analysis
-    search, why = Search(), []
+def _search(job: Job) -> tuple[Search, Simulation]:
+    """Gravity and the failure search; again with moving geometry where given joints are too soft to freeze it."""
+    analysis = job.case.analysis
+    search, sim = Search(), job.first_simulation()
     while True:
-        track = Track(sim, clock, monitors, case.output.frames)
+        track = job.track(sim)
         try:
-            if settle(sim, track, budget).state != "equilibrium":
-                search.status = FALLS
+            if settle(sim, track, job.budget).state == "equilibrium":
+                find_failure(sim, analysis.resolution, analysis.max_load, job.budget, track, search)
             else:
-                find_failure(sim, analysis.resolution, analysis.max_load, budget, track, search)
+                search.status = FALLS
         except SolverError as error:
-            why = [str(error)]
-        soft = search.peak_displacement / sim.smallest > 0.5 * analysis.resolution
-        given = all(joint.kn != "auto" for joint in case.joints.values())
-        if not (soft and given and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
+            job.warnings.append(str(error))
+        moved = search.peak_displacement / sim.smallest
+        soft = moved > SOFT * analysis.resolution and any(j.kn != "auto" for j in job.case.joints.values())
+        if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
             if search.status != "ok" or analysis.follow == 0.0:
                 track.flush()  # else the rows of the collapse tell the whole way
-            return search, sim, why
-        skipped[:] = [f"fixed geometry: the given joints are so soft that blocks move {search.peak_displacement:.2g} m"]
-        search, sim = Search(), simulation(case, model, "large")
-        clock.compile(sim)
+            return search, sim
+        job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
+        job.warnings.clear()
+        search, sim = Search(), job.simulation("large")
 
 
-def _follow(
-    case: Case,
-    model: Model,
-    sim: Simulation,
-    search: Search,
-    monitors: Monitors,
-    budget: Budget,
-    clock: Clock,
-    why: list[str],
-) -> tuple[Simulation, dict[str, float]]:
+def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float]]:
+    """The collapse, in a simulation of its own."""
+    until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.low / sim.live_scale
-    falling, softer = follow.simulate(
-        case, model, search.elastic, load, sim.smallest, case.analysis.follow
-    )
+    ratio, softer = follow.softness(job.case, search.elastic, load, sim.smallest, until)
+    falling = job.simulation("large", ratio)
     falling.steps = sim.steps
-    clock.compile(falling)
-    track = Track(falling, clock, monitors, case.output.frames)
     fast = search.compliance * softer / follow.STEPS
-    rate = min(fast, search.compliance / search.elastic * case.analysis.follow / follow.FEWEST)
+    rate = min(fast, search.compliance / search.elastic * until / follow.FEWEST)
     try:
-        return falling, follow.follow(
-            falling, track, rate, load, case.analysis.follow, case.output.frames, budget
-        )
+        return falling, follow.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
     except SolverError as error:
-        why.append(f"the collapse was not followed to its end: {error}")
+        job.warnings.append(f"the collapse was not followed to its end: {error}")
         return falling, {"load": 0.0, "displacement": 0.0}
 
 

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.contact.detect import find_joints
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.solve.equilibrium import Budget
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
+from dem_cli.solve.monitors import Monitors
 from dem_cli.solve.registry import ANALYSES
 from dem_cli.solve.simulation import TOUCH, Simulation
+from dem_cli.solve.track import Track
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 NEAR = 1e-3  # gaps below this share of the smallest edge are meant: they may close
-CLOSURE = 0.01  # energy error above which a run says so
+CLOSURE, OVERLAP = 0.01, 0.01  # energy error, and overlap in smallest edges, above which a run warns
 
 
 @dataclass
@@ -71,6 +75,78 @@ class Clock:
         return time.perf_counter() - self.started - self.compiling - self.observing
 
 
+@dataclass
+class Job:
+    """One run: the case, its model, and what its stages share."""
+
+    case: Case
+    model: Model
+    clock: Clock
+    monitors: Monitors
+    budget: Budget
+    skipped: list[str] = field(default_factory=list)  # what the case did not need
+    warnings: list[str] = field(default_factory=list)
+
+    @classmethod
+    def start(cls, case: Case, model: Model, observer: Observer) -> Job:
+        """A job that reports to `observer`. Raises CaseError where a monitor has no block."""
+        return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps))
+
+    def simulation(self, kinematics: str, ratio: float = FIXED_RATIO) -> Simulation:
+        """A compiled simulation of the case; `ratio` is the kn·h/W of "auto" joints."""
+        tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
+        sim = Simulation(
+            self.model,
+            law_of(self.case),
+            joint_properties(self.case, self.model, ratio),
+            kinematics,
+            live_scale=1.0 if tilting else live_scale(self.model),
+            tilting=tilting,
+        )
+        self.clock.compile(sim)
+        return sim
+
+    def first_simulation(self) -> Simulation:
+        """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
+        wanted = self.case.analysis.kinematics
+        sim = self.simulation("fixed" if wanted == "auto" else wanted)
+        gaps = open_joints(self.model, sim) if wanted == "auto" else 0
+        if gaps:
+            self.skipped.append(f"fixed geometry: {gaps} joints have gaps that may close")
+            return self.simulation("large")
+        if sim.kinematics == "fixed":
+            self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
+            self.skipped.append("detection: done once, nothing moves visibly before failure")
+        return sim
+
+    def track(self, sim: Simulation) -> Track:
+        """Rows and frames of a simulation."""
+        return Track(sim, self.clock, self.monitors, self.case.output.frames)
+
+    def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
+        """The summary of all simulations of this job, audited."""
+        worst = max((closure(sim) for sim in sims), key=abs)
+        overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
+        if abs(worst) > CLOSURE:
+            self.warnings.append(f"the energy does not close: {worst:.2%} is missing; do not trust this run")
+        if overlap > OVERLAP:
+            self.warnings.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
+        summary = {
+            "joints": len(sims[0].joints.blocks),
+            "contacts": len(sims[0].joints.kn),
+            "steps": sims[-1].steps,
+            "time_step": 1.0,
+            "solve_seconds": self.clock.seconds(),
+            "compile_seconds": self.clock.compiling,
+            "energy_closure": worst,
+            "largest_overlap": overlap * sims[0].smallest,
+            "unbalanced_force": sims[0].unbalanced,
+            "skipped": self.skipped,
+            "warnings": self.warnings,
+        }
+        return Outcome(summary | found)
+
+
 def live_scale(model: Model) -> float:
     """Factor that makes the live loads as large as the dead ones, so that a multiplier is of the order of one."""
     d, free = model.dimension, ~model.fixed
@@ -79,23 +155,10 @@ def live_scale(model: Model) -> float:
     return float(dead / live) if dead > 0.0 and live > 0.0 else 1.0
 
 
-def simulation(case: Case, model: Model, kinematics: str, ratio: float = FIXED_RATIO) -> Simulation:
-    """A simulation of the case; `ratio` is the kn·h/W of "auto" joints."""
-    pattern = getattr(case.analysis, "pattern", None)
-    scale = live_scale(model)
-    return Simulation(
-        model._replace(live_loads=model.live_loads), law_of(case), joint_properties(case, model, ratio),
-        kinematics, live_scale=1.0 if pattern == "tilt" else scale, tilting=pattern == "tilt",
-    )  # fmt: skip
-
-
-def wants_large(case: Case, model: Model, sim: Simulation) -> str:
-    """Why frozen geometry would be wrong from the start; "" where it is right."""
-    from dem_cli.contact.detect import find_joints
-
+def open_joints(model: Model, sim: Simulation) -> int:
+    """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
     faces = find_joints(model, sim.bodies.corners, NEAR * sim.smallest)
-    near = np.abs(faces.separation) > TOUCH * sim.smallest
-    return f"{int(near.sum())} joints have gaps that may close" if near.any() else ""
+    return int((np.abs(faces.separation) > TOUCH * sim.smallest).sum())
 
 
 def closure(sim: Simulation) -> float:
@@ -104,27 +167,3 @@ def closure(sim: Simulation) -> float:
     error = e.kinetic + e.elastic + e.gravity + e.friction + e.damping - e.external - e.supports
     largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.friction, e.elastic, e.damping)
     return float(error / largest) if largest > 0.0 else 0.0
-
-
-def common_summary(sims: list[Simulation], clock: Clock, skipped: list[str]) -> dict[str, Any]:
-    """Keys that every kind of analysis reports."""
-    worst = max((closure(sim) for sim in sims), key=abs)
-    overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
-    warnings = []
-    if abs(worst) > CLOSURE:
-        warnings.append(f"the energy does not close: {worst:.2%} is missing; do not trust this run")
-    if overlap > 0.01:
-        warnings.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft for these loads")
-    return {
-        "joints": len(sims[0].joints.blocks),
-        "contacts": len(sims[0].joints.kn),
-        "steps": sims[-1].steps,
-        "time_step": 1.0,
-        "solve_seconds": clock.seconds(),
-        "compile_seconds": clock.compiling,
-        "energy_closure": worst,
-        "largest_overlap": overlap * sims[0].smallest,
-        "unbalanced_force": sims[0].unbalanced,
-        "skipped": skipped,
-        "warnings": warnings,
-    }

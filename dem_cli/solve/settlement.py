@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,12 +11,10 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
-from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, GRAVITY_TOLERANCE, TOLERANCE, Budget, check_finite
-from dem_cli.solve.equilibrium import settle_or_fail
+from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, Budget, check_finite, settle_or_fail
 from dem_cli.solve.failure import stand
 from dem_cli.solve.gravity import FALLS
-from dem_cli.solve.monitors import Monitors
-from dem_cli.solve.run import Clock, Outcome, common_summary, simulation
+from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
 from dem_cli.solve.track import Track
 
@@ -31,29 +29,26 @@ OVERLAP = 1e-3  # overlap that the dead loads may cause in "auto" joints, in sma
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a settlement; status "ok" means that the structure stands afterwards."""
-    clock = Clock(observer)
     if not case.settlement:
-        raise CaseError([CaseProblem((), "analysis.kind = 'settlement' needs at least one [[settlement]]")])
-    sim = simulation(case, model, "large", _ratio(case, model))
-    clock.compile(sim)
-    track = Track(sim, clock, Monitors(case, model), case.output.frames)
-    budget, found = Budget(case.analysis.max_steps), {}
+        raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
+    job = Job.start(case, model, observer)
+    job.skipped.append("failure search: the supports move, the load does not")
+    sim = job.simulation("large", _ratio(model))
+    track = job.track(sim)
     try:
-        clock.progress("gravity", 0.0, 0.0, 0.0)
-        status = "ok" if stand(sim, budget).state == "equilibrium" else FALLS
+        job.clock.progress("gravity", 0.0, 0.0, 0.0)
+        status = "ok" if stand(sim, job.budget).state == "equilibrium" else FALLS
         track.write("gravity")
         track.frame("gravity")
-        why: list[str] = []
         if status == "ok":
-            status, found = _move(case, sim, track, budget)
+            status = _move(case, sim, track, job.budget)
     except SolverError as error:
-        status, why = "not converged", [str(error)]
-    summary = common_summary([sim], clock, ["failure search: the supports move, the load does not"])
-    summary["warnings"] += why
-    return Outcome(summary | {"status": status, "largest_displacement": sim.largest_displacement()} | found)
+        status = "not converged"
+        job.warnings.append(str(error))
+    return job.outcome([sim], {"status": status, "largest_displacement": sim.largest_displacement()})
 
 
-def _ratio(case: Case, model: Model) -> float:
+def _ratio(model: Model) -> float:
     """kn·h/W of "auto" joints that keeps overlaps small: the whole weight may stand on one joint."""
     return float((~model.fixed).sum()) / OVERLAP
 
@@ -67,13 +62,13 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
     return motion
 
 
-def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> tuple[str, dict[str, Any]]:
-    """Moves the supports, then waits for equilibrium; (status, summary keys)."""
+def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
+    """Moves the supports, then waits for equilibrium; returns the status."""
     motion = _motions(case, sim)
-    largest = float(np.abs(motion * np.column_stack([np.ones((len(motion), 2)), sim.shape.radii])).max())
+    largest = float(np.abs(motion / sim.loads.force_scales).max())
     elastic = max(sim.largest_displacement(), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (PER_STEP * elastic), FEWEST) / ROWS)), 1)
-    frames = max(case.output.frames - 2, 1)
+    every = max(ROWS // max(case.output.frames - 2, 1), 1)
     sim.use(CREEP_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
     sim.bodies.velocities[sim.model.fixed] = (motion / (chunk * ROWS))[sim.model.fixed]
@@ -82,12 +77,11 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> tuple[st
         budget.spend(chunk, "moving the supports")
         check_finite(sim)
         track.write("settlement")
-        if number * frames // ROWS > (number - 1) * frames // ROWS:
+        if number % every == 0:
             track.frame("settlement")
-        clock_share = number / ROWS
-        track.observer.progress("settlement", clock_share, sim.largest_displacement(), 0.95 * clock_share)
+        track.observer.progress("settlement", number / ROWS, sim.largest_displacement(), 0.95 * number / ROWS)
     sim.bodies.velocities[sim.model.fixed] = 0.0
-    verdict = settle_or_fail(sim, 0.0, budget, sim.dead_scale(), max(TOLERANCE, GRAVITY_TOLERANCE))
+    verdict = settle_or_fail(sim, 0.0, budget, sim.dead_scale())
     track.write("settlement")
     track.frame("settlement")
-    return ("ok" if verdict.state == "equilibrium" else "collapsed under the settlement"), {}
+    return "ok" if verdict.state == "equilibrium" else "collapsed under the settlement"

@@ -21,7 +21,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import drift_centroids, drift_corners, keep_points, make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.planar_geometry import measure, place_points
-from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
+from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 from dem_cli.output.record import ContactRecord, Energy, Frame

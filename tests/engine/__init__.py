@@ -17,6 +17,7 @@ from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame, HistoryRow
 from dem_cli.solve import run as solver
+from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.simulation import Simulation, compiled_advance
 
 MU, DENSITY = 0.6, 2000.0
@@ -94,8 +95,17 @@ def solve(case: dict | Path, *overrides: str) -> tuple[dict[str, Any], Records]:
 
 
 def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6) -> Simulation:
+    """As the analyses make it, with their scale of the live loads."""
     made = scene(case)
-    return solver.simulation(made.case, made.model, kinematics, ratio)
+    tilting = made.case.analysis.kind == "pushover" and made.case.analysis.pattern == "tilt"
+    return Simulation(
+        made.model,
+        law_of(made.case),
+        joint_properties(made.case, made.model, ratio),
+        kinematics,
+        live_scale=1.0 if tilting else solver.live_scale(made.model),
+        tilting=tilting,
+    )
 
 
 def steps(sim: Simulation, n: int, mode: int = slot.HOLD_LOAD, dt: float = 1.0) -> int:

@@ -45,7 +45,8 @@ def drive(path, loop=COMPILED, gap=0.0, dt=0.125) -> Driven:
     joints = Joints(
         blocks=np.array([[0, 1]]), starts=np.array([0, 1]), frames=np.eye(d).reshape(1, -1),
         levers=np.zeros((1, 2 * d * len(like_rotation))), points=np.zeros((1, d)),
-        edges=np.zeros((1, 4), int), scales=np.ones((1, 4)), kn=np.array([KN]), ks=np.array([KS]), law=np.array([[MU]]),
+        edges=np.zeros((1, 4), int), scales=np.ones((1, 4)),
+        kn=np.array([KN]), ks=np.array([KS]), law=np.array([[MU]]),
     )  # fmt: skip
     contacts = empty_contacts(1, 1, d, 0)
     contacts.gaps[0] = gap

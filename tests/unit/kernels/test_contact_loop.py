@@ -92,12 +92,12 @@ def test_planar_twin_of_the_loop(kinematics):
         sim.bodies.velocities[:] += kick
         other.bodies.velocities[:] = in_space(sim.bodies.velocities)
         sim.bodies.forces[:], other.bodies.forces[:] = 0.0, 0.0
-        moving, moving_twin = sim.bodies, other.bodies
+        moving, lifted = sim.bodies, other.bodies
         flat = loop(
             sim.joints, sim.contacts, moving.velocities, moving.forces, 1.0, LIKE[2], LIKE_ROTATION[2]
         )
         high = loop(
-            other.joints, other.contacts, moving_twin.velocities, moving_twin.forces, 1.0, LIKE[3], LIKE_ROTATION[3]
+            other.joints, other.contacts, lifted.velocities, lifted.forces, 1.0, LIKE[3], LIKE_ROTATION[3]
         )  # fmt: skip
         assert flat == high
         work.append(flat)
