@@ -96,7 +96,7 @@ def test_same_pairs_as_brute_force(seed, n):
 @settings(max_examples=100, deadline=None)
 def test_order_of_the_blocks_does_not_matter(seed, n):
     """The same pairs with the same two edges, whatever the numbers of the blocks."""
-    # Fails: find_pairs takes the direction of the crosswise faces from the block with the lower number.
+    # Fails: find_pairs looks for crosswise faces along the edge of the block with the lower number.
     rng = np.random.default_rng(seed)
     polygons = [polygon(rng) for _ in range(n)]
     order = rng.permutation(n)

@@ -67,14 +67,15 @@ def test_rider_keeps_its_shear_force():
     sim = settled(on_base((-1.0, 3.0)), 0.4)
     shear = sim.contacts.shear.sum()
     assert abs(shear) == pytest.approx(0.4 * W, rel=1e-4)
-    first, elastic = sim.detections, sim.bodies.positions[1] - sim.bodies.positions[0]
+    first, lost = sim.detections, sim.ledger[slot.FRICTION]
+    elastic = sim.bodies.positions[1] - sim.bodies.positions[0]
     sim.control[slot.DAMP] = sim.control[slot.DAMP_CHANGE] = 0.0
     sim.bodies.velocities[:, 0] = 1e-3
     sim.advance(10_000, slot.HOLD_LOAD)
     assert sim.detections - first > 400
     assert sim.bodies.positions[0, 0] - sim.model.centroids[0, 0] == pytest.approx(10.0)
     assert sim.contacts.shear.sum() == pytest.approx(shear, rel=1e-3)
-    assert sim.ledger[slot.FRICTION] < 1e-9 * W
+    assert sim.ledger[slot.FRICTION] == lost
     assert sim.bodies.positions[1] - sim.bodies.positions[0] == pytest.approx(elastic, abs=1e-8)
 
 
@@ -96,29 +97,27 @@ def test_slider_keeps_sliding_at_its_limit():
 
 
 def test_corner_turns_over_to_its_other_edge():
-    """A block rolls over its corner: that corner carries all the weight throughout, first with one edge, then the other."""
+    """A block rolls over its corner, which carries all the weight, first with one edge, then with the other."""
     blocks = [block("base", rectangle(-2, -1, 5, 0), fixed=True), block("b", rectangle(0, 0, 1, 1))]
-    sim = simulation(tables(*blocks, friction=2.0), "large")
-    settled(sim)
+    sim = settled(simulation(tables(*blocks, friction=2.0), "large", ratio=1e4))
     sim.use(0.85, 0.3, 0.3)
-    sim.control[slot.RATE] = W * 1e-4
-    corner, edges, lowest, slip = np.array([1.0, 0.0]), set(), [], 0.0
     own = np.flatnonzero(sim.shape.corner_blocks == 1)
+    corner = np.array([1.0, 0.0])
     pivot = own[np.argmin(np.abs(sim.bodies.corners[own] - corner).sum(axis=1))]
-    for _ in range(180):
-        sim.advance(50, sim.creep_mode)
-        loaded = np.flatnonzero(sim.contacts.normal > 0)
-        if len(loaded) == 1:
-            edges.add(tuple(sim.joints.edges[loaded[0] // 2]))
-            lowest.append(sim.bodies.corners[pivot])
-            carried = sim.contacts.normal.sum() * sim.joints.frames[loaded[0], 1]
-            assert abs(carried) == pytest.approx(W, rel=0.05)
-        slip = max(slip, sim.contacts.slip.max())
-    angle = -sim.bodies.orientations[1, 0]
-    assert angle > np.radians(60)
+    sim.control[slot.RATE] = W * 2e-6
+    sim.advance(1000, slot.CREEP)
+    edges, carried = set(), []
+    for _ in range(360):
+        sim.advance(1000, slot.CREEP)
+        (loaded,) = np.flatnonzero(sim.contacts.normal > 0)
+        edges.add(tuple(sim.joints.edges[loaded // 2].tolist()))
+        assert sim.bodies.corners[pivot] == pytest.approx(corner, abs=1e-3)
+        carried.append(sim.contacts.normal[loaded] / W)
+    assert -sim.bodies.orientations[1, 0] > np.radians(60)
     assert len(edges) == 2
-    assert np.abs(np.array(lowest) - corner).max() < 1e-3
-    assert slip < 1e-3
+    assert sim.contacts.slip[loaded] < 1e-4
+    # The rest is damping of the motion; one look may fall into the moment in which the edge changes.
+    assert np.sort(np.abs(np.array(carried) - 1.0))[-2] < 0.02
 
 
 L_SHAPE = [rectangle(0, 0, 1, 1), rectangle(1, 0, 2, 0.4)]

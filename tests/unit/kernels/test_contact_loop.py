@@ -83,9 +83,7 @@ def test_planar_twin_of_the_loop(kinematics):
     states = sim.contacts.normal > 0
     assert states.any()
     assert not states.all()
-    loop = numba.njit(error_model="numpy")(
-        make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed")
-    )
+    loop = numba.njit(error_model="numpy")(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
     rng, work = np.random.default_rng(3), []
     for _ in range(5):
         kick = rng.normal(size=sim.bodies.velocities.shape) * 1e-6
@@ -93,9 +91,7 @@ def test_planar_twin_of_the_loop(kinematics):
         other.bodies.velocities[:] = in_space(sim.bodies.velocities)
         sim.bodies.forces[:], other.bodies.forces[:] = 0.0, 0.0
         moving, lifted = sim.bodies, other.bodies
-        flat = loop(
-            sim.joints, sim.contacts, moving.velocities, moving.forces, 1.0, LIKE[2], LIKE_ROTATION[2]
-        )
+        flat = loop(sim.joints, sim.contacts, moving.velocities, moving.forces, 1.0, LIKE[2], LIKE_ROTATION[2])
         high = loop(
             other.joints, other.contacts, lifted.velocities, lifted.forces, 1.0, LIKE[3], LIKE_ROTATION[3]
         )  # fmt: skip
@@ -137,9 +133,7 @@ def test_action_is_reaction(kinematics):
     """Contact forces and their moments about one point add up to nothing."""
     sim = pushed_wall(1500, kinematics)
     forces = sim.bodies.forces
-    places = (
-        sim.model.centroids if kinematics == "fixed" else sim.bodies.positions - sim.bodies.velocities[:, :2]
-    )
+    places = sim.model.centroids if kinematics == "fixed" else sim.bodies.positions - sim.bodies.velocities[:, :2]
     scale = np.abs(forces[:, :2]).sum()
     moments = forces[:, 2] + places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0]
     assert np.all(np.abs(forces[:, :2].sum(axis=0)) < 1e-14 * scale)
@@ -157,9 +151,7 @@ def test_base_carries_the_weight():
 
 
 def test_open_points_carry_nothing():
-    sim = simulation(
-        tables(block("base", rectangle(0, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1)))
-    )
+    sim = simulation(tables(block("base", rectangle(0, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1))))
     sim.bodies.velocities[1, 1] = 1.0
     sim.loads.dead[:] = 0.0
     sim.advance(5, slot.HOLD_LOAD)
