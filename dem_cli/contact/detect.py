@@ -40,8 +40,8 @@ def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
     """All pairs of faces of different blocks that are closer than `reach` [m].
 
     corners: world coordinates of all corners [m], (n_vertices, d), see `world_corners`.
-    Two fixed blocks have no joint. Two convex parts have one, and a second one, crosswise, where they meet
-    corner to corner; of these at most one can touch.
+    Two fixed blocks have no joint. Two convex parts have one, and more where they meet corner to corner:
+    those that may come to touch next.
     """
     starts = model.part_starts
     low = np.minimum.reduceat(corners, starts[:-1], axis=0)

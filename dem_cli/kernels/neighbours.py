@@ -12,27 +12,25 @@ import numpy as np
 
 from dem_cli.kernels.jit import inline, kernel
 
-ACROSS = 0.7  # |cosine| below which two edges count as crosswise
+@inline
+def _separation(corners, i, j, t0, t1):
+    """Distance of polygon t from the line of edge (i, j), negative where it lies behind."""
+    tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+    length = math.sqrt(tx * tx + ty * ty)
+    nx, ny = ty / length, -tx / length
+    separation = math.inf
+    for k in range(t0, t1):
+        distance = (corners[k, 0] - corners[i, 0]) * nx + (corners[k, 1] - corners[i, 1]) * ny
+        separation = min(separation, distance)
+    return separation
 
 
 @inline
-def _deepest_edge(corners, s0, s1, t0, t1, along_x, along_y):
-    """Edge of polygon s with the largest separation from polygon t, and that separation.
-
-    Edges that run along (along_x, along_y) are left out; a zero vector leaves out none.
-    """
+def _deepest_edge(corners, s0, s1, t0, t1):
+    """Largest separation of polygon t from an edge of polygon s, and that edge."""
     best, best_edge = -math.inf, s0
     for i in range(s0, s1):
-        j = i + 1 if i + 1 < s1 else s0
-        tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
-        length = math.sqrt(tx * tx + ty * ty)
-        if abs(tx * along_x + ty * along_y) > ACROSS * length:
-            continue
-        nx, ny = ty / length, -tx / length
-        separation = math.inf
-        for k in range(t0, t1):
-            distance = (corners[k, 0] - corners[i, 0]) * nx + (corners[k, 1] - corners[i, 1]) * ny
-            separation = min(separation, distance)
+        separation = _separation(corners, i, i + 1 if i + 1 < s1 else s0, t0, t1)
         if separation > best:
             best, best_edge = separation, i
     return best, best_edge
@@ -53,27 +51,26 @@ def _opposite_edge(corners, i, j, t0, t1):
 
 
 @inline
-def _facing_edges(corners, a0, a1, b0, b1, along_x, along_y):
-    """(separation, edge of a, edge of b) along the best axis that is not crosswise to the given direction."""
-    from_a, edge_a = _deepest_edge(corners, a0, a1, b0, b1, along_x, along_y)
-    from_b, edge_b = _deepest_edge(corners, b0, b1, a0, a1, along_x, along_y)
-    if from_a >= from_b:
-        edge_b = _opposite_edge(corners, edge_a, edge_a + 1 if edge_a + 1 < a1 else a0, b0, b1)
-    else:
-        edge_a = _opposite_edge(corners, edge_b, edge_b + 1 if edge_b + 1 < b1 else b0, a0, a1)
-    return max(from_a, from_b), edge_a, edge_b
+def _overlap(corners, i, j, k, m):
+    """Length over which edge (k, m) lies opposite to edge (i, j), along the latter."""
+    tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+    length = math.sqrt(tx * tx + ty * ty)
+    low = ((corners[m, 0] - corners[i, 0]) * tx + (corners[m, 1] - corners[i, 1]) * ty) / length
+    high = ((corners[k, 0] - corners[i, 0]) * tx + (corners[k, 1] - corners[i, 1]) * ty) / length
+    return min(high, length) - max(low, 0.0)
 
 
 @inline
-def _direction_and_overlap(corners, i, j, k, m):
-    """Unit direction of edge (i, j), and the length over which edge (k, m) lies opposite to it."""
-    tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
-    length = math.sqrt(tx * tx + ty * ty)
-    tx /= length
-    ty /= length
-    low = (corners[m, 0] - corners[i, 0]) * tx + (corners[m, 1] - corners[i, 1]) * ty
-    high = (corners[k, 0] - corners[i, 0]) * tx + (corners[k, 1] - corners[i, 1]) * ty
-    return tx, ty, min(high, length) - max(low, 0.0)
+def _keep(parts_out, edges_out, distance_out, first, count, a, b, i, k, separation):
+    """Writes a pair unless it was written since `first`; returns the new count."""
+    for n in range(first, min(count, edges_out.shape[0])):
+        if edges_out[n, 0] == i and edges_out[n, 1] == k:
+            return count
+    if count < parts_out.shape[0]:
+        parts_out[count, 0], parts_out[count, 1] = a, b
+        edges_out[count, 0], edges_out[count, 1] = i, k
+        distance_out[count] = separation
+    return count + 1
 
 
 @kernel
@@ -85,8 +82,8 @@ def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, pa
     parts_out     the two parts, (capacity, 2)
     edges_out     first corners of the edge of part a and of part b, (capacity, 2)
     distance_out  separation of the two parts [m], negative: overlap, (capacity,)
-    Two parts have one pair of faces, and a second, crosswise one where they meet corner to corner: a
-    block that slides off an edge goes on along the other face. At most one of them can touch.
+    Two parts have one pair of faces. Where they meet corner to corner, all pairs of faces that may come
+    to touch next are added: a block that slides over a corner goes on along the other face.
     Returns the number of pairs, which may exceed the capacity: call again with more room.
     """
     count = 0
@@ -104,24 +101,32 @@ def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, pa
                 continue
             a, b = (p, q) if p < q else (q, p)
             a0, a1, b0, b1 = part_starts[a], part_starts[a + 1], part_starts[b], part_starts[b + 1]
-            separation, i, k = _facing_edges(corners, a0, a1, b0, b1, 0.0, 0.0)
-            if separation > reach:
+            from_a, i = _deepest_edge(corners, a0, a1, b0, b1)
+            if from_a > reach:
                 continue
-            along_x, along_y = 0.0, 0.0
-            for crosswise in range(2):
-                if crosswise:
-                    across, i, k = _facing_edges(corners, a0, a1, b0, b1, along_x, along_y)
-                    if across < -4.0 * reach:
-                        break
-                if count < parts_out.shape[0]:
-                    parts_out[count, 0], parts_out[count, 1] = a, b
-                    edges_out[count, 0], edges_out[count, 1] = i, k
-                    distance_out[count] = separation
-                count += 1
-                j, m = i + 1 if i + 1 < a1 else a0, k + 1 if k + 1 < b1 else b0
-                along_x, along_y, overlap = _direction_and_overlap(corners, i, j, k, m)
-                if overlap > 2.0 * reach:
-                    break
+            from_b, k = _deepest_edge(corners, b0, b1, a0, a1)
+            if from_b > reach:
+                continue
+            separation = max(from_a, from_b)
+            if from_a >= from_b:
+                k = _opposite_edge(corners, i, i + 1 if i + 1 < a1 else a0, b0, b1)
+            else:
+                i = _opposite_edge(corners, k, k + 1 if k + 1 < b1 else b0, a0, a1)
+            start = count
+            count = _keep(parts_out, edges_out, distance_out, start, count, a, b, i, k, separation)
+            j, m = i + 1 if i + 1 < a1 else a0, k + 1 if k + 1 < b1 else b0
+            if _overlap(corners, i, j, k, m) > 2.0 * reach:
+                continue
+            for i in range(a0, a1):
+                j = i + 1 if i + 1 < a1 else a0
+                if -4.0 * reach < _separation(corners, i, j, b0, b1):
+                    k = _opposite_edge(corners, i, j, b0, b1)
+                    count = _keep(parts_out, edges_out, distance_out, start, count, a, b, i, k, separation)
+            for k in range(b0, b1):
+                m = k + 1 if k + 1 < b1 else b0
+                if -4.0 * reach < _separation(corners, k, m, a0, a1):
+                    i = _opposite_edge(corners, k, m, a0, a1)
+                    count = _keep(parts_out, edges_out, distance_out, start, count, a, b, i, k, separation)
     return count
 
 
