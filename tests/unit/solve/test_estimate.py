@@ -1,0 +1,65 @@
+"""`estimate.describe`: what `dem check` says about joints, stiffness, time step and cost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dem_cli import api
+from dem_cli.solve import simulation
+from dem_cli.solve.estimate import describe
+
+CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
+
+
+def rows(name: str, *overrides: str) -> dict[str, str]:
+    loaded = api.load_case(CASES / f"{name}.toml", overrides)
+    return dict(describe(loaded.case, api.build_model(loaded)))
+
+
+def test_wall_of_21_blocks(monkeypatch):
+    monkeypatch.setattr(simulation, "make_advance", None)  # the stepping loop is not even made
+    simulation.compiled_advance.cache_clear()
+    found = rows("wall_21")
+    # 3 + 4 blocks in turn: 4 bed joints below, 5 × 6 between courses; 3 + 2 head joints three times.
+    assert found["joints"] == "49, 98 contact points"
+    assert found["joint dry"] == "34 bed joints, 15 others"
+    # 18 whole blocks' worth of 0.04 × 0.0175 × 0.08 m, 2143 kg/m3, 9.81 m/s2
+    assert float(found["weight"].split()[0]) == pytest.approx(18 * 5.6e-5 * 2143 * 9.81, rel=1e-5)
+    assert found["smallest block"] == "'wall-1-1', 0.06 kg"
+    assert found["largest block"] == "'wall-1-2', 0.12 kg"
+    assert "kn·h/W 1e+06, kn and ks chosen (auto)" in found["stiffness dry"]
+    assert found["kinematics"].startswith("fixed (auto): all joints are closed")
+    assert "30,000 to 300,000 steps × 98 points × 10 ns" in found["cost"]
+    assert found["load"].startswith("mass: λ × weight of each block along [1.0, 0.0]; [21.19, 0] N")
+    assert found["monitors"] == "displacement of 'top-right'"
+
+
+def test_wall_of_231_blocks():
+    found = rows("wall_3")
+    # 11 + 21 × 20 bed joints; 10 and 9 head joints in 11 courses each.
+    assert found["joints"] == "640, 1,280 contact points"
+    assert found["joint dry"] == "431 bed joints, 209 others"
+
+
+def test_the_step_that_real_masses_would_allow():
+    # A free block on two springs K/2: the bound of the highest frequency is the one of Gershgorin.
+    found = rows("sliding_block", "joints.dry.kn=1e9", "joints.dry.ks=1e9", "analysis.kinematics='fixed'")
+    assert "'" in found["time step"]
+    soft = rows("sliding_block", "joints.dry.kn=1e7", "joints.dry.ks=1e7", "analysis.kinematics='fixed'")
+    step, longer = (float(text["time step"].split()[-2]) for text in (found, soft))
+    assert longer == pytest.approx(10 * step, rel=0.05)
+    assert "kn 1e+09 Pa/m, ks 1e+09 Pa/m" in found["stiffness dry"]
+    assert "auto" not in found["stiffness dry"]
+    assert found["kinematics"] == "fixed (as the case says)"
+
+
+def test_a_named_block_limits_the_step():
+    found = rows("wall_21", "joints.dry.kn=1e9", "joints.dry.ks=1e9")
+    assert "with real masses 'wall-" in found["time step"]
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_case_is_described(path):
+    assert {"joints", "time step", "cost", "load"} <= set(rows(path.stem))
