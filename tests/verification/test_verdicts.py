@@ -1,0 +1,224 @@
+"""What a run concludes: fails, cannot fail, does not stand, not converged; and what the load is a multiple of."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from casefiles import CASES
+from engine import block, rectangle, solve, tables
+
+VERIFICATION = CASES / "verification"
+QUIET = ("analysis.follow=0.0", "output.frames=0")
+BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
+WEIGHT = 2000.0 * 9.81
+
+
+def crate(**more) -> dict:
+    """A block of 1 × 1 m: slides at μ = 0.6."""
+    return tables(BASE, block("b", rectangle(0, 0, 1, 1)), **more)
+
+
+def test_fails():
+    summary, records = solve(crate())
+    assert summary["status"] == "ok"
+    assert summary["failure_mode"] == "sliding"
+    low, high = summary["failure_load_bracket"]
+    assert low == summary["failure_load"] == pytest.approx(0.6, rel=1e-4)
+    assert low < high <= low * 1.0021
+    assert summary["proof_of_failure"]["growth_when_time_doubles"] > 1.5
+    assert summary["mechanism"]["moving_blocks"] == {"count": 1, "first": ["b"]}
+    assert records.rows[0].stage == "gravity"
+
+
+@pytest.mark.parametrize("resolution", [0.02, 0.002, 0.0005])
+def test_bracket_is_as_narrow_as_asked(resolution):
+    summary, _ = solve(crate(analysis={"resolution": resolution}))
+    low, high = summary["failure_load_bracket"]
+    assert 0 < (high - low) / low <= resolution * 1.0001
+    assert low <= 0.6 * (1 + 1e-6) <= high * (1 + 1e-4)
+
+
+def test_cannot_fail():
+    summary, _ = solve(VERIFICATION / "wedged_block.toml")
+    assert summary["failure_load"] is None
+    assert summary["failure_mode"] is None
+    assert summary["status"] == "no failure up to a load multiplier of 20"
+    low, high = summary["failure_load_bracket"]
+    assert low >= 20.0
+    assert high is None
+
+
+@pytest.mark.parametrize("max_load", [0.3, 0.59])
+def test_does_not_fail_up_to_the_largest_load(max_load):
+    summary, _ = solve(crate(analysis={"max_load": max_load}))
+    assert summary["failure_load"] is None
+    assert summary["status"] == f"no failure up to a load multiplier of {max_load:g}"
+    assert summary["failure_load_bracket"][1] is None
+
+
+@pytest.mark.parametrize("name", ["overhang_falls", "leaning_column"])
+@pytest.mark.parametrize("kind", ["pushover", "gravity"])
+def test_does_not_stand(name, kind):
+    if kind == "pushover":
+        summary, _ = solve(VERIFICATION / f"{name}.toml")
+    else:
+        text = crate_over_the_edge(0.51)
+        summary, _ = solve(text)
+    assert summary["status"] == "does not stand under its dead loads"
+    assert not summary.get("failure_load")
+
+
+def crate_over_the_edge(share: float) -> dict:
+    """A block of which this share lies beyond the edge of its support."""
+    ledge = block("ledge", rectangle(-2, -1, 1 - share, 0), fixed=True)
+    return tables(ledge, block("b", rectangle(0, 0, 1, 1)), analysis={"kind": "gravity"})
+
+
+@pytest.mark.parametrize(("share", "stands"), [(0.49, True), (0.499, True), (0.501, False), (0.51, False)])
+def test_stands_up_to_its_balance(share, stands):
+    summary, _ = solve(crate_over_the_edge(share))
+    assert (summary["status"] == "ok") is stands
+
+
+def test_not_converged():
+    """A tiny budget: says so, keeps the bracket so far, names no failure load."""
+    summary, _ = solve(VERIFICATION / "wall_21.toml", *QUIET, "analysis.max_steps=9000")
+    assert summary["status"] == "not converged"
+    assert summary["failure_load"] is None
+    low, high = summary["failure_load_bracket"]
+    assert 0.0 <= low <= 0.6
+    assert high is None
+    assert any("max_steps" in warning for warning in summary["warnings"])
+
+
+def test_not_converged_exit_code(tmp_path):
+    command = [sys.executable, "-m", "dem_cli", "run", VERIFICATION / "wall_21.toml", "-q", "--json"]
+    command += ["-o", tmp_path / "out", "--set", "analysis.max_steps=9000"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 3, done.stderr
+    assert json.loads(done.stdout)["status"] == "not converged"
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["failure_load"] is None
+
+
+def test_more_steps_never_lose_an_equilibrium():
+    """Of two interrupted searches the one with more steps knows at least as much."""
+    lows = []
+    for steps in (6000, 9000, 12_000, 40_000):
+        summary, _ = solve(VERIFICATION / "wall_21.toml", *QUIET, f"analysis.max_steps={steps}")
+        lows.append(summary["failure_load_bracket"][0] or 0.0)
+        assert lows[-1] <= 0.601
+    assert lows[-1] > 0.59
+
+
+# -- what the multiplier multiplies, and what the stiffness is -----------------------------------------
+
+
+@pytest.mark.parametrize("force", [1.0, 1e6])
+def test_live_force(force):
+    """A live load of 1 N: the multiplier is the force in N."""
+    load = [{"block": "b", "force": [force, 0.0], "kind": "live"}]
+    summary, _ = solve(crate(load=load, analysis={"pattern": "live", "max_load": 1e9}))
+    assert summary["failure_load"] * force == pytest.approx(0.6 * WEIGHT, rel=1e-4)
+
+
+def test_live_force_with_a_lever():
+    """Pushed at its top a block of 1 × 1 m turns over at half its weight."""
+    load = [{"block": "b", "force": [1.0, 0.0], "at": [0.0, 1.0], "kind": "live"}]
+    summary, _ = solve(crate(load=load, analysis={"pattern": "live", "max_load": 1e9}))
+    assert summary["failure_load"] == pytest.approx(0.5 * WEIGHT, rel=1e-5)
+    assert summary["failure_mode"] == "rocking"
+
+
+def test_largest_live_force_by_default():
+    """A force of 1 N that must grow to 12 kN is no self-locking."""
+    # Fails: analysis.max_load = 100 by default counts in newtons where the live load is 1 N.
+    load = [{"block": "b", "force": [1.0, 0.0], "kind": "live"}]
+    summary, _ = solve(crate(load=load, analysis={"pattern": "live"}))
+    assert summary["status"] == "ok"
+
+
+def test_dead_force():
+    """A dead push uses up part of the friction: λ = μ − P/W; one from above adds to it."""
+    push = [{"block": "b", "force": [0.2 * WEIGHT, 0.0]}]
+    assert solve(crate(load=push))[0]["failure_load"] == pytest.approx(0.4, rel=1e-3)
+    press = [{"block": "b", "force": [0.0, -0.5 * WEIGHT]}]
+    assert solve(crate(load=press, friction=0.5))[0]["failure_load"] == pytest.approx(0.75, rel=1e-3)
+
+
+def test_upward_push_is_no_failure_load_below_the_weight():
+    """pattern = mass, straight up: the block lifts off at λ = 1."""
+    summary, _ = solve(crate(analysis={"direction": [0.0, 1.0]}))
+    assert summary["failure_load"] == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("direction", [(1.0, 0.0), (-1.0, 0.0), (3.0, 4.0), (1.0, -1.0)])
+def test_direction(direction):
+    """Sliding under a push along (cos a, sin a): λ = μ / (cos a + μ sin a)."""
+    summary, _ = solve(crate(analysis={"direction": list(direction)}, friction=0.3))
+    cosine, sine = np.array(direction) / np.hypot(*direction)
+    expected = 0.3 / (abs(cosine) + 0.3 * sine)
+    assert summary["failure_load"] == pytest.approx(expected, rel=1e-3)
+
+
+COLUMN = [block(f"c{i}", rectangle(0, 0.2 * i, 0.3, 0.2 * i + 0.2)) for i in range(5)]
+# Loads at which an equilibrium was proven with moving geometry, raised to in small steps from gravity.
+STANDS = {(1e9, 1.0): 0.2995, (1e9, 0.3): 0.2992, (1e9, 0.1): 0.2992, (5e7, 1.0): 0.293}
+
+
+def given(kn: float, ratio: float, kinematics: str = "auto") -> dict:
+    joint = {"friction": 0.6, "kn": kn, "ks": ratio * kn}
+    return tables(BASE, *COLUMN, joints={"dry": joint}, analysis={"kinematics": kinematics})
+
+
+@pytest.mark.parametrize(("kn", "kinematics"), [(1e9, "fixed"), (1e11, "fixed"), (1e11, "large")])
+@pytest.mark.parametrize("ratio", [0.1, 1.0])
+def test_given_stiffness_drops_out(kn, ratio, kinematics):
+    """Of fixed geometry always, of moving geometry where it is high; measured 1e-8 and 7e-4."""
+    summary, _ = solve(given(kn, ratio, kinematics))
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] == pytest.approx(0.3, rel=1e-7 if kinematics == "fixed" else 2e-3)
+
+
+@pytest.mark.parametrize(("kn", "ratio"), STANDS)
+def test_soft_given_joints_move_the_geometry(kn, ratio):
+    """Joints that let a column lean: moving geometry, a word about it, and no equilibrium above."""
+    # Fails: the first creep goes 15 elastic displacements far, past the peak; what is held there is taken for
+    # the highest equilibrium (measured 0.2988, 0.2954, 0.2947, 0.2759) and the "failure" above it is none.
+    summary, _ = solve(given(kn, ratio))
+    assert summary["kinematics"] == "large"
+    assert any("given kn" in line for line in [*summary["skipped"], *summary["warnings"]])
+    assert summary["failure_load_bracket"][1] > STANDS[kn, ratio]
+    assert 0.999 * STANDS[kn, ratio] < summary["failure_load"] <= 0.3
+
+
+def waxed_top(density: float) -> dict:
+    """A block of another material on a joint of its own friction, 0.2; all others have 0.6."""
+    return tables(
+        {**BASE, "material": "stone"},
+        block("b", rectangle(0, 0, 2, 0.5), material="stone"),
+        block("top", rectangle(0.5, 0.5, 1.5, 0.8), material="oak"),
+        materials={"stone": {"density": 2000.0}, "oak": {"density": density}},
+        joints={"dry": {"friction": 0.6}, "waxed": {"friction": 0.2}},
+        interface=[{"between": ["oak", "stone"], "joint": "waxed"}],
+    )
+
+
+def test_interface_decides_between_materials():
+    """The top block slides first, at the friction of its own joint."""
+    summary, _ = solve(waxed_top(2000.0))
+    assert summary["failure_load"] == pytest.approx(0.2, rel=2e-3)
+    assert summary["mechanism"]["moving_blocks"]["first"] == ["top"]
+
+
+@pytest.mark.parametrize("density", [700.0, 70.0, 7.0])
+def test_light_block_on_a_heavy_one(density):
+    """The friction angle does not ask for the weight."""
+    # Fails: an equilibrium is claimed at 1e-4 of the *mean* block weight; where the block that slides weighs a
+    # thousandth of it, 0.248 is "proven" and reported with status ok (0.2046 at 70 kg/m3, 0.2003 at 700).
+    summary, _ = solve(waxed_top(density))
+    assert summary["failure_load"] <= 0.2 * (1 + 1e-3)
+    assert summary["failure_load"] == pytest.approx(0.2, rel=3e-3)
