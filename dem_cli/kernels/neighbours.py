@@ -12,6 +12,7 @@ import numpy as np
 
 from dem_cli.kernels.jit import inline, kernel
 
+
 @inline
 def _separation(corners, i, j, t0, t1):
     """Distance of polygon t from the line of edge (i, j), negative where it lies behind."""

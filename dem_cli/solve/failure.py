@@ -35,10 +35,11 @@ PHASES = 5  # times that the rate is halved
 FIRST_PASS = 1000  # steps of the first creep phase, doubled from pass to pass
 REACH = 15.0  # displacement of the first creep phase, in elastic displacements at multiplier 1
 MOST_PASSES = 9
+AGREE = 0.01  # two passes that agree so well are slow enough; the proofs that follow do the rest
 ROWS = 20  # history rows of the first phase
 PROBE = 0.02  # internal multiplier of the first load
 HOLD_STEPS = 60_000
-SOFTENS = 0.05  # drop from the highest load of a creep to the held one that means the peak was passed
+SOFTENED, BEFORE_PEAK = 0.95, 0.7  # drop of the load past a peak; displacement to go back to, over that of the peak
 
 
 @dataclass(frozen=True)
@@ -72,8 +73,7 @@ class _Creep(NamedTuple):
 
     held: float | None  # proven equilibrium at its end
     power: float  # from the power balance of its last phase
-    highest: float  # mean over the best twentieth of its first phase
-    where: float  # share of the first phase at which that was
+    where: float  # share of the first phase at which the load was highest
 
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
@@ -117,27 +117,30 @@ def find_failure(
     if soft <= 0.0:
         raise SolverError("the live load moves nothing: no free block has a live load")
     start, limit = sim.save(), max_load / sim.live_scale
-    n, reach, previous = FIRST_PASS, REACH, None
+    n, reach, previous, bends = FIRST_PASS, REACH, None, False
     for number in range(MOST_PASSES):
         track.observer.progress(f"creep {number + 1}", search.low, search.peak_displacement, 0.1 + 0.08 * number)
         sim.restore(start)
-        held, power, highest, where = _creep(sim, n, reach * soft, budget, track)
+        held, power, where = _creep(sim, n, reach * soft, budget, track)
+        state = "unknown" if held is None else "equilibrium"
+        load = sim.load if held is None else held
+        search.passes.append(Pass("creep", n, load * sim.live_scale, state, power * sim.live_scale))
+        if sim.kinematics == "large" and where < 1.0:  # the curve bends down: stay before its peak
+            reach, bends = BEFORE_PEAK * reach * where, True
+            continue
         if held is None:
-            search.passes.append(Pass("creep", n, sim.load * sim.live_scale, "unknown", power * sim.live_scale))
             n *= 2
             continue
-        search.passes.append(Pass("creep", n, held * sim.live_scale, "equilibrium", power * sim.live_scale))
         _keep(search, sim, held)
-        if highest > (1.0 + SOFTENS) * abs(held) and reach > 1.0:  # past the peak: stop where it was
-            reach, previous, n = max(reach * where, 1.0), None, 2 * n
-            continue
         if held >= limit:
             search.status = "no failure"
             return search
+        if bends:
+            break  # an equilibrium before the peak: the load goes on from there
         if held > 0.5 * reach:  # still elastic: go on further
             reach *= 4.0
             continue
-        if previous is not None and abs(held - previous) < 2 * resolution * abs(held):
+        if previous is not None and abs(held - previous) < max(2 * resolution, AGREE) * abs(held):
             break
         previous, n = held, 2 * n
     return _raise_to_failure(sim, search, resolution, limit, budget, track)
@@ -153,7 +156,12 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
         sim.advance(n // ROWS, sim.creep_mode)
         loads.append(sim.control[slot.MEAN_LOAD])
         track.keep("loading")
+        if sim.kinematics == "large" and loads[-1] < SOFTENED * max(loads):
+            break
     where = (1 + int(np.argmax(loads))) / ROWS
+    budget.spend(n, "creeping to failure")
+    if len(loads) < ROWS:
+        return _Creep(None, loads[-1], where)
     for _ in range(PHASES):
         rate *= 0.5
         sim.control[slot.RATE] = rate
@@ -161,7 +169,7 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
         track.keep("loading")
     check_finite(sim)
     power = sim.control[slot.MEAN_LOAD] - sim.control[slot.MEAN_POWER] / (rate * (n // 2))
-    budget.spend(n + PHASES * (n // 2), "creeping to failure")
+    budget.spend(PHASES * (n // 2), "creeping to failure")
     sim.control[slot.RATE] = 0.0
     calm = 0
     for _ in range(HOLD_STEPS // CHUNK):
@@ -171,8 +179,8 @@ def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Trac
         if calm == 2:
             load = sim.load
             sim.rest()
-            return _Creep(load, power, max(loads), where)
-    return _Creep(None, power, max(loads), where)
+            return _Creep(load, power, where)
+    return _Creep(None, power, where)
 
 
 def _keep(search: Search, sim: Simulation, load: float) -> None:

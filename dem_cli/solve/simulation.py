@@ -125,7 +125,7 @@ class Simulation:
         if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
-            contacts.stale[:-1] = [tuple(row) in asked for row in joints.edges.tolist()]
+            contacts.stale[:-1] |= np.array([tuple(row) in asked for row in joints.edges.tolist()], bool)
         self.joints, self.contacts = joints, contacts
         self._after_detection()
 
