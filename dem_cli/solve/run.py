@@ -132,8 +132,8 @@ class Job:
         if overlap > OVERLAP:
             self.warnings.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
         summary = {
-            "joints": len(sims[0].joints.blocks),
-            "contacts": len(sims[0].joints.kn),
+            "joints": sims[0].first_joints,
+            "contacts": 2 * sims[0].first_joints,
             "steps": sims[-1].steps,
             "time_step": 1.0,
             "solve_seconds": self.clock.seconds(),

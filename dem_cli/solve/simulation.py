@@ -96,6 +96,7 @@ class Simulation:
         self.detections = 0
         self.reference_positions = positions.copy()
         self._detect_first()
+        self.first_joints = len(self.joints.blocks)  # closed or nearly so at the start
 
     # -- detection ---------------------------------------------------------------------------------
 
