@@ -20,7 +20,7 @@ from engine import (
 )  # fmt: skip
 
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE
+from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
 from dem_cli.solve.simulation import ALPHA
 
 FOLLOWED = ["collapse"]
@@ -287,3 +287,43 @@ def test_direction_of_the_push():
 def test_scene_is_the_one_that_is_meant():
     model = scene(SLIDING_WALL).model
     assert model.n_blocks == 1 + 2 + 3 + 2 + 3
+
+
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+def test_resting_block_does_not_creep(kinematics):
+    """A million steps at 95 % of the sliding limit: true stick, no drift."""
+    sim = simulation(tables(BASE, block("b", rectangle(0, 0, 1, 1))), kinematics)
+    sim.use(0.6, COMBINED, COMBINED)
+    sim.set_load(0.95 * 0.6)
+    sim.advance(20_000, slot.HOLD_LOAD)
+    before, friction = sim.save_places(), sim.ledger[slot.FRICTION]
+    sim.advance(1_000_000, slot.HOLD_LOAD)
+    assert np.abs(sim.save_places() - before).max() < 1e-12
+    assert sim.ledger[slot.FRICTION] == friction
+
+
+def test_heavy_lintel_on_small_blocks():
+    """Two pads carry a lintel of two thousand times their weight, each its half."""
+    pads = [block("left", rectangle(0, 0, 0.05, 0.05)), block("right", rectangle(1.95, 0, 2, 0.05))]
+    lintel = block("lintel", rectangle(0, 0.05, 2, 2.5))
+    summary, _ = solve(tables(BASE, *pads, lintel, analysis={"kind": "gravity"}))
+    assert summary["status"] == "ok"
+    sim = simulation(tables(BASE, *pads, lintel))
+    sim.advance(100_000, slot.HOLD_LOAD)
+    base = sim.model.block_ids.index("base")
+    below = (sim.joints.blocks == base).any(axis=1).repeat(2)
+    weight = sim.model.masses * 9.81
+    half = 0.5 * weight[sim.model.block_ids.index("lintel")] + weight[sim.model.block_ids.index("left")]
+    assert sim.contacts.normal[below].reshape(2, 2).sum(axis=1) == pytest.approx([half, half], rel=1e-6)
+
+
+def test_column_of_twenty_drums_stands():
+    """On a joint of one block each; shoved a little, it stands again."""
+    drums = [block(f"d{i}", rectangle(0, 0.5 * i, 1, 0.5 * i + 0.5)) for i in range(20)]
+    sim = simulation(tables(BASE, *drums), "large")
+    relax(sim, 0.0, 1e-5)
+    sim.bodies.velocities[1:, 0] = 1e-7 * sim.bodies.positions[1:, 1]
+    assert relax(sim, 0.0, 1e-5).state == "equilibrium"
+    assert np.abs(sim.displacement()[:, 0]).max() < 1e-3
+    bed = sim.contacts.normal.reshape(-1, 2).sum(axis=1).max()
+    assert bed == pytest.approx(sim.model.masses[1:].sum() * 9.81, rel=1e-5)

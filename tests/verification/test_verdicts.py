@@ -61,15 +61,10 @@ def test_does_not_fail_up_to_the_largest_load(max_load):
 
 
 @pytest.mark.parametrize("name", ["overhang_falls", "leaning_column"])
-@pytest.mark.parametrize("kind", ["pushover", "gravity"])
-def test_does_not_stand(name, kind):
-    if kind == "pushover":
-        summary, _ = solve(VERIFICATION / f"{name}.toml")
-    else:
-        text = crate_over_the_edge(0.51)
-        summary, _ = solve(text)
+def test_does_not_stand(name):
+    summary, _ = solve(VERIFICATION / f"{name}.toml")
     assert summary["status"] == "does not stand under its dead loads"
-    assert not summary.get("failure_load")
+    assert summary["failure_load"] is None
 
 
 def crate_over_the_edge(share: float) -> dict:
@@ -186,8 +181,6 @@ def test_given_stiffness_drops_out(kn, ratio, kinematics):
 @pytest.mark.parametrize(("kn", "ratio"), STANDS)
 def test_soft_given_joints_move_the_geometry(kn, ratio):
     """Joints that let a column lean: moving geometry, a word about it, and no equilibrium above."""
-    # Fails: the first creep goes 15 elastic displacements far, past the peak; what is held there is taken for
-    # the highest equilibrium (measured 0.2988, 0.2954, 0.2947, 0.2759) and the "failure" above it is none.
     summary, _ = solve(given(kn, ratio))
     assert summary["kinematics"] == "large"
     assert any("given kn" in line for line in [*summary["skipped"], *summary["warnings"]])
