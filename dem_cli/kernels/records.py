@@ -63,7 +63,7 @@ class Loads(NamedTuple):
     dead: np.ndarray  # [N, N m], (n_blocks, n_dof)
     live: np.ndarray  # per unit of the load multiplier [N, N m], (n_blocks, n_dof)
     inverse_masses: np.ndarray  # fictitious or real; 0: prescribed velocity, (n_blocks, n_dof)
-    force_scales: np.ndarray  # 1 for forces, 1/radius [1/m] for moments: unbalanced forces in N, (n_blocks, n_dof)
+    force_scales: np.ndarray  # unbalanced force × scale = its share of the block's own weight, (n_blocks, n_dof)
 
 
 # Slots of the vector `ledger`: sums over steps [J].
@@ -75,7 +75,7 @@ DEAD_FACTOR = 0  # multiplies dead loads
 LIVE_FACTOR = 1  # multiplies live loads
 RATE = 2  # creep: prescribed live·v per step
 DAMP = 3  # local damping: share of |F| against the velocity
-UNBALANCED = 4  # out: largest unbalanced force [N] of the last step
+UNBALANCED = 4  # out: largest unbalanced force of the last step, in weights of its own block
 MEAN_LOAD = 5  # out: mean live factor over the call
 MEAN_POWER = 6  # out: sum of residual·v over the call
 TRAVEL_LIMIT = 7  # stop when a corner may have moved that far since detection [m]

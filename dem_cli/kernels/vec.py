@@ -190,6 +190,8 @@ def _add_torques(levers, normal_part, tangent_parts, start):
 def load_frame(frames, point, like):
     """The frame of a point: d unit vectors, normal first. In 2D the tangent is the normal turned by +90°."""
     d = len(like)
+    if d == 2:
+        return ((frames[point, 0], frames[point, 1]), (-frames[point, 1], frames[point, 0]))
     return tuple(tuple(frames[point, k * d : k * d + d]) for k in range(d))
 
 

@@ -61,7 +61,7 @@ class HistoryRow(NamedTuple):
     step: int
     load: float
     displacement: float
-    unbalanced: float  # largest unbalanced force over the mean block weight
+    unbalanced: float  # largest unbalanced force on a block over its own weight
     overlap: float  # largest overlap [m]
     energy: Energy
     monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables

@@ -49,7 +49,11 @@ class PushoverAnalysis(AnalysisBase):
     )
     resolution: float = Field(default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load")
     follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
-    max_load: float = Field(default=100.0, gt=0.0, description="give up above this multiplier (self-locking)")
+    max_load: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="give up above this multiplier; default: live loads of 100 times the dead ones",
+    )
 
 
 class SettlementAnalysis(AnalysisBase):

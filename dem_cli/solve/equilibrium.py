@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.simulation import Simulation
 
 CHUNK = 100  # steps between two looks
-TOLERANCE = 1e-4  # unbalanced force of a claimed equilibrium, in mean block weights
+TOLERANCE = 1e-4  # unbalanced force on any block of a claimed equilibrium, in its own weight
 GRAVITY_TOLERANCE = 1e-5
 COMBINED = 0.3  # combined damping at constant load
 RELAX_SAFETY, CREEP_SAFETY = 0.6, 0.85  # mass scaling for FIRE and for local damping (numerics, section 3)
@@ -32,7 +32,7 @@ class Verdict:
     """What happened at a constant load."""
 
     state: str  # "equilibrium" | "failure" | "unknown"
-    unbalanced: float  # largest unbalanced force at the end, in mean block weights
+    unbalanced: float  # largest unbalanced force at the end, in weights of its own block
     released: float = 0.0  # failure: share of the work of the loads that became motion or was damped
     growth: float = 0.0  # failure: growth of the displacement in the last doubling of time
 

@@ -35,6 +35,7 @@ PHASES = 5  # times that the rate is halved
 FIRST_PASS = 1000  # steps of the first creep phase, doubled from pass to pass
 REACH = 15.0  # displacement of the first creep phase, in elastic displacements at multiplier 1
 MOST_PASSES = 9
+LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 AGREE = 0.01  # two passes that agree so well are slow enough; the proofs that follow do the rest
 ROWS = 20  # history rows of the first phase
 PROBE = 0.02  # internal multiplier of the first load
@@ -65,6 +66,7 @@ class Search:
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: tuple | None = None  # state of the highest equilibrium
     failing: Verdict | None = None
+    limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[Pass] = field(default_factory=list)
 
 
@@ -103,20 +105,21 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
 
 def find_failure(
-    sim: Simulation, resolution: float, max_load: float, budget: Budget, track: Track, search: Search
+    sim: Simulation, resolution: float, max_load: float | None, budget: Budget, track: Track, search: Search
 ) -> Search:
     """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
 
-    max_load is the multiplier, as users know it, above which the structure counts as self-locking. What
-    is found goes to `search` as it is found, so that it is not lost where the budget ends; rows of the
-    last creep stay in the track.
+    max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
+    LOCKED times the dead loads). What is found goes to `search` as it is found, so that it is not lost
+    where the budget ends; rows of the last creep stay in the track.
     """
     search.low, search.held = 0.0, sim.save()
     search.compliance, search.elastic = compliance(sim)
     soft = search.compliance
     if soft <= 0.0:
         raise SolverError("the live load moves nothing: no free block has a live load")
-    start, limit = sim.save(), max_load / sim.live_scale
+    start, limit = sim.save(), LOCKED if max_load is None else max_load / sim.live_scale
+    search.limit = limit * sim.live_scale
     n, reach, previous, bends = FIRST_PASS, REACH, None, False
     for number in range(MOST_PASSES):
         track.observer.progress(f"creep {number + 1}", search.low, search.peak_displacement, 0.1 + 0.08 * number)

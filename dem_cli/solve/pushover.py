@@ -43,7 +43,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
-    return job.outcome(sims, _answer(search, sim, case) | found)
+    return job.outcome(sims, _answer(search, sim) | found)
 
 
 def _search(job: Job) -> tuple[Search, Simulation]:
@@ -86,11 +86,11 @@ def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[s
         return falling, {"load": 0.0, "displacement": 0.0}
 
 
-def _answer(search: Search, sim: Simulation, case: Case) -> dict[str, Any]:
+def _answer(search: Search, sim: Simulation) -> dict[str, Any]:
     """The failure load and how it was obtained."""
     status = search.status
     if status == "no failure":
-        status = f"no failure up to a load multiplier of {case.analysis.max_load:g}"
+        status = f"no failure up to a load multiplier of {search.limit:g}"
     answer: dict[str, Any] = {
         "status": status,
         "failure_load": search.low if search.status == "ok" else None,

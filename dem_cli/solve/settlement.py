@@ -65,7 +65,8 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
 def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
     motion = _motions(case, sim)
-    largest = float(np.abs(motion / sim.loads.force_scales).max())
+    reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
+    largest = float(np.abs(motion * reach).max())
     elastic = max(sim.largest_displacement(), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (PER_STEP * elastic), FEWEST) / ROWS)), 1)
     every = max(ROWS // max(case.output.frames - 2, 1), 1)

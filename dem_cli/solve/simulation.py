@@ -84,10 +84,10 @@ class Simulation:
         live = model.live_loads * live_scale
         dead[model.fixed] = 0.0
         live[model.fixed] = 0.0
-        force_scales = np.ones((n, d + r))
-        force_scales[:, d:] = 1.0 / self.shape.radii[:, None]
+        force_scales = np.empty((n, d + r))
+        force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
+        force_scales[:, d:] /= self.shape.radii[:, None]
         self.loads = Loads(np.ascontiguousarray(dead), np.ascontiguousarray(live), np.zeros((n, d + r)), force_scales)
-        self.weight = mean_weight(dead[self.free], live[self.free], d)
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = ALPHA
@@ -207,8 +207,8 @@ class Simulation:
 
     @property
     def unbalanced(self) -> float:
-        """Largest unbalanced force of the last step over the mean block weight."""
-        return self.control[slot.UNBALANCED] / self.weight
+        """Largest unbalanced force of a block in the last step, over its own weight."""
+        return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float = ALPHA, change: float = 0.0) -> None:
         """Local and combined damping, and fictitious masses with another safety."""
@@ -335,6 +335,13 @@ def smallest_edge(model: Model) -> float:
     following[starts[1:] - 1] = starts[:-1]
     shortest = np.sqrt(((vertices[following] - vertices) ** 2).sum(axis=1)).min()
     return float(shortest)
+
+
+def own_weights(dead: np.ndarray, live: np.ndarray, dimension: int) -> np.ndarray:
+    """Dead force on each block [N]; where there is next to none, a millionth of the mean, (n_blocks,)."""
+    weights = np.sqrt((dead[:, :dimension] ** 2).sum(axis=1))
+    loaded = weights > 0.0
+    return np.maximum(weights, 1e-6 * mean_weight(dead[loaded], live, dimension))
 
 
 def mean_weight(dead: np.ndarray, live: np.ndarray, dimension: int) -> float:
