@@ -140,4 +140,6 @@ def _adopt(
         for source in (2 * i, 2 * i + 1):
             if memory.normal[source] > 0.0:
                 distance = ((new.points[candidates] - old.points[source]) ** 2).sum(axis=1)
-                _copy(contacts, memory, candidates[[distance.argmin()]], np.array([source]))
+                heir = candidates[[distance.argmin()]]
+                _copy(contacts, memory, heir, np.array([source]))
+                new.kn[heir], new.ks[heir] = old.kn[source], old.ks[source]

@@ -98,13 +98,13 @@ def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, 
 
 @inline
 def _kick(
-    velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales,
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales, speed_limits,
     dead, live, damp, damp_change, keep, steer, impulse, dt, ledger,
 ):  # fmt: skip
     """Velocities from forces, damped; returns (largest force, residual power).
 
     Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
-    displacement; whatever steering or damping takes from the motion is booked as damping.
+    displacement; whatever steering, damping or a speed limit takes from the motion is booked as damping.
     """
     external = contact = damping = support = power = largest = 0.0
     for i in range(forces.size):
@@ -121,12 +121,15 @@ def _kick(
         drag = _drag(unbalanced, previous[i], old, damp, damp_change)
         previous[i] = unbalanced
         pushed = dt * applied + impulse * live_loads[i]
-        new = keep * old + inverse * (steer * unbalanced + dt * (force - drag) + pushed)
+        free = keep * old + inverse * (steer * unbalanced + dt * (force - drag) + pushed)
+        new = min(max(free, -speed_limits[i]), speed_limits[i])
         velocities[i] = new
         mean = 0.5 * (old + new)
         external += pushed * mean
         contact += force * mean
         damping += drag * mean
+        if new != free:
+            damping += mean * (free - new) / (inverse * dt)
         if keep != 1.0:
             damping += mean * ((1.0 - keep) * old / inverse - steer * unbalanced) / dt
         power += unbalanced * mean
@@ -188,6 +191,7 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
         previous = bodies.unbalanced.ravel()
         dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
         inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
+        speed_limits = loads.speed_limits.ravel()
         creeps = mode in (CREEP, TILT_CREEP)
         stiffness = 0.0
         if creeps:
@@ -220,7 +224,7 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
                     velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control
                 )
             largest, power = _kick(
-                velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales,
+                velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales, speed_limits,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt, ledger,
             )  # fmt: skip
             control[UNBALANCED] = largest

@@ -64,6 +64,7 @@ class Loads(NamedTuple):
     live: np.ndarray  # per unit of the load multiplier [N, N m], (n_blocks, n_dof)
     inverse_masses: np.ndarray  # fictitious or real; 0: prescribed velocity, (n_blocks, n_dof)
     force_scales: np.ndarray  # unbalanced force × scale = its share of the block's own weight, (n_blocks, n_dof)
+    speed_limits: np.ndarray  # largest velocity; infinite but for blocks that fall in pseudo-time, (n_blocks, n_dof)
 
 
 # Slots of the vector `ledger`: sums over steps [J].

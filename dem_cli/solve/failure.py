@@ -18,6 +18,7 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.solve.equilibrium import (
     CHUNK,
+    CREEP_SAFETY,
     GRAVITY_TOLERANCE,
     TOLERANCE,
     Budget,
@@ -152,6 +153,7 @@ def find_failure(
 def _creep(sim: Simulation, n: int, distance: float, budget: Budget, track: Track) -> _Creep:
     """Decelerating creep over about `distance` [J] and a hold."""
     rate = distance / n
+    sim.use(CREEP_SAFETY)
     sim.control[slot.RATE] = rate
     del track.kept[1:]  # rows of the pass before; the first is that of gravity
     loads = []

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, GRAVITY_TOLERANCE, Budget, check_finite, relax
+from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, GRAVITY_TOLERANCE, Budget, check_finite, relax
 from dem_cli.solve.joints import FIXED_RATIO
 from dem_cli.solve.track import Track
 
@@ -23,6 +23,7 @@ FEWEST, MOST = 40_000, 60_000  # steps of the whole way, about: fewer would thro
 GROWTH = 1.15  # of the rate from one look to the next, so that nothing is thrown at the start
 ROWS = 250  # history rows
 SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
+FALL = 1e-3  # speed limit of blocks that fall, in smallest edges per step: they land softly
 NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
 
 
@@ -49,7 +50,8 @@ def follow(
     """
     relax(sim, 0.0, GRAVITY_TOLERANCE)
     track.write("gravity")
-    sim.use(CREEP_SAFETY, COMBINED, COMBINED)
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
     sim.control[slot.RATE] = rate / GROWTH**30
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []

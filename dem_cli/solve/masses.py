@@ -7,6 +7,8 @@ import numpy as np
 from dem_cli.kernels.records import Bodies, Joints, Shape
 from dem_cli.model.model import Model
 
+SLOW_FALL = 1e-4  # acceleration of a structure without any contact, in radii of its blocks per step²
+
 
 def contact_rows(joints: Joints) -> np.ndarray:
     """|∂(relative displacement)/∂(dof)| of all points, (n_points, d directions, 2 blocks, n_dof); 2D."""
@@ -40,10 +42,13 @@ def fictitious_masses(
         share = (rows[:, :, side] * (stiffness * reach)[:, :, None]).sum(axis=1)
         np.add.at(masses, blocks[:, side], share / weights[blocks[:, side]])
     masses /= 4.0 * safety**2
-    # Blocks that touch nothing now: as heavy as a typical block that does.
+    # Blocks that touch nothing now: as heavy as a typical block that does, or falling slowly.
     for k in range(masses.shape[1]):
         lonely = masses[:, k] <= 0.0
-        typical = np.median(masses[~lonely, k]) if (~lonely).any() else 1.0
-        masses[lonely, k] = typical
+        if lonely.all():
+            weights = np.maximum(np.abs(model.dead_loads).max(axis=1), 1e-300)
+            masses[:, k] = weights / (SLOW_FALL * shape.radii) * (1.0 if k < model.dimension else shape.radii**2)
+        else:
+            masses[lonely, k] = np.median(masses[~lonely, k])
     inverse_out[:] = 1.0 / masses
     inverse_out[model.fixed] = 0.0

@@ -11,8 +11,9 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
-from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, Budget, check_finite, settle_or_fail
+from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, Budget, check_finite, settle_or_fail
 from dem_cli.solve.failure import stand
+from dem_cli.solve.follow import FALL
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
@@ -70,8 +71,9 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     elastic = max(sim.largest_displacement(), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (PER_STEP * elastic), FEWEST) / ROWS)), 1)
     every = max(ROWS // max(case.output.frames - 2, 1), 1)
-    sim.use(CREEP_SAFETY, COMBINED, COMBINED)
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
+    sim.limit_speed(max(FALL * sim.smallest, 20.0 * largest / (chunk * ROWS)))
     sim.bodies.velocities[sim.model.fixed] = (motion / (chunk * ROWS))[sim.model.fixed]
     for number in range(1, ROWS + 1):
         sim.advance(chunk, slot.HOLD_LOAD)

@@ -87,7 +87,13 @@ class Simulation:
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
         force_scales[:, d:] /= self.shape.radii[:, None]
-        self.loads = Loads(np.ascontiguousarray(dead), np.ascontiguousarray(live), np.zeros((n, d + r)), force_scales)
+        self.loads = Loads(
+            dead=np.ascontiguousarray(dead),
+            live=np.ascontiguousarray(live),
+            inverse_masses=np.zeros((n, d + r)),
+            force_scales=force_scales,
+            speed_limits=np.full((n, d + r), np.inf),
+        )
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = ALPHA
@@ -216,6 +222,11 @@ class Simulation:
         if safety != self.safety:
             self.safety = safety
             self.set_masses()
+
+    def limit_speed(self, limit: float) -> None:
+        """Largest motion of a centroid or of a corner about it in a step [m]: pseudo-time is no time to fall freely."""
+        self.loads.speed_limits[:] = limit
+        self.loads.speed_limits[:, self.model.dimension :] /= self.shape.radii[:, None]
 
     # -- state -------------------------------------------------------------------------------------
 

