@@ -183,7 +183,6 @@ def test_energy_of_the_state_closes_while_sliding_and_lifting(kinematics):
 @pytest.mark.parametrize("mode", MODES)
 def test_compiled_is_what_is_written(mode, kinematics):
     """The stepping loop as plain Python and compiled: the same bits."""
-    # Fails: plain load_frame reads the tangent from columns that are never filled in 2D (kernels.vec).
     results = []
     for plain in (False, True):
         sim = simulation(tables(*running_wall(2, 2)), kinematics)

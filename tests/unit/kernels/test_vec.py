@@ -63,7 +63,6 @@ def test_arrays(n):
 
 @pytest.mark.parametrize("d", [2, 3])
 def test_frames_and_levers(d):
-    # Fails for d = 2: plain load_frame reads the tangent from the array, the compiled one turns the normal.
     spin = TUPLES[1 if d == 2 else 3]
     assert frames(ROWS, TUPLES[d], spin) == frames.py_func(ROWS, TUPLES[d], spin)
 
