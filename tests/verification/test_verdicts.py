@@ -130,7 +130,7 @@ def test_live_force_with_a_lever():
 
 def test_largest_live_force_by_default():
     """A force of 1 N that must grow to 12 kN is no self-locking."""
-    # Fails: analysis.max_load = 100 by default counts in newtons where the live load is 1 N.
+    # The default largest load counts in dead loads, not in newtons.
     load = [{"block": "b", "force": [1.0, 0.0], "kind": "live"}]
     summary, _ = solve(crate(load=load, analysis={"pattern": "live"}))
     assert summary["status"] == "ok"
