@@ -10,7 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from dem_cli.kernels.jit import inline, kernel
+import numpy as np
+
+from dem_cli.kernels.jit import always_inline, inline, kernel
 from dem_cli.kernels.records import (
     CONTACT,
     CREEP,
@@ -97,47 +99,103 @@ def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, 
 
 
 @inline
+def _clip(x, limit):
+    """x between −limit and limit."""
+    return limit if x > limit else -limit if x < -limit else x
+
+
+@inline
 def _kick(
-    velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales, speed_limits,
-    dead, live, damp, damp_change, keep, steer, impulse, dt, ledger,
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
+    dead, live, damp, damp_change, keep, steer, impulse, dt,
 ):  # fmt: skip
-    """Velocities from forces, damped; returns (largest force, residual power).
+    """Velocities from forces, damped; leaves mean velocities and damping forces for `_book`.
+
+    Plain loops without sums, so that the compiler works on several degrees of freedom at once.
+    """
+    if keep == 1.0:
+        for i in range(forces.size):
+            old, inverse = velocities[i], inverse_masses[i]
+            applied = dead * dead_loads[i] + live * live_loads[i]
+            unbalanced = forces[i] + applied if inverse > 0.0 else 0.0
+            drag = _drag(unbalanced, previous[i], old, damp, damp_change)
+            previous[i] = unbalanced
+            free = old + inverse * (dt * (forces[i] - drag) + (dt * applied + impulse * live_loads[i]))
+            new = _clip(free, speed_limits[i])
+            velocities[i] = new
+            means[i] = 0.5 * (old + new)
+            drags[i] = drag + ((free - new) / (inverse * dt) if new != free else 0.0)
+        return
+    for i in range(forces.size):
+        old, inverse = velocities[i], inverse_masses[i]
+        if inverse == 0.0:
+            means[i], drags[i] = old, 0.0
+            continue
+        applied = dead * dead_loads[i] + live * live_loads[i]
+        unbalanced = forces[i] + applied
+        drag = _drag(unbalanced, previous[i], old, damp, damp_change)
+        previous[i] = unbalanced
+        pushed = dt * applied + impulse * live_loads[i]
+        free = keep * old + inverse * (steer * unbalanced + dt * (forces[i] - drag) + pushed)
+        new = _clip(free, speed_limits[i])
+        velocities[i] = new
+        means[i] = 0.5 * (old + new)
+        drags[i] = drag + (((1.0 - keep) * old + free - new) / inverse - steer * unbalanced) / dt
+
+
+@inline
+def _book(
+    forces, previous, dead_loads, live_loads, inverse_masses, means, drags,
+    dead, live, impulse, dt, carried, ledger,
+):  # fmt: skip
+    """Work of one step into the ledger; returns the residual power.
 
     Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
     displacement; whatever steering, damping or a speed limit takes from the motion is booked as damping.
     """
-    external = contact = damping = support = power = largest = 0.0
+    by_dead = by_live = contact = damping = power = support = 0.0
     for i in range(forces.size):
-        old = velocities[i]
-        inverse = inverse_masses[i]
-        force = forces[i]
-        if inverse == 0.0:
-            support -= force * old
-            continue
-        applied = dead * dead_loads[i] + live * live_loads[i]
-        unbalanced = force + applied
-        size = abs(unbalanced)
-        largest = max(largest, size * force_scales[i])
-        drag = _drag(unbalanced, previous[i], old, damp, damp_change)
-        previous[i] = unbalanced
-        pushed = dt * applied + impulse * live_loads[i]
-        free = keep * old + inverse * (steer * unbalanced + dt * (force - drag) + pushed)
-        new = min(max(free, -speed_limits[i]), speed_limits[i])
-        velocities[i] = new
-        mean = 0.5 * (old + new)
-        external += pushed * mean
-        contact += force * mean
-        damping += drag * mean
-        if new != free:
-            damping += mean * (free - new) / (inverse * dt)
-        if keep != 1.0:
-            damping += mean * ((1.0 - keep) * old / inverse - steer * unbalanced) / dt
-        power += unbalanced * mean
-    ledger[EXTERNAL] += external
-    ledger[CONTACT] += dt * contact
+        mean = means[i]
+        by_dead += dead_loads[i] * mean
+        by_live += live_loads[i] * mean
+        contact += forces[i] * mean
+        damping += drags[i] * mean
+        power += previous[i] * mean
+    if carried:
+        for i in range(forces.size):
+            if inverse_masses[i] == 0.0:
+                support -= forces[i] * means[i]
+    ledger[EXTERNAL] += dt * dead * by_dead + (dt * live + impulse) * by_live
+    ledger[CONTACT] += dt * (contact + support)  # of the free blocks alone
     ledger[DAMPING] += dt * damping
     ledger[SUPPORT] += dt * support
-    return largest, power
+    return power
+
+
+@always_inline
+def _turn(angle):
+    """cos and sin; for small angles the polynomials of fdlibm, the same on every machine, below 1 ulp."""
+    if abs(angle) > 0.7854:
+        return math.cos(angle), math.sin(angle)
+    z = angle * angle
+    r = 8.33333333332248946124e-03 + z * (
+        -1.98412698298579493134e-04
+        + z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))
+    )
+    s = angle + z * angle * (-1.66666666666666324348e-01 + z * r)
+    r = z * (
+        4.16666666666666019037e-02
+        + z * (
+            -1.38888888888741095749e-03
+            + z * (
+                2.48015872894767294178e-05
+                + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))
+            )
+        )
+    )
+    half = 0.5 * z
+    w = 1.0 - half
+    return w + (((1.0 - w) - half) + z * r), s
 
 
 @inline
@@ -145,7 +203,8 @@ def drift_centroids(bodies, shape, dt, like):
     """Positions from velocities."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
     d = len(like)
-    for i in range(positions.shape[0]):
+    for number in range(positions.shape[0]):
+        i = np.uint64(number)
         for k in range(d):
             positions[i, k] += dt * velocities[i, k]
         orientations[i, 0] += dt * velocities[i, d]
@@ -156,33 +215,33 @@ def drift_centroids(bodies, shape, dt, like):
 def drift_corners(bodies, shape, dt, like):
     """Positions and corners from velocities; returns the largest travel of a corner since detection [m]."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
-    corners, travel = bodies.corners, bodies.travel
+    corners, travel, radii, turns = bodies.corners, bodies.travel, shape.radii, bodies.turns
+    corner_blocks, arms = shape.corner_blocks, shape.corner_arms
     largest = 0.0
-    for i in range(positions.shape[0]):
+    for number in range(positions.shape[0]):
+        i = np.uint64(number)
         vx, vy, w = velocities[i, 0], velocities[i, 1], velocities[i, 2]
         positions[i, 0] += dt * vx
         positions[i, 1] += dt * vy
-        orientations[i, 0] += dt * w
-        travel[i] += dt * (math.sqrt(vx * vx + vy * vy) + shape.radii[i] * abs(w))
-        largest = max(largest, travel[i])
-    block, c, s = -1, 1.0, 0.0
-    for i in range(corners.shape[0]):
-        if shape.corner_blocks[i] != block:
-            block = shape.corner_blocks[i]
-            c, s = math.cos(orientations[block, 0]), math.sin(orientations[block, 0])
-        x, y = shape.corner_arms[i, 0], shape.corner_arms[i, 1]
+        angle = orientations[i, 0] + dt * w
+        orientations[i, 0] = angle
+        turns[i, 0], turns[i, 1] = _turn(angle)
+        moved = travel[i] + dt * (math.sqrt(vx * vx + vy * vy) + radii[i] * abs(w))
+        travel[i] = moved
+        if moved > largest:
+            largest = moved
+    for number in range(corners.shape[0]):
+        i = np.uint64(number)
+        block = np.uint64(corner_blocks[i])
+        c, s = turns[block, 0], turns[block, 1]
+        x, y = arms[i, 0], arms[i, 1]
         corners[i, 0] = positions[block, 0] + c * x - s * y
         corners[i, 1] = positions[block, 1] + s * x + c * y
     return largest
 
 
-@inline
-def keep_points(joints, contacts, positions, corners):
-    """Fixed geometry: the points stay where they are."""
-
-
-def make_advance(contact_forces: Callable, place_points: Callable, drift: Callable) -> Callable:
-    """The compiled stepping loop for one contact loop, one contact geometry and one way to move the blocks."""
+def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
+    """The compiled stepping loop for one contact loop and one way to move the blocks."""
 
     @kernel
     def advance(n_steps, mode, dt, bodies, shape, joints, contacts, loads, control, ledger, like, like_rotation):
@@ -197,13 +256,16 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
         if creeps:
             for i in range(live_loads.size):
                 stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
+        means, drags = bodies.means, bodies.drags
+        carried = False
+        for i in range(velocities.size):
+            carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
         mean_load = mean_power = 0.0
         done = 0
         for _ in range(n_steps):
             forces[:] = 0.0
-            place_points(joints, contacts, bodies.positions, bodies.corners)
             ledger[FRICTION] += contact_forces(
-                joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation
+                joints, contacts, bodies, dt, like, like_rotation
             )
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
@@ -223,17 +285,24 @@ def make_advance(contact_forces: Callable, place_points: Callable, drift: Callab
                 keep, steer = _steering(
                     velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control
                 )
-            largest, power = _kick(
-                velocities, forces, previous, dead_loads, live_loads, inverse_masses, force_scales, speed_limits,
-                dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt, ledger,
+            _kick(
+                velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
+                dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
             )  # fmt: skip
-            control[UNBALANCED] = largest
+            power = _book(
+                forces, previous, dead_loads, live_loads, inverse_masses, means, drags,
+                dead, live, impulse, dt, carried, ledger,
+            )  # fmt: skip
             mean_load += live
             mean_power += power
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
                 break
+        largest = 0.0
+        for i in range(forces.size):
+            largest = max(largest, abs(previous[i]) * force_scales[i])
+        control[UNBALANCED] = largest
         control[MEAN_LOAD] = mean_load / done
         control[MEAN_POWER] = mean_power
         return done

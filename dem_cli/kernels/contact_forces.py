@@ -2,7 +2,7 @@
 
 The same in 2D and 3D and for both kinematics: with fixed geometry the gap is integrated from the
 closing velocity (exact for constant levers, so that the joint stiffness drops out of a failure load);
-with moving geometry another kernel places frames, levers and gaps before this loop.
+with moving geometry frames, levers and gaps are placed before this loop, or in it (planar_forces.py).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.jit import inline
+from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.vec import (
     add_at,
     add_torques,
@@ -29,8 +29,30 @@ from dem_cli.kernels.vec import (
 )
 
 
+def make_press(law: Callable) -> Callable:
+    """What happens at one point that touches or did: law and friction work, as a function for the loops."""
+
+    @always_inline
+    def press(
+        gap, frame, levers_a, levers_b, relative, spin_a, spin_b, dt, old, kn, ks, parameters, joint, memory, point
+    ):  # fmt: skip
+        """One point: (normal, shear force, slip path, friction work) [N, N, m, J]."""
+        slid_a, slid_b = turn(levers_a, spin_a)[1], turn(levers_b, spin_b)[1]
+        slide = scale(dt, axpy(1.0, components(frame, relative)[1], axpy(-1.0, slid_a, slid_b)))
+        normal, shear, slipped = law(gap, slide, old, kn, ks, parameters, joint, memory, point)
+        if not slipped:
+            return normal, shear, 0.0, 0.0
+        # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
+        plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
+        path = norm(plastic) if normal > 0.0 else 0.0
+        return normal, shear, path, -0.5 * (dot(old, plastic) + dot(shear, plastic))
+
+    return press
+
+
 def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
+    press = make_press(law)
 
     @inline
     def contact_forces(joints, contacts, velocities, forces, dt, like, like_rotation):
@@ -41,41 +63,37 @@ def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
         slips, memory = contacts.slip, contacts.memory
         d = len(like)
         friction_work = 0.0
-        for joint in range(blocks.shape[0]):
+        for number in range(blocks.shape[0]):
+            joint = np.uint64(number)
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
             spin_a = load(velocities, a, d, like_rotation)
             spin_b = load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             loaded = False
-            for number in range(starts[joint], starts[joint + 1]):
-                point = np.uint64(number)
+            for p in range(starts[joint], starts[number + 1]):
+                point = np.uint64(p)
                 gap = gaps[point]
                 if not integrates_gap and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame = load_frame(frames, point, like)
                 levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
-                closing, slide = components(frame, relative)
-                spun_a, slid_a = turn(levers_a, spin_a)
-                spun_b, slid_b = turn(levers_b, spin_b)
                 if integrates_gap:
-                    gap += dt * (closing + spun_b - spun_a)
+                    spun_a, spun_b = dot(levers_a[0], spin_a), dot(levers_b[0], spin_b)
+                    gap += dt * (dot(frame[0], relative) + spun_b - spun_a)
                     gaps[point] = gap
                     if gap >= 0.0 and normals[point] == 0.0:
                         continue
-                slide = scale(dt, axpy(1.0, slide, axpy(-1.0, slid_a, slid_b)))
-                old = load(shears, point, 0, slide)
-                ks = kss[point]
-                normal, shear, slipped = law(gap, slide, old, kns[point], ks, parameters, joint, memory, point)
-                if slipped:
-                    # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
-                    plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
-                    friction_work -= 0.5 * (dot(old, plastic) + dot(shear, plastic))
-                    if normal > 0.0:
-                        slips[point] += norm(plastic)
+                loaded = True
+                normal, shear, path, work = press(
+                    gap, frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
+                )  # fmt: skip
+                if path > 0.0:
+                    slips[point] += path
+                friction_work += work
                 normals[point] = normal
                 store(shears, point, 0, shear)
-                loaded = True
                 force = compose(frame, normal, shear, force)
                 torque_a = add_torques(levers_a, normal, shear, torque_a)
                 torque_b = add_torques(levers_b, normal, shear, torque_b)
@@ -87,3 +105,13 @@ def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
         return friction_work
 
     return contact_forces
+
+
+def of_bodies(loop: Callable) -> Callable:
+    """The same loop, called with the bodies."""
+
+    @inline
+    def bodies_forces(joints, contacts, bodies, dt, like, like_rotation):
+        return loop(joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation)
+
+    return bodies_forces

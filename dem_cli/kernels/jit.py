@@ -17,7 +17,7 @@ from pathlib import Path
 import numba
 from numba.extending import overload, register_jitable
 
-__all__ = ["cache_folder", "cache_is_cold", "inline", "kernel", "overload"]
+__all__ = ["always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "overload"]
 
 _ROOT = Path(__file__).resolve().parent.parent
 
@@ -64,3 +64,7 @@ def kernel(function: Callable) -> Callable:
 
 
 inline = register_jitable
+
+# For what is called for each point of the contact loop. Hand it numbers and tuples, not arrays: an array
+# that crosses such a call inside a branching loop is counted by reference each time, which doubles the cost.
+always_inline = register_jitable(forceinline=True)

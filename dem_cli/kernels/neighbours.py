@@ -116,7 +116,7 @@ def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, pa
             start = count
             count = _keep(parts_out, edges_out, distance_out, start, count, a, b, i, k, separation)
             j, m = i + 1 if i + 1 < a1 else a0, k + 1 if k + 1 < b1 else b0
-            if _overlap(corners, i, j, k, m) > 2.0 * reach:
+            if min(_overlap(corners, i, j, k, m), _overlap(corners, k, m, i, j)) > 2.0 * reach:
                 continue
             for i in range(a0, a1):
                 j = i + 1 if i + 1 < a1 else a0

@@ -12,14 +12,15 @@ import math
 
 import numpy as np
 
-from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.jit import always_inline, kernel
+from dem_cli.kernels.vec import load
 
 BLEND = 0.02  # share of the shorter edge over which the normal turns
 
 
-@inline
-def _place(frames, levers, points, positions, a, b, point, share, gap_a, gap_b, ta, tb, corner_a, corner_b):
-    """Frame and levers of one end: `share` 1 is a corner of b on the edge of a, 0 the reverse. Returns the gap."""
+@always_inline
+def place_end(xa, xb, share, ta, tb, corner_a, corner_b):
+    """Frame, levers and place of one end: `share` 1 is a corner of b on the edge of a, 0 the reverse."""
     if share >= 1.0:
         nx, ny = ta[1], -ta[0]
         x, y = corner_b
@@ -34,55 +35,53 @@ def _place(frames, levers, points, positions, a, b, point, share, gap_a, gap_b, 
         ny *= unit
         x = share * corner_b[0] + (1.0 - share) * corner_a[0]
         y = share * corner_b[1] + (1.0 - share) * corner_a[1]
-    frames[point, 0], frames[point, 1] = nx, ny
-    points[point, 0], points[point, 1] = x, y
-    arm_x, arm_y = x - positions[a, 0], y - positions[a, 1]
-    levers[point, 0] = arm_x * ny - arm_y * nx
-    levers[point, 1] = arm_x * nx + arm_y * ny
-    arm_x, arm_y = x - positions[b, 0], y - positions[b, 1]
-    levers[point, 2] = arm_x * ny - arm_y * nx
-    levers[point, 3] = arm_x * nx + arm_y * ny
-    return share * gap_a + (1.0 - share) * gap_b
+    ax, ay = x - xa[0], y - xa[1]
+    bx, by = x - xb[0], y - xb[1]
+    levers_a = ((ax * ny - ay * nx,), (ax * nx + ay * ny,))
+    levers_b = ((bx * ny - by * nx,), (bx * nx + by * ny,))
+    return ((nx, ny), (-ny, nx)), levers_a, levers_b, (x, y)
 
 
-@inline
-def place_points(joints, contacts, positions, corners):
-    """Frames, arms and gaps of all points from the corners of the blocks.
+@always_inline
+def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
+    """The overlap of two edges: its length, the gaps of both ends, and what `place_end` needs."""
+    ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
+    tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
+    # How far the edge of b ends inside that of a, at both ends; then the clipped overlap.
+    low = (b1[0] - a0[0]) * ta[0] + (b1[1] - a0[1]) * ta[1]
+    high = length_a - ((b0[0] - a0[0]) * ta[0] + (b0[1] - a0[1]) * ta[1])
+    overlap = length_a - max(low, 0.0) - max(high, 0.0)
+    share_low = min(max(0.5 + low * blend, 0.0), 1.0)
+    share_high = min(max(0.5 + high * blend, 0.0), 1.0)
+    # Distance of each corner to the other edge, positive outside; the outward normal is (ty, -tx).
+    gap_b1 = (b1[0] - a0[0]) * ta[1] - (b1[1] - a0[1]) * ta[0]
+    gap_b0 = (b0[0] - a0[0]) * ta[1] - (b0[1] - a0[1]) * ta[0]
+    gap_a0 = (a0[0] - b0[0]) * tb[1] - (a0[1] - b0[1]) * tb[0]
+    gap_a1 = (a1[0] - b0[0]) * tb[1] - (a1[1] - b0[1]) * tb[0]
+    gap_low = share_low * gap_b1 + (1.0 - share_low) * gap_a0
+    gap_high = share_high * gap_b0 + (1.0 - share_high) * gap_a1
+    return overlap, gap_low, gap_high, share_low, share_high, ta, tb
 
-    A joint whose overlap vanished or became shorter than its penetration is not the face that the
-    blocks touch with any more: it opens and, if it carried force or is penetrated, asks for a new
-    detection (`stale`).
-    """
-    edges, scales, blocks, starts = joints.edges, joints.scales, joints.blocks, joints.starts
-    frames, levers, points = joints.frames, joints.levers, joints.points
+
+@kernel
+def measure(joints, contacts, bodies):
+    """Frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
+    edges, scales, frames = joints.edges, joints.scales, joints.frames
+    levers, points = joints.levers, joints.points
     gaps, normals, stale = contacts.gaps, contacts.normal, contacts.stale
-    for joint in range(blocks.shape[0]):
+    for number in range(joints.blocks.shape[0]):
+        joint = np.uint64(number)
+        xa = load(bodies.positions, np.uint64(joints.blocks[joint, 0]), 0, (0.0, 0.0))
+        xb = load(bodies.positions, np.uint64(joints.blocks[joint, 1]), 0, (0.0, 0.0))
+        first = np.uint64(joints.starts[joint])
+        second = first + np.uint64(1)
         i, j = np.uint64(edges[joint, 0]), np.uint64(edges[joint, 1])
         k, m = np.uint64(edges[joint, 2]), np.uint64(edges[joint, 3])
-        a0, a1 = (corners[i, 0], corners[i, 1]), (corners[j, 0], corners[j, 1])
-        b0, b1 = (corners[k, 0], corners[k, 1]), (corners[m, 0], corners[m, 1])
-        length_a, per_a, per_b, blend = scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
-        ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
-        tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
-        # How far the edge of b ends inside that of a, at both ends; then the clipped overlap.
-        low = (b1[0] - a0[0]) * ta[0] + (b1[1] - a0[1]) * ta[1]
-        high = length_a - ((b0[0] - a0[0]) * ta[0] + (b0[1] - a0[1]) * ta[1])
-        overlap = length_a - max(low, 0.0) - max(high, 0.0)
-        share_low = min(max(0.5 + low * blend, 0.0), 1.0)
-        share_high = min(max(0.5 + high * blend, 0.0), 1.0)
-        # Distance of each corner to the other edge, positive outside; the outward normal is (ty, -tx).
-        gap_b1 = (b1[0] - a0[0]) * ta[1] - (b1[1] - a0[1]) * ta[0]
-        gap_b0 = (b0[0] - a0[0]) * ta[1] - (b0[1] - a0[1]) * ta[0]
-        gap_a0 = (a0[0] - b0[0]) * tb[1] - (a0[1] - b0[1]) * tb[0]
-        gap_a1 = (a1[0] - b0[0]) * tb[1] - (a1[1] - b0[1]) * tb[0]
-        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
-        first = np.uint64(starts[joint])
-        second = np.uint64(starts[joint] + 1)
-        gap_low = _place(
-            frames, levers, points, positions, a, b, first, share_low, gap_b1, gap_a0, ta, tb, a0, b1
-        )
-        gap_high = _place(
-            frames, levers, points, positions, a, b, second, share_high, gap_b0, gap_a1, ta, tb, a1, b0
+        like = (0.0, 0.0)
+        a0, a1 = load(bodies.corners, i, 0, like), load(bodies.corners, j, 0, like)
+        b0, b1 = load(bodies.corners, k, 0, like), load(bodies.corners, m, 0, like)
+        overlap, gap_low, gap_high, share_low, share_high, ta, tb = overlap_of(
+            a0, a1, b0, b1, scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
         )
         if overlap <= 0.0 or min(gap_low, gap_high) <= -overlap:
             if stale[joint] == 0 and (overlap > 0.0 or normals[first] + normals[second] > 0.0):
@@ -92,9 +91,9 @@ def place_points(joints, contacts, positions, corners):
             gap_high = max(gap_high, 0.0)
         gaps[first] = gap_low
         gaps[second] = gap_high
-
-
-@kernel
-def measure(joints, contacts, bodies):
-    """`place_points` once, for detection and records."""
-    place_points(joints, contacts, bodies.positions, bodies.corners)
+        for point, share, ca, cb in ((first, share_low, a0, b1), (second, share_high, a1, b0)):
+            frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, tb, ca, cb)
+            frames[point, 0], frames[point, 1] = frame[0]
+            points[point, 0], points[point, 1] = place
+            levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
+            levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]

@@ -20,6 +20,9 @@ class Bodies(NamedTuple):
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
     unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)
     corners: np.ndarray  # world coordinates of all corners [m], (n_vertices, d); kept only by moving geometry
+    turns: np.ndarray  # cosine and sine of the orientations, 2D; kept only by moving geometry, (n_blocks, 2)
+    means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
+    drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.simulation import Simulation
 
 CHUNK = 100  # steps between two looks
-TOLERANCE = 1e-4  # unbalanced force on any block of a claimed equilibrium, in its own weight
+TOLERANCE = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
 GRAVITY_TOLERANCE = 1e-5
 COMBINED = 0.3  # combined damping: as much against the velocity as against the change of force
 # Mass scaling for FIRE, for local damping (numerics, section 3) and for combined damping, which makes a

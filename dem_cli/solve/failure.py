@@ -5,7 +5,8 @@ live load is replaced by a prescribed rate of its own displacement q·u, and its
 reaction. The rate is halved several times and then set to zero; what is left is close to the failure load,
 but a joint that slides back and forth on that way may have lost strength. The answer therefore comes from
 the way that a tilting table takes: the load is raised from gravity in steps that shrink towards the
-estimate, every step a proven equilibrium, until failure is proven as well and the bracket is narrow enough.
+estimate, every step a proven equilibrium, until failure is proven as well and the bracket is narrow enough. Where the
+creep ended in an equilibrium inside that bracket, that one is the highest.
 """
 
 from __future__ import annotations
@@ -66,6 +67,8 @@ class Search:
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: tuple | None = None  # state of the highest equilibrium
     failing: Verdict | None = None
+    crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
+    crept_state: tuple | None = None
     limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[Pass] = field(default_factory=list)
 
@@ -133,10 +136,14 @@ def _creep(sim: Simulation, distance: float, budget: Budget, search: Search) -> 
         if sim.kinematics == "large" and loads[-1] < SOFTENED * max(loads):
             break
     else:
-        sim.control[slot.RATE] = 0.0
+        sim.control[slot.RATE], calm = 0.0, 0
         for _ in range(HOLD_STEPS // CHUNK):
             sim.advance(CHUNK, sim.creep_mode)
-            if sim.unbalanced < TOLERANCE:
+            calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+            if calm == 2:
+                search.crept = sim.load
+                sim.rest()
+                search.crept_state = sim.save()
                 break
     softened = sim.kinematics == "large" and sim.load < SOFTENED * max(loads)
     estimate = max(loads) if softened else sim.load
@@ -165,9 +172,7 @@ def _raise_load(
             load = levels.pop(0)
         else:
             load, step = low + step, GROWTH * step
-        if load > limit:
-            search.status = "no failure"
-            return
+        load = min(load, limit)
         track.observer.progress("raising the load", load * sim.live_scale, search.peak_displacement, None)
         sim.restore(search.held)
         before = sim.steps
@@ -175,12 +180,23 @@ def _raise_load(
         search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
         if verdict.state == "equilibrium":
             low = load
-            search.low, search.held = low * sim.live_scale, sim.save()
-            search.peak_displacement = sim.largest_displacement()
-            track.keep("loading")
+            _keep(sim, search, low, track)
+            if low >= limit:
+                search.status = "no failure"
+                return
         else:
             high, failed = load, (verdict, sim.save())
             search.high, search.failing = high * sim.live_scale, verdict
+    if search.crept is not None and low < search.crept < high:
+        sim.restore(search.crept_state)  # the creep ended in an equilibrium that is closer to failure still
+        _keep(sim, search, search.crept, track)
     search.status = "ok"
     sim.restore(failed[1])
     track.keep("collapse")
+
+
+def _keep(sim: Simulation, search: Search, load: float, track: Track) -> None:
+    """The highest proven equilibrium so far, and its row."""
+    search.low, search.held = load * sim.live_scale, sim.save()
+    search.peak_displacement = sim.largest_displacement()
+    track.keep("loading")

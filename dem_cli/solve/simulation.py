@@ -18,9 +18,10 @@ from dem_cli.contact.assemble import (
 )
 from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.advance import drift_centroids, drift_corners, keep_points, make_advance
-from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.planar_geometry import measure, place_points
+from dem_cli.kernels.advance import drift_centroids, drift_corners, make_advance
+from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+from dem_cli.kernels.planar_forces import make_planar_forces
+from dem_cli.kernels.planar_geometry import measure
 from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
@@ -36,10 +37,9 @@ ALPHA = 0.4  # local damping near failure
 @cache
 def compiled_advance(kinematics: str, law: Law):
     """The stepping loop for one kinematics and one law; compiled at its first call."""
-    forces = make_contact_forces(law.function, integrates_gap=kinematics == "fixed")
     if kinematics == "fixed":
-        return make_advance(forces, keep_points, drift_centroids)
-    return make_advance(forces, place_points, drift_corners)
+        return make_advance(of_bodies(make_contact_forces(law.function, integrates_gap=True)), drift_centroids)
+    return make_advance(make_planar_forces(law.function), drift_corners)
 
 
 class EnergySums(NamedTuple):
@@ -76,7 +76,7 @@ class Simulation:
         corners = world_corners(self.shape, positions, orientations)
         self.bodies = Bodies(
             positions, orientations, np.zeros((n, d + r)), np.zeros((n, d + r)), np.zeros((n, d + r)), corners,
-            np.zeros(n),
+            np.zeros((n, 2)), np.zeros(n * (d + r)), np.zeros(n * (d + r)), np.zeros(n),
         )  # fmt: skip
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
@@ -126,6 +126,7 @@ class Simulation:
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""
         old, memory = self.joints, self.contacts
+        measure(old, Contacts(*(a.copy() for a in memory)), self.bodies)  # its points, for those that move on
         faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest)
         joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.law.n_memory)
         carry_memory(old, memory, joints, contacts)
@@ -146,6 +147,8 @@ class Simulation:
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
+        if self.kinematics == "large":  # frames and levers of this instant; forces and flags stay
+            measure(self.joints, Contacts(*(a.copy() for a in self.contacts)), self.bodies)
         fictitious_masses(self.model, self.joints, self.bodies, self.shape, self.safety, self.loads.inverse_masses)
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 

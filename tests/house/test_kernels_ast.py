@@ -9,7 +9,7 @@ import pytest
 
 KERNELS = Path(__file__).resolve().parents[2] / "dem_cli" / "kernels"
 SOURCES = sorted(p for p in KERNELS.glob("*.py") if p.name not in ("__init__.py", "jit.py"))
-COMPILED = {"kernel", "inline", "overload"}  # the decorators of jit.py
+COMPILED = {"always_inline", "kernel", "inline", "overload"}  # the decorators of jit.py
 IO = {"print", "open", "input", "exec", "eval"}
 ALLOCATORS = {
     "array", "arange", "asarray", "concatenate", "copy", "empty", "empty_like", "full", "full_like",

@@ -55,6 +55,9 @@ def twin(sim: Simulation) -> Twin:
         forces=in_space(sim.bodies.forces),
         unbalanced=in_space(sim.bodies.unbalanced),
         corners=sim.bodies.corners.copy(),
+        turns=sim.bodies.turns.copy(),
+        means=np.zeros(6 * len(sim.bodies.positions)),
+        drags=np.zeros(6 * len(sim.bodies.positions)),
         travel=sim.bodies.travel.copy(),
     )
     loads = Loads(*(in_space(field) for field in sim.loads))
