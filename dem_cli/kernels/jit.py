@@ -8,8 +8,10 @@ go on running old machine code.
 from __future__ import annotations
 
 import hashlib
+import importlib
 import os
 import platform
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -55,7 +57,21 @@ def cache_is_cold() -> bool:
     return next(Path(numba.config.CACHE_DIR).rglob("*.nbi"), None) is None
 
 
+def _load_numba_without_blas() -> None:
+    """numba imports scipy.linalg when it first meets an array, only to learn whether there is a BLAS: 0.2 s.
+
+    No kernel here multiplies matrices.
+    """
+    if "scipy.linalg" not in sys.modules:
+        sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # makes the import fail
+        try:
+            importlib.import_module("numba.np.arraymath")
+        finally:
+            del sys.modules["scipy.linalg"]
+
+
 numba.config.CACHE_DIR = str(cache_folder())
+_load_numba_without_blas()
 
 
 def kernel(function: Callable) -> Callable:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -63,13 +64,16 @@ class Clock:
         self.observer.progress(stage, load, displacement, fraction)
         self.observing += time.perf_counter() - begun
 
-    def compile(self, sim: Simulation) -> None:
-        """Compile (or load) the kernel of a simulation, off the clock."""
-        begun = time.perf_counter()
-        if cache_is_cold():
+    def compiled(self, make: Callable[[], Simulation]) -> Simulation:
+        """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
+        cold, begun = cache_is_cold(), time.perf_counter()
+        if cold:
             self.progress("compiling (once)", 0.0, 0.0, None)
+        sim = make()
+        built = time.perf_counter()
         sim.compile()
-        self.compiling += time.perf_counter() - begun
+        self.compiling += time.perf_counter() - (begun if cold else built)
+        return sim
 
     def seconds(self) -> float:
         return time.perf_counter() - self.started - self.compiling - self.observing
@@ -95,16 +99,16 @@ class Job:
     def simulation(self, kinematics: str, ratio: float = FIXED_RATIO) -> Simulation:
         """A compiled simulation of the case; `ratio` is the kn·h/W of "auto" joints."""
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
-        sim = Simulation(
-            self.model,
-            law_of(self.case),
-            joint_properties(self.case, self.model, ratio),
-            kinematics,
-            live_scale=1.0 if tilting else live_scale(self.model),
-            tilting=tilting,
+        return self.clock.compiled(
+            lambda: Simulation(
+                self.model,
+                law_of(self.case),
+                joint_properties(self.case, self.model, ratio),
+                kinematics,
+                live_scale=1.0 if tilting else live_scale(self.model),
+                tilting=tilting,
+            )
         )
-        self.clock.compile(sim)
-        return sim
 
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""

@@ -29,7 +29,7 @@ from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 
 TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
-SKIN = 0.02  # detection reach as a share of the smallest edge
+SKIN = 0.05  # detection reach as a share of the smallest edge
 LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 ALPHA = 0.4  # local damping near failure
 

@@ -63,7 +63,7 @@ def test_stiffness_of_a_point_survives_its_shrinking_overlap():
 
 
 def test_rider_keeps_its_shear_force():
-    """A block held by friction on a base that travels ten blocks keeps its shear force through 500 detections."""
+    """A block held by friction on a base that travels ten blocks keeps its shear force through hundreds of detections."""
     sim = settled(on_base((-1.0, 3.0)), 0.4)
     shear = sim.contacts.shear.sum()
     assert abs(shear) == pytest.approx(0.4 * W, rel=1e-4)
@@ -72,7 +72,7 @@ def test_rider_keeps_its_shear_force():
     sim.control[slot.DAMP] = sim.control[slot.DAMP_CHANGE] = 0.0
     sim.bodies.velocities[:, 0] = 1e-3
     sim.advance(10_000, slot.HOLD_LOAD)
-    assert sim.detections - first > 400
+    assert sim.detections - first > 150
     assert sim.bodies.positions[0, 0] - sim.model.centroids[0, 0] == pytest.approx(10.0)
     assert sim.contacts.shear.sum() == pytest.approx(shear, rel=1e-3)
     assert sim.ledger[slot.FRICTION] == lost
