@@ -22,7 +22,16 @@ def draw_all(folder: Path, output: Path) -> list[Path]:
     results = read(folder)
     written = []
     for name, draw in PICTURES.items():
-        if len(results.frames) if name == "collapse.png" else len(results.history["load"]):
+        if _has_data(name, results):
             draw(results, output / name)
             written.append(output / name)
     return written
+
+
+def _has_data(name: str, results: Results) -> bool:
+    """Whether there is anything to draw; a capacity curve needs a load that changes."""
+    if name == "collapse.png":
+        return len(results.frames) > 0
+    if name == "capacity.png":
+        return bool((results.history["load"] != 0.0).any())
+    return len(results.history["load"]) > 0
