@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry import polygon
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.records import Shape
 from dem_cli.model.model import Model
@@ -61,7 +62,6 @@ def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
         capacity = n
     by_part = np.lexsort((edges[:n, 1], edges[:n, 0], parts[:n, 1], parts[:n, 0]))
     parts, edges = parts[by_part], edges[by_part]
-    following = np.arange(1, len(corners) + 1)
-    following[starts[1:] - 1] = starts[:-1]
+    following = polygon.following(starts)
     four = np.column_stack([edges[:, 0], following[edges[:, 0]], edges[:, 1], following[edges[:, 1]]])
     return Faces(parts, four, separation[by_part])

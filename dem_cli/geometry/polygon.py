@@ -30,11 +30,11 @@ def sizes(vertices: np.ndarray, starts: np.ndarray) -> np.ndarray:
     return np.hypot(*(high - low).T)
 
 
-def _following(starts: np.ndarray) -> np.ndarray:
+def following(starts: np.ndarray) -> np.ndarray:
     """Of each corner of m polygons, the next one around."""
-    following = np.arange(1, starts[-1] + 1)
-    following[starts[1:] - 1] = starts[:-1]
-    return following
+    after = np.arange(1, starts[-1] + 1)
+    after[starts[1:] - 1] = starts[:-1]
+    return after
 
 
 def signed_area(vertices: np.ndarray) -> float:
@@ -73,7 +73,7 @@ def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaPropertie
     first, counts = starts[:-1], np.diff(starts)
     origin = vertices[first]
     a = vertices - np.repeat(origin, counts, axis=0)
-    b = a[_following(starts)]
+    b = a[following(starts)]
     cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     doubled = np.add.reduceat(cross, first)
     moment = np.add.reduceat(cross[:, None] * (a + b), first, axis=0) / 3.0
@@ -105,9 +105,9 @@ def is_convex(vertices: np.ndarray, tolerance: float = TOLERANCE) -> bool:
 
 def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
     """`is_convex` of m polygons at once, (m,); polygon p is vertices[starts[p]:starts[p + 1]]."""
-    following = _following(starts)
-    edges = vertices[following] - vertices
-    after = edges[following]
+    after_each = following(starts)
+    edges = vertices[after_each] - vertices
+    after = edges[after_each]
     turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
     angles = np.add.reduceat(np.arctan2(turns, (edges * after).sum(axis=1)), starts[:-1])
     once_around = np.abs(angles - 2.0 * np.pi) < 1.0

@@ -10,9 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
-
-from dem_cli.kernels.jit import always_inline, inline, kernel
+from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.records import (
     CONTACT,
     CREEP,
@@ -26,7 +24,6 @@ from dem_cli.kernels.records import (
     FRICTION,
     LIVE_FACTOR,
     MEAN_LOAD,
-    MEAN_POWER,
     RATE,
     SINCE_UPHILL,
     SUPPORT,
@@ -145,22 +142,20 @@ def _kick(
 
 @inline
 def _book(
-    forces, previous, dead_loads, live_loads, inverse_masses, means, drags,
-    dead, live, impulse, dt, carried, ledger,
+    forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
 ):  # fmt: skip
-    """Work of one step into the ledger; returns the residual power.
+    """Work of one step into the ledger.
 
     Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
     displacement; whatever steering, damping or a speed limit takes from the motion is booked as damping.
     """
-    by_dead = by_live = contact = damping = power = support = 0.0
+    by_dead = by_live = contact = damping = support = 0.0
     for i in range(forces.size):
         mean = means[i]
         by_dead += dead_loads[i] * mean
         by_live += live_loads[i] * mean
         contact += forces[i] * mean
         damping += drags[i] * mean
-        power += previous[i] * mean
     if carried:
         for i in range(forces.size):
             if inverse_masses[i] == 0.0:
@@ -169,75 +164,6 @@ def _book(
     ledger[CONTACT] += dt * (contact + support)  # of the free blocks alone
     ledger[DAMPING] += dt * damping
     ledger[SUPPORT] += dt * support
-    return power
-
-
-@always_inline
-def _turn(angle):
-    """cos and sin; for small angles the polynomials of fdlibm, the same on every machine, below 1 ulp."""
-    if abs(angle) > 0.7854:
-        return math.cos(angle), math.sin(angle)
-    z = angle * angle
-    r = 8.33333333332248946124e-03 + z * (
-        -1.98412698298579493134e-04
-        + z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))
-    )
-    s = angle + z * angle * (-1.66666666666666324348e-01 + z * r)
-    r = z * (
-        4.16666666666666019037e-02
-        + z * (
-            -1.38888888888741095749e-03
-            + z * (
-                2.48015872894767294178e-05
-                + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))
-            )
-        )
-    )
-    half = 0.5 * z
-    w = 1.0 - half
-    return w + (((1.0 - w) - half) + z * r), s
-
-
-@inline
-def drift_centroids(bodies, shape, dt, like):
-    """Positions from velocities."""
-    positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
-    d = len(like)
-    for number in range(positions.shape[0]):
-        i = np.uint64(number)
-        for k in range(d):
-            positions[i, k] += dt * velocities[i, k]
-        orientations[i, 0] += dt * velocities[i, d]
-    return 0.0
-
-
-@inline
-def drift_corners(bodies, shape, dt, like):
-    """Positions and corners from velocities; returns the largest travel of a corner since detection [m]."""
-    positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
-    corners, travel, radii, turns = bodies.corners, bodies.travel, shape.radii, bodies.turns
-    corner_blocks, arms = shape.corner_blocks, shape.corner_arms
-    largest = 0.0
-    for number in range(positions.shape[0]):
-        i = np.uint64(number)
-        vx, vy, w = velocities[i, 0], velocities[i, 1], velocities[i, 2]
-        positions[i, 0] += dt * vx
-        positions[i, 1] += dt * vy
-        angle = orientations[i, 0] + dt * w
-        orientations[i, 0] = angle
-        turns[i, 0], turns[i, 1] = _turn(angle)
-        moved = travel[i] + dt * (math.sqrt(vx * vx + vy * vy) + radii[i] * abs(w))
-        travel[i] = moved
-        if moved > largest:
-            largest = moved
-    for number in range(corners.shape[0]):
-        i = np.uint64(number)
-        block = np.uint64(corner_blocks[i])
-        c, s = turns[block, 0], turns[block, 1]
-        x, y = arms[i, 0], arms[i, 1]
-        corners[i, 0] = positions[block, 0] + c * x - s * y
-        corners[i, 1] = positions[block, 1] + s * x + c * y
-    return largest
 
 
 def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
@@ -260,13 +186,11 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         carried = False
         for i in range(velocities.size):
             carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
-        mean_load = mean_power = 0.0
+        mean_load = 0.0
         done = 0
         for _ in range(n_steps):
             forces[:] = 0.0
-            ledger[FRICTION] += contact_forces(
-                joints, contacts, bodies, dt, like, like_rotation
-            )
+            ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(
@@ -289,12 +213,10 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
                 velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
             )  # fmt: skip
-            power = _book(
-                forces, previous, dead_loads, live_loads, inverse_masses, means, drags,
-                dead, live, impulse, dt, carried, ledger,
-            )  # fmt: skip
+            _book(
+                forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
+            )
             mean_load += live
-            mean_power += power
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
@@ -304,7 +226,6 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
             largest = max(largest, abs(previous[i]) * force_scales[i])
         control[UNBALANCED] = largest
         control[MEAN_LOAD] = mean_load / done
-        control[MEAN_POWER] = mean_power
         return done
 
     return advance

@@ -81,12 +81,11 @@ RATE = 2  # creep: prescribed live·v per step
 DAMP = 3  # local damping: share of |F| against the velocity
 UNBALANCED = 4  # out: largest unbalanced force of the last step, in weights of its own block
 MEAN_LOAD = 5  # out: mean live factor over the call
-MEAN_POWER = 6  # out: sum of residual·v over the call
-TRAVEL_LIMIT = 7  # stop when a corner may have moved that far since detection [m]
-FIRE_MIX = 8  # state of FIRE: current mixing
-SINCE_UPHILL = 9  # state of FIRE: steps since the power was negative
-DAMP_CHANGE = 10  # combined damping: share of |F| against its own change
-N_CONTROL = 11
+TRAVEL_LIMIT = 6  # stop when a corner may have moved that far since detection [m]
+FIRE_MIX = 7  # state of FIRE: current mixing
+SINCE_UPHILL = 8  # state of FIRE: steps since the power was negative
+DAMP_CHANGE = 9  # combined damping: share of |F| against its own change
+N_CONTROL = 10
 
 # What the step is driven by.
 HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3

@@ -22,16 +22,22 @@ class HeldBackFile(io.RawIOBase):
         self.error: OSError | None = None
         self._disk = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0), 0o666)
         self._held: list[tuple[int, bytes]] = []
-        self._place = self._size = 0
+        self._place = self._size = self._on_disk = 0
 
     def commit(self) -> None:
-        """Write what was held back; nothing more once a write has failed."""
+        """Write what was held back; nothing more once a write has failed.
+
+        New space and what belongs there first, then the tables that point to it, the head of the file
+        last, so that a kill in between almost always leaves the file as it was.
+        """
         held, self._held = self._held, []
+        old, self._on_disk = self._on_disk, self._size
+        held.sort(key=lambda entry: 0 if entry[0] >= old else 2 if entry[0] == 0 else 1)
         try:
-            for place, piece in held if self.error is None else ():
-                _write_at(self._disk, place, piece)
             if self.error is None:
                 os.ftruncate(self._disk, self._size)
+                for place, piece in held:
+                    _write_at(self._disk, place, piece)
         except OSError as error:
             self.error = error
 

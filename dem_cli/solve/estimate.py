@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of, stiffness_scale
+from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.run import live_scale, open_joints
+from dem_cli.solve.scales import stiffness_scale
 from dem_cli.solve.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def describe(case: Case, model: Model) -> Rows:
 def _ratio(case: Case, model: Model) -> float:
     """kn·h/W of "auto" joints at the start of the run."""
     if case.analysis.kind == "settlement":
-        from dem_cli.solve.settlement import _ratio as of_settlement
+        from dem_cli.solve.settlement import stiffness_ratio as of_settlement
 
         return of_settlement(model)
     return FIXED_RATIO

@@ -12,7 +12,7 @@ from dem_cli.laws.law import Law
 from dem_cli.laws.registry import LAWS
 from dem_cli.model.assemble import joint_table
 from dem_cli.model.model import Model
-from dem_cli.solve.simulation import mean_weight, smallest_edge
+from dem_cli.solve.scales import stiffness_scale
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -27,25 +27,6 @@ def law_of(case: Case) -> Law:
         name = list(case.joints)[1]
         raise CaseError([CaseProblem(("joints", name, "law"), "different laws in one case are not available yet")])
     return LAWS[laws.pop()]
-
-
-def stiffness_scale(model: Model) -> float:
-    """kn [Pa/m] at which a mean block, resting on a joint of its own size, sinks by the smallest edge."""
-    free = ~model.fixed
-    d = model.dimension
-    weight = mean_weight(model.dead_loads[free], model.live_loads[free], d)
-    area = float(np.sqrt(block_areas(model)[free]).mean() * model.thickness[free].mean()) if free.any() else 1.0
-    return weight / (area * smallest_edge(model))
-
-
-def block_areas(model: Model) -> np.ndarray:
-    """Area of each block in the plane [m2], (n_blocks,)."""
-    vertices, starts = model.vertices, model.part_starts
-    following = np.arange(1, len(vertices) + 1)
-    following[starts[1:] - 1] = starts[:-1]
-    cross = vertices[:, 0] * vertices[following, 1] - vertices[:, 1] * vertices[following, 0]
-    parts = 0.5 * np.add.reduceat(cross, starts[:-1])
-    return np.bincount(model.part_blocks, parts, model.n_blocks)
 
 
 def joint_properties(case: Case, model: Model, ratio: float = FIXED_RATIO) -> JointProperties:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
 
 if TYPE_CHECKING:
@@ -61,9 +62,7 @@ def block_at(model: Model, point: np.ndarray) -> int | None:
     starts = model.part_starts
     owners = np.repeat(model.part_blocks, np.diff(starts))
     vertices = model.vertices + model.centroids[owners]
-    following = np.arange(1, len(vertices) + 1)
-    following[starts[1:] - 1] = starts[:-1]
-    edges, to_point = vertices[following] - vertices, point - vertices
+    edges, to_point = vertices[polygon.following(starts)] - vertices, point - vertices
     left = edges[:, 0] * to_point[:, 1] - edges[:, 1] * to_point[:, 0]
     size = np.hypot(*edges.T)
     inside = np.minimum.reduceat(left / size, starts[:-1]) >= -1e-9 * size.max()

@@ -34,7 +34,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
     job = Job.start(case, model, observer)
     job.skipped.append("failure search: the supports move, the load does not")
-    sim = job.simulation("large", _ratio(model))
+    sim = job.simulation("large", stiffness_ratio(model))
     track = job.track(sim)
     try:
         job.clock.progress("gravity", 0.0, 0.0, 0.0)
@@ -49,7 +49,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     return job.outcome([sim], {"status": status, "largest_displacement": sim.largest_displacement()})
 
 
-def _ratio(model: Model) -> float:
+def stiffness_ratio(model: Model) -> float:
     """kn·h/W of "auto" joints that keeps overlaps small: the whole weight may stand on one joint."""
     return float((~model.fixed).sum()) / OVERLAP
 

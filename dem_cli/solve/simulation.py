@@ -18,8 +18,9 @@ from dem_cli.contact.assemble import (
 )
 from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.advance import drift_centroids, drift_corners, make_advance
+from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+from dem_cli.kernels.drift import drift_centroids, drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_geometry import measure
 from dem_cli.kernels.records import Bodies, Contacts, Loads
@@ -27,6 +28,7 @@ from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
+from dem_cli.solve.scales import own_weights, smallest_edge
 
 TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
 SKIN = 0.05  # detection reach as a share of the smallest edge
@@ -157,7 +159,7 @@ class Simulation:
     def advance(self, n_steps: int, mode: int) -> None:
         """n_steps steps of one mode (kernels.records), with detection when it is due."""
         run = compiled_advance(self.kinematics, self.law)
-        left, load, power = n_steps, 0.0, 0.0
+        left, load = n_steps, 0.0
         while left > 0:
             done = run(
                 min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
@@ -166,11 +168,9 @@ class Simulation:
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
-            power += self.control[slot.MEAN_POWER]
             if self.kinematics == "large" and self._detection_due():
                 self.detect()
         self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
-        self.control[slot.MEAN_POWER] = power
 
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
@@ -340,29 +340,3 @@ class Simulation:
             stage, self.steps, self.load * self.live_scale, self.largest_displacement(),
             bodies.positions.copy(), bodies.orientations.copy(), bodies.velocities.copy(), self.contact_record(),
         )  # fmt: skip
-
-
-def smallest_edge(model: Model) -> float:
-    """Shortest edge of any block [m]."""
-    vertices, starts = model.vertices, model.part_starts
-    following = np.arange(1, len(vertices) + 1)
-    following[starts[1:] - 1] = starts[:-1]
-    shortest = np.sqrt(((vertices[following] - vertices) ** 2).sum(axis=1)).min()
-    return float(shortest)
-
-
-def own_weights(dead: np.ndarray, live: np.ndarray, dimension: int) -> np.ndarray:
-    """Dead force on each block [N]; where there is next to none, a millionth of the mean, (n_blocks,)."""
-    weights = np.sqrt((dead[:, :dimension] ** 2).sum(axis=1))
-    loaded = weights > 0.0
-    return np.maximum(weights, 1e-6 * mean_weight(dead[loaded], live, dimension))
-
-
-def mean_weight(dead: np.ndarray, live: np.ndarray, dimension: int) -> float:
-    """Mean dead force on a free block [N]; the mean live one where there is no dead load."""
-    for loads in (dead, live):
-        mean = float(np.sqrt((loads[:, :dimension] ** 2).sum(axis=1)).mean()) if len(loads) else 0.0
-        if mean > 0.0:
-            return mean
-    return 1.0
-

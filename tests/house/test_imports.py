@@ -16,7 +16,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "case": {"case"},
     "post": {"output", "model"},
     "output": {"model"},
-    "solve": {"contact", "model", "laws", "kernels", "output.record", "case.base", "case.schema"},
+    "solve": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema"},
     "contact": {"model", "geometry", "kernels"},
     "model": {"structures", "geometry", "contact", "case"},
     "structures": {"geometry", "model.blocks", "case.base"},

@@ -63,7 +63,7 @@ def test_stiffness_of_a_point_survives_its_shrinking_overlap():
 
 
 def test_rider_keeps_its_shear_force():
-    """A block held by friction on a base that travels ten blocks keeps its shear force through hundreds of detections."""
+    """A block held by friction on a base that travels ten blocks keeps its shear force, detection by detection."""
     sim = settled(on_base((-1.0, 3.0)), 0.4)
     shear = sim.contacts.shear.sum()
     assert abs(shear) == pytest.approx(0.4 * W, rel=1e-4)

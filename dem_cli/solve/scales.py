@@ -1,0 +1,42 @@
+"""Scales of a structure that tolerances and "auto" joints are made of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.geometry import polygon
+from dem_cli.model.model import Model
+
+
+def smallest_edge(model: Model) -> float:
+    """Shortest edge of any block [m]."""
+    edges = model.vertices[polygon.following(model.part_starts)] - model.vertices
+    return float(np.sqrt((edges**2).sum(axis=1)).min())
+
+
+def own_weights(dead: np.ndarray, live: np.ndarray, dimension: int) -> np.ndarray:
+    """Dead force on each block [N]; where there is next to none, a millionth of the mean, (n_blocks,)."""
+    weights = np.sqrt((dead[:, :dimension] ** 2).sum(axis=1))
+    loaded = weights > 0.0
+    return np.maximum(weights, 1e-6 * mean_weight(dead[loaded], live, dimension))
+
+
+def mean_weight(dead: np.ndarray, live: np.ndarray, dimension: int) -> float:
+    """Mean dead force on a free block [N]; the mean live one where there is no dead load."""
+    for loads in (dead, live):
+        mean = float(np.sqrt((loads[:, :dimension] ** 2).sum(axis=1)).mean()) if len(loads) else 0.0
+        if mean > 0.0:
+            return mean
+    return 1.0
+
+
+def stiffness_scale(model: Model) -> float:
+    """kn [Pa/m] at which a mean block, resting on a joint of its own size, sinks by the smallest edge."""
+    free = ~model.fixed
+    if not free.any():
+        return 1.0
+    weight = mean_weight(model.dead_loads[free], model.live_loads[free], model.dimension)
+    parts = polygon.properties_of_all(model.vertices, model.part_starts).area
+    areas = np.bincount(model.part_blocks, parts, model.n_blocks)
+    joint = float(np.sqrt(areas[free]).mean() * model.thickness[free].mean())
+    return weight / (joint * smallest_edge(model))
