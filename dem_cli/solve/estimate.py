@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 Rows = list[tuple[str, str]]
 STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of cases/verification
     "gravity": (500, 10_000),
-    "pushover": (30_000, 300_000),
+    "pushover": (10_000, 200_000),
     "settlement": (20_000, 100_000),
 }
-FOLLOW_STEPS = (5_000, 50_000)  # to follow a collapse
+FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
 NANOSECONDS = {"fixed": 10, "large": 20}  # per contact point and step, one core (scripts/benchmark)
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
 
