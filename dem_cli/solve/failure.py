@@ -66,6 +66,7 @@ class Search:
     elastic: float = 0.0  # largest displacement per unit of internal multiplier while elastic [m]
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: tuple | None = None  # state of the highest equilibrium
+    found: bool = False  # the bracket is as narrow as it was asked for
     failing: Verdict | None = None
     crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
     crept_state: tuple | None = None
@@ -190,7 +191,7 @@ def _raise_load(
     if search.crept is not None and low < search.crept < high:
         sim.restore(search.crept_state)  # the creep ended in an equilibrium that is closer to failure still
         _keep(sim, search, search.crept, track)
-    search.status = "ok"
+    search.status, search.found = "ok", True
     sim.restore(failed[1])
     track.keep("collapse")
 

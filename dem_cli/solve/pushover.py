@@ -17,6 +17,7 @@ from dem_cli.solve.simulation import Simulation
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
+INTERRUPTED = "interrupted"
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
@@ -37,7 +38,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             falling, peak = _fall(job, sim, search)
             sims.append(falling)
             found["displacement_at_failure"] = peak["displacement"]
-            found["peak_of_curve"] = peak["load"] * sim.live_scale
+            found["peak_of_curve"] = peak["load"] and peak["load"] * sim.live_scale
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
@@ -59,6 +60,8 @@ def _search(job: Job) -> tuple[Search, Simulation]:
                 search.status = FALLS
         except SolverError as error:
             job.warnings.append(str(error))
+        except KeyboardInterrupt:
+            search.status = INTERRUPTED
         moved = search.peak_displacement / sim.smallest
         soft = moved > SOFT * analysis.resolution and any(j.kn != "auto" for j in job.case.joints.values())
         if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
@@ -70,7 +73,7 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         search, sim = Search(), job.simulation("large")
 
 
-def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float]]:
+def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float | None]]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.low / sim.live_scale
@@ -83,7 +86,10 @@ def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[s
         return falling, follow.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
     except SolverError as error:
         job.warnings.append(f"the collapse was not followed to its end: {error}")
-        return falling, {"load": 0.0, "displacement": 0.0}
+    except KeyboardInterrupt:
+        search.status = INTERRUPTED
+        job.warnings.append("the collapse was not followed to its end: interrupted")
+    return falling, {"load": None, "displacement": None}
 
 
 def _answer(search: Search, sim: Simulation) -> dict[str, Any]:
@@ -93,7 +99,7 @@ def _answer(search: Search, sim: Simulation) -> dict[str, Any]:
         status = f"no failure up to a load multiplier of {search.limit:g}"
     answer: dict[str, Any] = {
         "status": status,
-        "failure_load": search.low if search.status == "ok" else None,
+        "failure_load": search.low if search.found else None,
         "failure_load_bracket": [search.low, search.high],
         "kinematics": sim.kinematics,
         "search": [vars(p) for p in search.passes],
