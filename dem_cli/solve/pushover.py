@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 INTERRUPTED = "interrupted"
+MANY = 1000  # blocks; larger walls find new equilibria after more motion than the proof of failure waits for
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
@@ -27,6 +28,8 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     search, sim = _search(job)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
+    if search.found and len(sim.free) > MANY:
+        job.warnings.append(f"more than {MANY} blocks: the true failure load may lie some per cent higher")
     if search.status == "ok":
         found |= describe(sim, search.held)
         failing = sim.save()
