@@ -33,7 +33,7 @@ def draw_capacity(results: Results, path: Path) -> None:
         axes[0].set_ylabel("load multiplier λ")
         _limit_loads(axes[0], results)
         handles, labels = axes[-1].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(5, max(1, len(labels))))
+        figure.legend(handles, labels, loc="outside lower center", ncols=max(1, len(labels)), columnspacing=1.4)
         style.headline(figure, summary)
 
 

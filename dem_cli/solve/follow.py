@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ELASTIC = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
 STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one, at least
 FEWEST, MOST = 40_000, 60_000  # steps of the whole way, about: fewer would throw the blocks about
-GROWTH = 1.15  # of the rate from one look to the next, so that nothing is thrown at the start
+GROWTH = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
 ROWS = 250  # history rows
 SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
 FALL = 1e-3  # speed limit of blocks that fall, in smallest edges per step: they land softly
@@ -52,7 +52,7 @@ def follow(
     track.write("gravity")
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
-    sim.control[slot.RATE] = rate / GROWTH**30
+    sim.control[slot.RATE] = rate / GROWTH**50
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []
     highest = 0.0
@@ -78,5 +78,6 @@ def follow(
             return {"load": highest, "displacement": reached}
         sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)
         pace = abs(moved - before) / chunk
-        chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, 20_000))
+        longest = 100 if stage == "loading" else 20_000
+        chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
 
