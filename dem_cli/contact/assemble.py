@@ -66,7 +66,7 @@ def build_joints(
         levers=np.zeros((2 * n, 2 * d * model.inertias.shape[1])),
         points=np.zeros((2 * n, d)),
         edges=faces.edges,
-        scales=np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)]),
+        scales=np.ascontiguousarray(np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)])),
         kn=np.repeat(properties.kn[named] * area / 2, 2),
         ks=np.repeat(properties.ks[named] * area / 2, 2),
         law=np.ascontiguousarray(properties.law[named]),
