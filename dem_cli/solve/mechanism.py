@@ -10,6 +10,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.solve.simulation import Simulation
 
 ROCKING, SLIDING = 0.02, 0.9  # share of friction in the released work: below rocking, above sliding
+TURNS = 0.01  # rotation × radius over the largest motion, below which nothing turns
 TAKES_PART = 0.1  # of the largest motion
 LISTED = 20  # names in a summary
 
@@ -30,7 +31,8 @@ def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
     released = max(external, 0.0) + max(-lifted, 0.0)
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
     share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
-    mode = "rocking" if share < ROCKING else "sliding" if share > SLIDING else "mixed"
+    translates = turn.max(initial=0.0) < TURNS * motion.max(initial=0.0)  # up a slope, say: the work lifts blocks
+    mode = "sliding" if translates or share > SLIDING else "rocking" if share < ROCKING else "mixed"
     moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
     found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
     if joints.edges.shape == sim.joints.edges.shape and (joints.edges == sim.joints.edges).all():

@@ -20,6 +20,7 @@ MODES = {
     "column_14": "rocking",
     "sliding_block": "sliding",
     "trilith": "rocking",
+    "groove": "sliding",
 }
 
 
