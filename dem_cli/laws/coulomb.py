@@ -61,5 +61,6 @@ COULOMB = Law(
     parameters=CoulombJoint,
     function=coulomb,
     columns=lambda table: (table.coefficient,),
+    shear_limit=lambda parameters, normal: parameters[:, 0] * normal,
     source="Cundall 1971; thesis 4.3",
 )

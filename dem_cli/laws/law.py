@@ -21,6 +21,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from dem_cli.case.base import CaseModel
 
 
@@ -32,5 +34,6 @@ class Law:
     parameters: type[CaseModel]  # the [joints.*] table
     function: Callable  # the scalar law, see the module docstring
     columns: Callable[[CaseModel], tuple[float, ...]]  # table -> row of `parameters`
+    shear_limit: Callable[[np.ndarray, np.ndarray], np.ndarray]  # (parameters, normal forces) -> largest shear forces
     n_memory: int = 0  # columns of `memory`
     source: str = ""  # where the law is published

@@ -12,6 +12,7 @@ from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
+from dem_cli.model.places import block_at, undeformed
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -40,11 +41,25 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
         return found
     near = _neighbours(model)
     found = overlap_problems(model, blocks, near) + compound_problems(model, blocks, near)
+    found += monitor_problems(case, model)
     if not model.fixed.any():
         path = ("structure", 0) if case.structure else ("block", 0)
         message = "no block is fixed, everything would fall; give a structure a base or a block fixed = true"
         return [*found, CaseProblem(path, message)]
     return found + support_problems(model, blocks, near)
+
+
+def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors at a point where there is no block."""
+    low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
+    return [
+        CaseProblem(
+            ("monitor", i, "point"),
+            f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
+        )
+        for i, monitor in enumerate(case.monitor)
+        if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
+    ]
 
 
 def warnings(model: Model) -> list[str]:

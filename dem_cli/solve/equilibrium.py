@@ -102,11 +102,11 @@ def settle_or_fail(
         check_finite(sim)
         moved.append(float(np.abs(sim.save_places() - start).max()))
         now = sim.energy_sums()
-        given, released = now.given - ledger.given, 1.0 - (now.taken - ledger.taken) / (now.given - ledger.given)
-        if given > 0.0 and released > 0.0 and len(moved) > 4:
+        given, taken = now.given - ledger.given, now.taken - ledger.taken
+        if given > max(taken, 0.0) and len(moved) > 4 and min(moved[-4:]) > 0.0:
             growth = moved[-1] / moved[-2]
             accelerated = min(moved[-1] / moved[-2], moved[-2] / moved[-3], moved[-3] / moved[-4]) > ACCELERATED
             steady = moved[-1] > STEADY**4 * moved[-5] and moved[-1] > FAR_STEADY * scale
             if moved[-1] > FAR * scale and (accelerated or steady):
-                return Verdict("failure", sim.unbalanced, released, growth)
+                return Verdict("failure", sim.unbalanced, 1.0 - taken / given, growth)
         target *= 2

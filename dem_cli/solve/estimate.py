@@ -43,7 +43,7 @@ def describe(case: Case, model: Model) -> Rows:
     wanted = case.analysis.kinematics
     moving = case.analysis.kind == "settlement"
     sim = simulation("large" if moving or wanted == "large" else "fixed")
-    gaps = open_joints(model, sim) if wanted == "auto" and not moving else 0
+    gaps = open_joints(model) if wanted == "auto" and not moving else 0
     if gaps:
         sim = simulation("large")
     return [

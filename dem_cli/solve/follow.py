@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.kernels import records as slot
 from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, GRAVITY_TOLERANCE, Budget, check_finite, relax
+from dem_cli.solve.failure import PROBE
 from dem_cli.solve.joints import FIXED_RATIO
 from dem_cli.solve.track import Track
 
@@ -34,7 +35,7 @@ def softness(case: Case, elastic: float, load: float, edge: float, until: float)
     elastic: largest elastic displacement per unit of multiplier in the search [m]; edge: smallest edge [m];
     until: displacement to be followed [m].
     """
-    softer = max(ELASTIC * edge / (elastic * load), STEPS * until / (elastic * MOST))
+    softer = max(ELASTIC * edge / (elastic * max(load, PROBE)), STEPS * until / (elastic * MOST))
     ratio = min(max(FIXED_RATIO / softer, SOFTEST), STIFFEST)
     automatic = any(joint.kn == "auto" for joint in case.joints.values())
     return ratio, (FIXED_RATIO / ratio if automatic else 1.0)
@@ -74,7 +75,7 @@ def follow(
             next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            reached = next(moved for load, moved in curve if load >= 0.99 * highest)
+            reached = next((moved for load, moved in curve if load >= 0.99 * highest), moved)
             return {"load": highest, "displacement": reached}
         sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)
         pace = abs(moved - before) / chunk

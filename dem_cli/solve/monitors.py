@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
+from dem_cli.model.places import block_at
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case, Monitor
@@ -23,16 +22,15 @@ class Monitors:
 
         self.tables = case.monitor
         names = assembly(case).block_map if any(m.block for m in self.tables) else {}
-        self.places = [self._place(m, i, names, model) for i, m in enumerate(self.tables)]
+        self.places = [self._place(m, names, model) for m in self.tables]
 
-    def _place(self, monitor: Monitor, i: int, names: dict[str, int], model: Model) -> tuple[int, np.ndarray]:
-        """Block and arm of a monitor. Raises CaseError where no block is at its point."""
+    def _place(self, monitor: Monitor, names: dict[str, int], model: Model) -> tuple[int, np.ndarray]:
+        """Block and arm of a monitor; that there is a block is checked with the model."""
         if monitor.block is not None:
             return names[monitor.block], np.zeros(2)
         point = np.array(monitor.point)
         block = block_at(model, point)
-        if block is None:
-            raise CaseError([CaseProblem(("monitor", i, "point"), f"there is no block at {list(monitor.point)}")])
+        assert block is not None  # model.validate
         return block, point - model.centroids[block]
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
@@ -55,16 +53,3 @@ class Monitors:
         if monitor.component is None:
             return float(np.hypot(*vector))
         return float(vector["xy".index(monitor.component)])
-
-
-def block_at(model: Model, point: np.ndarray) -> int | None:
-    """Number of the block that contains a point of the undeformed structure (edges count), or None."""
-    starts = model.part_starts
-    owners = np.repeat(model.part_blocks, np.diff(starts))
-    vertices = model.vertices + model.centroids[owners]
-    edges, to_point = vertices[polygon.following(starts)] - vertices, point - vertices
-    left = edges[:, 0] * to_point[:, 1] - edges[:, 1] * to_point[:, 0]
-    size = np.hypot(*edges.T)
-    inside = np.minimum.reduceat(left / size, starts[:-1]) >= -1e-9 * size.max()
-    found = np.flatnonzero(inside)
-    return int(model.part_blocks[found[0]]) if len(found) else None

@@ -12,11 +12,13 @@ import numpy as np
 from dem_cli.contact.detect import find_joints
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
+from dem_cli.model.places import undeformed
 from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.solve.equilibrium import Budget
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.monitors import Monitors
 from dem_cli.solve.registry import ANALYSES
+from dem_cli.solve.scales import smallest_edge
 from dem_cli.solve.simulation import TOUCH, Simulation
 from dem_cli.solve.track import Track
 
@@ -113,15 +115,13 @@ class Job:
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
         wanted = self.case.analysis.kinematics
-        sim = self.simulation("fixed" if wanted == "auto" else wanted)
-        gaps = open_joints(self.model, sim) if wanted == "auto" else 0
+        gaps = open_joints(self.model) if wanted == "auto" else 0
         if gaps:
             self.skipped.append(f"fixed geometry: {gaps} joints have gaps that may close")
-            return self.simulation("large")
-        if sim.kinematics == "fixed":
+        elif wanted != "large":
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
-        return sim
+        return self.simulation("large" if gaps or wanted == "large" else "fixed")
 
     def track(self, sim: Simulation) -> Track:
         """Rows and frames of a simulation."""
@@ -137,7 +137,7 @@ class Job:
             self.warnings.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
         summary = {
             "joints": sims[0].first_joints,
-            "contacts": 2 * sims[0].first_joints,
+            "contacts": sims[0].first_points,
             "steps": sims[-1].steps,
             "time_step": 1.0,
             "solve_seconds": self.clock.seconds(),
@@ -159,10 +159,10 @@ def live_scale(model: Model) -> float:
     return float(dead / live) if dead > 0.0 and live > 0.0 else 1.0
 
 
-def open_joints(model: Model, sim: Simulation) -> int:
+def open_joints(model: Model) -> int:
     """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
-    faces = find_joints(model, sim.bodies.corners, NEAR * sim.smallest)
-    return int((np.abs(faces.separation) > TOUCH * sim.smallest).sum())
+    edge = smallest_edge(model)
+    return int((np.abs(find_joints(model, undeformed(model), NEAR * edge).separation) > TOUCH * edge).sum())
 
 
 def closure(sim: Simulation) -> float:

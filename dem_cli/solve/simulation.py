@@ -104,7 +104,7 @@ class Simulation:
         self.detections = 0
         self.reference_positions = positions.copy()
         self._detect_first()
-        self.first_joints = len(self.joints.blocks)  # closed or nearly so at the start
+        self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
 
     # -- detection ---------------------------------------------------------------------------------
 
@@ -128,7 +128,7 @@ class Simulation:
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""
         old, memory = self.joints, self.contacts
-        measure(old, Contacts(*(a.copy() for a in memory)), self.bodies)  # its points, for those that move on
+        self.measured()  # the points of the old joints, for those that move on
         faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest)
         joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.law.n_memory)
         carry_memory(old, memory, joints, contacts)
@@ -146,11 +146,17 @@ class Simulation:
         self.control[slot.TRAVEL_LIMIT] = 0.5 * SKIN * self.smallest
         self.set_masses()
 
+    def measured(self) -> Contacts:
+        """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
+        contacts = Contacts(*(a.copy() for a in self.contacts))
+        if self.kinematics == "large":
+            measure(self.joints, contacts, self.bodies)
+        return contacts
+
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
-        if self.kinematics == "large":  # frames and levers of this instant; forces and flags stay
-            measure(self.joints, Contacts(*(a.copy() for a in self.contacts)), self.bodies)
+        self.measured()
         fictitious_masses(self.model, self.joints, self.bodies, self.shape, self.safety, self.loads.inverse_masses)
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 
@@ -315,21 +321,20 @@ class Simulation:
 
     def contact_record(self) -> ContactRecord:
         """All contact points now."""
-        if self.kinematics == "large":
-            measure(self.joints, self.contacts, self.bodies)
-        owner = np.repeat(np.arange(len(self.joints.blocks)), 2)
-        friction = np.abs(self.contacts.shear).max(axis=1, initial=0.0)
-        limit = self.joints.law[owner, 0] * self.contacts.normal
-        state = np.where(self.contacts.normal <= 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
+        joints, contacts = self.joints, self.measured()
+        owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+        friction = np.sqrt((contacts.shear**2).sum(axis=1))
+        limit = self.law.shear_limit(joints.law[owner], contacts.normal)
+        state = np.where(contacts.normal <= 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
         return ContactRecord(
             joint=owner,
-            blocks=self.joints.blocks[owner],
-            points=self.joints.points.copy(),
-            normals=self.joints.frames[:, : self.model.dimension].copy(),
-            normal_force=self.contacts.normal.copy(),
-            shear_force=self.contacts.shear.copy(),
-            gap=self.contacts.gaps.copy(),
-            slip=self.contacts.slip.copy(),
+            blocks=joints.blocks[owner],
+            points=joints.points.copy(),
+            normals=joints.frames[:, : self.model.dimension].copy(),
+            normal_force=contacts.normal,
+            shear_force=contacts.shear,
+            gap=contacts.gaps,
+            slip=contacts.slip,
             state=state.astype(np.int8),
         )
 
