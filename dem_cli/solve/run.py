@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.detect import find_joints
+from dem_cli.contact.start import TOUCH
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -19,7 +20,7 @@ from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.monitors import Monitors
 from dem_cli.solve.registry import ANALYSES
 from dem_cli.solve.scales import smallest_edge
-from dem_cli.solve.simulation import TOUCH, Simulation
+from dem_cli.solve.simulation import Simulation
 from dem_cli.solve.track import Track
 
 if TYPE_CHECKING:

@@ -13,10 +13,9 @@ from dem_cli.contact.assemble import (
     JointProperties,
     build_joints,
     carry_memory,
-    overlap_lengths,
-    share_frames,
 )
-from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
+from dem_cli.contact.detect import block_shape, find_joints
+from dem_cli.contact.start import bodies_at_rest, close_touching, joints_of_start
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
@@ -30,7 +29,6 @@ from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.scales import own_weights, smallest_edge
 
-TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
 SKIN = 0.05  # detection reach as a share of the smallest edge
 LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 ALPHA = 0.4  # local damping near failure
@@ -74,12 +72,7 @@ class Simulation:
         n = model.n_blocks
         self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
         self.shape = block_shape(model)
-        positions, orientations = model.centroids.copy(), np.zeros((n, 1 if d == 2 else 4))
-        corners = world_corners(self.shape, positions, orientations)
-        self.bodies = Bodies(
-            positions, orientations, np.zeros((n, d + r)), np.zeros((n, d + r)), np.zeros((n, d + r)), corners,
-            np.zeros((n, 2)), np.zeros(n * (d + r)), np.zeros(n * (d + r)), np.zeros(n),
-        )  # fmt: skip
+        self.bodies = bodies_at_rest(model)
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
         dead = model.dead_loads.copy()
@@ -102,7 +95,7 @@ class Simulation:
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
         self.detections = 0
-        self.reference_positions = positions.copy()
+        self.reference_positions = self.bodies.positions.copy()
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
 
@@ -110,19 +103,15 @@ class Simulation:
 
     def _detect_first(self) -> None:
         model = self.model
-        reach = self.smallest * (TOUCH if self.kinematics == "fixed" else SKIN)
-        faces = find_joints(model, self.bodies.corners, reach)
+        n_memory = self.law.n_memory
         if self.kinematics == "fixed":
-            # Faces that meet in a point only cannot carry force to first order.
-            keep = overlap_lengths(faces.edges, self.bodies.corners) > TOUCH * self.smallest
-            faces = Faces(*(field[keep] for field in faces))
-        self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, self.law.n_memory)
-        gaps = self.contacts.gaps
-        gaps[np.abs(gaps) <= TOUCH * self.smallest] = 0.0
-        if self.kinematics == "fixed":
-            # One frame a joint: that of its closer end.
-            closer = 2 * np.arange(len(gaps) // 2) + (gaps[1::2] < gaps[0::2])
-            share_frames(self.joints, closer, self.bodies.positions)
+            self.joints, self.contacts = joints_of_start(
+                model, self.bodies, self.properties, self.smallest, n_memory
+            )
+        else:
+            faces = find_joints(model, self.bodies.corners, SKIN * self.smallest)
+            self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory)
+            close_touching(self.contacts, self.smallest)
         self._after_detection()
 
     def detect(self) -> None:

@@ -1,0 +1,46 @@
+"""Blocks at rest in their first place, and the joints that the geometry of the start has."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.contact.assemble import JointProperties, build_joints, overlap_lengths, share_frames
+from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
+from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.model.model import Model
+
+TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
+
+
+def bodies_at_rest(model: Model) -> Bodies:
+    """All blocks where the model places them, without motion."""
+    d, n_dof = model.dimension, model.dimension + model.inertias.shape[1]
+    n = model.n_blocks
+    positions, orientations = model.centroids.copy(), np.zeros((n, 1 if d == 2 else 4))
+    corners = world_corners(block_shape(model), positions, orientations)
+    return Bodies(
+        positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,
+        np.zeros((n, 2)), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+    )  # fmt: skip
+
+
+def close_touching(contacts: Contacts, smallest: float) -> None:
+    """Gaps that are nothing but round-off become none."""
+    contacts.gaps[np.abs(contacts.gaps) <= TOUCH * smallest] = 0.0
+
+
+def joints_of_start(
+    model: Model, bodies: Bodies, properties: JointProperties, smallest: float, n_memory: int = 0
+) -> tuple[Joints, Contacts]:
+    """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
+
+    smallest: shortest edge of a block [m] (solve.scales). Faces that meet in a point only are left out: to
+    first order they cannot carry force. Both points of a joint share one frame, that of its closer end.
+    """
+    faces = find_joints(model, bodies.corners, TOUCH * smallest)
+    keep = overlap_lengths(faces.edges, bodies.corners) > TOUCH * smallest
+    joints, contacts = build_joints(model, Faces(*(field[keep] for field in faces)), bodies, properties, n_memory)
+    close_touching(contacts, smallest)
+    closer = 2 * np.arange(len(joints.blocks)) + (contacts.gaps[1::2] < contacts.gaps[0::2])
+    share_frames(joints, closer, bodies.positions)
+    return joints, contacts
