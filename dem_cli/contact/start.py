@@ -34,7 +34,7 @@ def joints_of_start(
 ) -> tuple[Joints, Contacts]:
     """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
 
-    smallest: shortest edge of a block [m] (solve.scales). Faces that meet in a point only are left out: to
+    smallest: shortest edge of a block [m] (model.scales). Faces that meet in a point only are left out: to
     first order they cannot carry force. Both points of a joint share one frame, that of its closer end.
     """
     faces = find_joints(model, bodies.corners, TOUCH * smallest)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.model.model import Model
+from dem_cli.model.scales import stiffness_scale
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.run import live_scale, open_joints
-from dem_cli.solve.scales import stiffness_scale
 from dem_cli.solve.simulation import Simulation
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from dem_cli.laws.law import Law
 from dem_cli.laws.registry import LAWS
 from dem_cli.model.assemble import joint_table
 from dem_cli.model.model import Model
-from dem_cli.solve.scales import stiffness_scale
+from dem_cli.model.scales import stiffness_scale
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -14,12 +14,12 @@ from dem_cli.contact.start import TOUCH
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
+from dem_cli.model.scales import smallest_edge
 from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.solve.equilibrium import Budget
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.monitors import Monitors
 from dem_cli.solve.registry import ANALYSES
-from dem_cli.solve.scales import smallest_edge
 from dem_cli.solve.simulation import Simulation
 from dem_cli.solve.track import Track
 

@@ -25,9 +25,9 @@ from dem_cli.kernels.planar_geometry import measure
 from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
+from dem_cli.model.scales import own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
-from dem_cli.solve.scales import own_weights, smallest_edge
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
