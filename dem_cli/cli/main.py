@@ -25,6 +25,7 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "schema": "Print the JSON Schema of the case file.",
     "plot": "Draw the results of a run.",
     "export": "Write results in other formats.",
+    "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }
 INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
 

@@ -12,6 +12,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ANYTHING = None
 ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
+    "bench": ANYTHING,
     "api": {"case", "model", "structures", "laws", "solve", "output.record"},
     "case": {"case"},
     "post": {"output", "model"},
@@ -36,6 +37,8 @@ ONLY_HERE = {  # third parties that stay in the packages named
     "h5py": {"output", "post"},
     "meshio": {"output", "cli"},
     "matplotlib": {"post"},
+    "pymunk": {"bench"},
+    "Box2D": {"bench"},
     "pyvista": {"post"},
     "numba": {"kernels"},
     "tomli": {"case"},

@@ -1,0 +1,118 @@
+"""The structures that are measured, each with the best-known load and where it comes from.
+
+Errors are relative to that load. Where head joints carry friction the load is not unique: the one without
+friction in the head joints is what loading from gravity approaches; `upper` is the associated bound.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dem_cli import api
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.model.model import Model
+
+FOLDER = Path(__file__).resolve().parent
+HEADS = "limit analysis, no friction in head joints"
+COURSES = "structure.0.courses={}"
+BLOCKS = "structure.0.blocks_per_course={}"
+
+
+@dataclass(frozen=True)
+class Known:
+    """A structure and its failure load."""
+
+    name: str
+    file: str  # wall | column | arch
+    overrides: tuple[str, ...]
+    load: float
+    source: str
+    upper: float | None = None  # associated limit load where it differs
+
+    def build(self, *overrides: str) -> tuple[Case, Model]:
+        """Case and model, with more values changed."""
+        loaded = api.load_case(FOLDER / f"{self.file}.toml", [*self.overrides, *overrides])
+        return loaded.case, api.build_model(loaded)
+
+    def error(self, load: float | None) -> float | None:
+        """Relative error of a failure load; None stays None."""
+        return None if load is None else load / self.load - 1.0
+
+
+def _t21(friction: float, load: float, source: str, upper: float | None = None) -> Known:
+    name = f"T21 μ {friction:g}"
+    return Known(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper)
+
+
+def _wall(courses: int, blocks: int, count: int, load: float, upper: float | None, name: str = "") -> Known:
+    sizes = (COURSES.format(courses), BLOCKS.format(blocks))
+    return Known(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper)
+
+
+SLIDES = "closed form: the top course slides at μ"
+KNOWN = {
+    known.name: known
+    for known in (
+        _t21(0.5, 0.5, SLIDES),
+        _t21(0.6, 0.6, SLIDES),
+        _t21(0.65, 0.639969, HEADS, 0.642859),
+        _t21(0.7, 0.643226, HEADS, 0.661654),
+        _t21(0.75, 0.645963, HEADS, 0.681151),
+        _t21(1.0, 0.645963, HEADS, 1.0),
+        _wall(22, 10, 231, 0.466478, 0.476977, "T231"),
+        Known("COL14", "column", (), 0.04 / 0.245, "closed form: turns over at width / height"),
+        Known("ARCH μ 0.6", "arch", (), 0.148315, "limit analysis, four hinges"),
+        Known("ARCH μ 0.4", "arch", ("joints.dry.friction=0.4",), 0.052164, "limit analysis, associated"),
+    )
+}
+SIZES = (  # walls of the same blocks and friction 0.6, by size
+    _wall(6, 3, 21, 0.6, None),
+    _wall(6, 10, 63, 0.6, None),
+    _wall(10, 10, 105, 0.556373, 0.563585),
+    _wall(22, 10, 231, 0.466478, 0.476977),
+    _wall(35, 16, 578, 0.436644, 0.441457),
+    _wall(70, 32, 2275, 0.412872, None),
+    _wall(200, 100, 20100, 0.39149, None),
+)
+
+
+class Nobody:
+    """An observer that keeps nothing."""
+
+    def frame(self, frame: Any) -> None: ...
+    def row(self, row: Any) -> None: ...
+    def progress(self, *where: Any) -> None: ...
+
+
+def solve(case: Case, model: Model, observer: Any = None) -> dict[str, Any]:
+    """The summary of a run; of a run that gave up, its status and message."""
+    from dem_cli.errors import SolverError
+    from dem_cli.solve.run import run
+
+    try:
+        return run(case, model, observer or Nobody()).summary
+    except SolverError as error:
+        return {"status": str(error), "failure_load": None, "steps": None}
+
+
+@cache
+def compiled() -> None:
+    """Have all kernels of a run compiled or loaded, so that nobody's time holds that."""
+    case, model = KNOWN["T21 μ 0.6"].build("analysis.follow=0.001", "analysis.resolution=0.1")
+    solve(case, model)
+
+
+def answer(known: Known, summary: dict[str, Any]) -> dict[str, Any]:
+    """What a record keeps of a run."""
+    load = summary["failure_load"]
+    found = {"load": load, "error": known.error(load), "steps": summary["steps"]}
+    if summary["status"] != "ok":
+        found["status"] = summary["status"]
+    if "kinematics" in summary:
+        found["kinematics"] = summary["kinematics"]
+    return found

@@ -1,0 +1,92 @@
+"""benchmarks.json, benchmarks.md and benchmarks_*.png: the page and its pictures are made from the JSON alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench import registry
+from dem_cli.bench.machine import sentence
+from dem_cli.bench.record import as_json, read, records_of
+
+NAME = "benchmarks"
+HEAD = """\
+# Benchmarks
+
+Written by `scripts/benchmark -o docs` from `docs/benchmarks.json`; do not edit. Times are CPU seconds of one core
+(numerical libraries kept to one thread), without compilation. Everything is repeated in turn, each round measuring
+each thing once, and the best counts, because other work only ever adds time; what takes longer than {long:g} s is
+measured once. An error is that of the failure load against the exact or best-known load of the table below; a
+negative one is on the safe side.
+"""
+
+
+def render(groups: dict[str, dict[str, Any]]) -> str:
+    """The page. groups: as in benchmarks.json."""
+    from dem_cli.bench.timing import LONG
+
+    lines = [HEAD.format(long=LONG), *machines(groups), "", *references()]
+    for name, title in registry.GROUPS.items():
+        if name not in groups:
+            continue
+        group, records = groups[name], records_of(groups[name])
+        lines += ["", f"## {title}", "", *registry.module(name).page(records)]
+        for suffix in registry.module(name).PICTURES:
+            lines += ["", f"![{title}]({NAME}_{suffix}.png)"]
+        lines += ["", *(f"* {note}" for note in group["notes"])] if group["notes"] else []
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def machines(groups: dict[str, dict[str, Any]]) -> list[str]:
+    """On what it was measured; groups measured elsewhere say so."""
+    by_text: dict[str, list[str]] = {}
+    for name, group in groups.items():
+        plain = {key: value for key, value in group["machine"].items() if key != "load"}
+        by_text.setdefault(sentence(plain), []).append(name)
+    loads = [group["machine"]["load"] for group in groups.values() if group["machine"].get("load") is not None]
+    if len(by_text) == 1:
+        lines = [f"Machine: {next(iter(by_text))}."]
+    else:
+        lines = [f"* {', '.join(names)}: {text}" for text, names in by_text.items()]
+        lines = ["Machines, by group:", "", *lines]
+    if loads:
+        lines += ["", f"Other work when the groups began: load {min(loads):g} to {max(loads):g}."]
+    return lines
+
+
+def references() -> list[str]:
+    """The loads that errors are measured against."""
+    from dem_cli.bench.cases import KNOWN, SIZES
+    from dem_cli.bench.table import lines_of
+
+    rows, seen = [], set()
+    for known in (*KNOWN.values(), *SIZES):
+        if (known.file, known.overrides) not in seen and not (known.name, known.load) == ("wall 21", 0.6):
+            upper = "" if known.upper is None else f"{known.upper:.6g}"
+            rows.append((known.name, f"{known.load:.6g}", upper, known.source))
+        seen.add((known.file, known.overrides))
+    head = ("structure", "load", "associated", "source")
+    text = (
+        "T21 is the wall of 21 blocks of Table 5-3 of the thesis, T231 its wall of 231 blocks; the walls by size have"
+        " the same blocks and μ 0.6. Where head joints carry friction the load is not unique: the associated load is an"
+        " upper bound, and the load without friction in the head joints is the one that a structure loaded from gravity"
+        " comes to (docs/numerics.md)."
+    )
+    return [text, "", *lines_of(head, rows)]
+
+
+def write(folder: Path, groups: dict[str, dict[str, Any]]) -> list[Path]:
+    """Write JSON, page and pictures; groups that are in the folder's JSON and not in `groups` stay."""
+    folder.mkdir(parents=True, exist_ok=True)
+    data = folder / f"{NAME}.json"
+    merged = (read(data) if data.exists() else {}) | groups
+    merged = {name: merged[name] for name in registry.GROUPS if name in merged}
+    data.write_text(as_json(merged), encoding="utf-8", newline="\n")
+    written = [data, folder / f"{NAME}.md"]
+    written[1].write_text(render(merged), encoding="utf-8", newline="\n")
+    for name in merged:
+        for suffix, draw in registry.module(name).PICTURES.items():
+            path = folder / f"{NAME}_{suffix}.png"
+            draw(records_of(merged[name]), path)
+            written.append(path)
+    return written

@@ -1,0 +1,23 @@
+"""All groups of benchmarks.
+
+A group is a module of this package with the same name that has
+
+    measure(options) -> Found         times and answers
+    page(records) -> list[str]        its lines of docs/benchmarks.md, from the records alone
+    PICTURES: {suffix: draw}          draw(records, path) for benchmarks_SUFFIX.png
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+GROUPS = {  # name -> title, in the order of the page
+    "kernels": "Cost of a step",
+    "startup": "From shell to shell",
+}
+
+
+def module(name: str) -> Any:
+    """The module of a group, imported when it is used."""
+    return import_module(f"dem_cli.bench.{name}")

@@ -1,0 +1,65 @@
+"""From shell to shell: what a user waits for, wall clock and CPU."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench.cases import FOLDER
+from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.table import lines_of, seconds
+
+PICTURES: dict[str, Any] = {}
+FIRST = "first run of T21, nothing compiled"
+
+
+def shell(words: list[str], cache: str) -> tuple[float, float]:
+    """Wall-clock and CPU seconds of a new process, until it ended."""
+    environment = os.environ | {"DEM_CACHE_DIR": cache}
+    children, begun = cpu_of_children(), time.perf_counter()
+    subprocess.run([sys.executable, "-m", "dem_cli", *words], env=environment, check=True, capture_output=True)
+    return time.perf_counter() - begun, cpu_of_children() - children
+
+
+def cpu_of_children() -> float:
+    """CPU seconds of all child processes that ended."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def measure(options: Options) -> Found:
+    """`dem --help`, the first run with an empty cache of compiled code, later runs."""
+    found, times = Found(), {}
+    with tempfile.TemporaryDirectory() as folder:
+        run = ["run", str(FOLDER / "wall.toml"), "--quiet", "-o", str(Path(folder) / "results")]
+        commands = {"`dem --help`": ["--help"], "later runs of T21": run}
+        if find_spec("matplotlib") is not None:
+            commands["later runs of T21 with `--plot`"] = [*run, "--plot"]
+        if options.quick:
+            commands = {"`dem --help`": ["--help"]}
+        else:
+            times[FIRST] = [shell(run, folder)]
+        for _ in range(options.rounds(5)):
+            for name, words in commands.items():
+                times.setdefault(name, []).append(shell(words, folder))
+    for name, pairs in times.items():
+        wall, cpu = zip(*pairs, strict=True)
+        best, median = min(wall), sorted(wall)[len(wall) // 2]
+        found.records.append(record("T21 μ 0.6", "command", name, cpu, best_wall=best, median_wall=median))
+    return found
+
+
+def page(records: list[Record]) -> list[str]:
+    """The table."""
+    head = ("command", "wall clock", "median", "CPU")
+    rows = [
+        (r.value, seconds(r.found["best_wall"]), seconds(r.found["median_wall"]), seconds(r.best)) for r in records
+    ]
+    text = "A new process each time, from the shell's point of view. The first run compiles the kernels and keeps them."
+    return [text, "", *lines_of(head, rows)]

@@ -1,0 +1,81 @@
+"""`dem bench`: measure run time against error, on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from dem_cli.bench import registry
+from dem_cli.bench.machine import describe, one_thread
+from dem_cli.errors import UsageError
+
+
+@click.command("bench")
+@click.argument("groups", nargs=-1, metavar="[GROUP]...")
+@click.option("--quick", is_flag=True, help="The smallest sizes, once: does it work?")
+@click.option("--long", is_flag=True, help="The largest sizes as well; takes hours.")
+@click.option("--repeats", type=click.IntRange(min=1), help="Rounds; default: as each group says.")
+@click.option("--json", "json_file", metavar="FILE", help="Results as JSON; - for stdout.")
+@click.option(
+    "-o",
+    "--write",
+    "folder",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Write benchmarks.json, .md and pictures there; groups not measured now stay.",
+)
+@click.option("--redraw", is_flag=True, help="Measure nothing: page and pictures again from DIR/benchmarks.json.")
+def command(
+    groups: Sequence[str],
+    quick: bool,
+    long: bool,
+    repeats: int | None,
+    json_file: str | None,
+    folder: Path | None,
+    redraw: bool,
+) -> None:
+    """Measure cost and error of dem: all groups, or those named.
+
+    Groups: kernels, precision, growth, features, others, startup.
+    """
+    one_thread()
+    from dem_cli.bench.page import render, write
+    from dem_cli.bench.record import Options, as_json
+
+    found = {} if redraw else measured(checked(groups), Options(quick, long, repeats))
+    if redraw and folder is None:
+        raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
+    if json_file == "-":
+        click.echo(as_json(found), nl=False)
+    elif json_file is not None:
+        Path(json_file).write_text(as_json(found), encoding="utf-8", newline="\n")
+    if folder is not None:
+        for path in write(folder, found):
+            click.echo(f"wrote {path}", err=True)
+    elif json_file is None:
+        click.echo(render(found), nl=False)
+
+
+def checked(groups: Sequence[str]) -> list[str]:
+    """The groups wanted, in their order. Raises UsageError on an unknown one."""
+    unknown = [name for name in groups if name not in registry.GROUPS]
+    if unknown:
+        raise UsageError(f"no benchmark group '{unknown[0]}' (groups: {', '.join(registry.GROUPS)})")
+    return [name for name in registry.GROUPS if name in groups or not groups]
+
+
+def measured(names: Sequence[str], options: Any) -> dict[str, dict[str, Any]]:
+    """Groups as JSON holds them."""
+    from dem_cli.bench.cases import compiled
+    from dem_cli.bench.record import group_table
+
+    found = {}
+    for name in names:
+        click.echo(f"measuring {name}: {registry.GROUPS[name]}", err=True)
+        machine = describe()
+        compiled()
+        found[name] = group_table(registry.module(name).measure(options), machine)
+    return found
