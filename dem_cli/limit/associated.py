@@ -1,0 +1,162 @@
+"""The associated failure load of rigid blocks: the largest load in equilibrium with forces inside the friction cones.
+
+Static theorem (Livesley 1978). Its dual is the mechanism of least work in which sliding joints also dilate by
+μ times the slip; where friction acts the load is therefore an upper bound of that of real, non-dilating joints.
+
+The solver's word is not taken: residuals, bounds and proofs of impossibility are computed here, on unscaled
+data, from the forces and velocities that it returns; what does not pass is "not converged".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.limit.cone import cone_of
+from dem_cli.limit.matrices import Structure
+from dem_cli.limit.program import ANSWERED, IMPOSSIBLE, UNBOUNDED, Found, Program, largest_load, program_of, standing
+
+OK = "ok"
+FALLS = "does not stand under its dead loads"
+LOCKED = "no load of this direction makes it fail"
+GIVEN_UP = "not converged"
+
+RESIDUAL, GAP = 1e-6, 1e-4  # largest accepted: unbalanced force in own weights; width of the bounds over the load
+NOTHING = 1e-3  # live over dead loads, below which bounds are compared with this
+PROOF = 1e-6  # relative error accepted in a proof that something is impossible
+# Settings of the solver, tried in turn until the answer passes: quick, then careful.
+TRIES: tuple[dict[str, Any], ...] = (
+    {
+        "equilibrate_enable": False, "tol_gap_abs": 1e-7, "tol_gap_rel": 1e-7,
+        "iterative_refinement_reltol": 1e-9, "iterative_refinement_abstol": 1e-9,
+    },
+    {"equilibrate_enable": True, "tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9},
+    {"equilibrate_enable": False, "tol_feas": 1e-10, "tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9},
+)  # fmt: skip
+
+
+class LimitLoad(NamedTuple):
+    """An associated failure load, with what is needed to trust it."""
+
+    status: str  # OK, FALLS, LOCKED, or GIVEN_UP with the reason
+    multiplier: float | None  # of the live loads, as users know it; None where there is none
+    lower: float | None  # the multiplier in equilibrium, less the power of the residual in the mechanism
+    upper: float | None  # the work of the mechanism, plus that of its violations against the computed forces
+    residual: float  # largest unbalanced force, in own weights (moments: × radius); without a load, error of the proof
+    normal: np.ndarray  # normal force of each point, compression positive [N], (n_points,)
+    shear: np.ndarray  # shear force on b along the tangent [N], (n_points, d − 1)
+    velocities: np.ndarray  # mechanism; its live power is one, (n_blocks, n_dof)
+    gap: float | None  # distance of the bounds, relative to the load
+    iterations: int  # of the solver
+
+
+def limit_load(structure: Structure, friction: np.ndarray) -> LimitLoad:
+    """The largest multiplier of the live loads that the structure carries with associated friction.
+
+    friction: coefficient of every point, (n_points,), see limit.cone.friction_of.
+    Status and forces tell apart: fails at a multiplier; does not stand without live load; never fails; not
+    converged. Raises UsageError where no live load acts on a block that can move.
+    """
+    if not np.abs(structure.live).max(initial=0.0) > 0.0:
+        raise UsageError("limit analysis needs live loads on blocks that can move, and there are none")
+    program = program_of(structure, cone_of(friction))
+    found = _first_good(program, largest_load, _judge_load)
+    if found.status not in (OK, LOCKED):
+        return found
+    stands = _first_good(program, standing, _judge_standing)
+    found = found._replace(iterations=found.iterations + stands.iterations)
+    return found if stands.status == OK else stands._replace(iterations=found.iterations)
+
+
+def _first_good(
+    program: Program, solve: Callable[[Program, dict[str, Any]], Found], judge: Callable[[Program, Found], LimitLoad]
+) -> LimitLoad:
+    """The first answer that passes; where none does, the last."""
+    iterations = 0
+    for settings in TRIES:
+        found = solve(program, settings)
+        iterations += found.iterations
+        judged = judge(program, found)._replace(iterations=iterations)
+        if not judged.status.startswith(GIVEN_UP):
+            break
+    return judged
+
+
+def _judge_load(program: Program, found: Found) -> LimitLoad:
+    """Is this the largest load, or a proof that there is none?"""
+    if found.kind == UNBOUNDED:
+        return _refusal(program, *_locked(program, found))
+    if found.kind == IMPOSSIBLE:
+        return _refusal(program, *_falls(program, found))
+    s = program.structure
+    amounts = np.maximum(found.amounts, 0.0)
+    normal, shear = _forces(program, amounts)
+    imbalance = s.imbalance(np.column_stack([normal, shear]).ravel(), found.multiplier)
+    power = float(s.live @ found.velocities)
+    if not (np.isfinite(imbalance).all() and power > 0.0):
+        return _refusal(program, f"{GIVEN_UP}: the solver says {found.said}")
+    velocities = found.velocities / power
+    residual = float(np.abs(imbalance).max())
+    lower = found.multiplier - float((np.abs(imbalance) * s.scales) @ np.abs(velocities))
+    upper = float(amounts @ np.maximum(-(program.motion @ velocities), 0.0)) - float(s.dead @ velocities)
+    gap = (upper - lower) / max(abs(found.multiplier), NOTHING * program.load)
+    made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
+    if residual <= RESIDUAL and -RESIDUAL <= gap <= GAP:
+        return made
+    reason = f"{GIVEN_UP}: residual {residual:.1e} of own weights, bounds {gap:.1e} apart ({found.said})"
+    return made._replace(status=reason)
+
+
+def _judge_standing(program: Program, found: Found) -> LimitLoad:
+    """Do the dead loads have forces that carry them?"""
+    if found.kind == IMPOSSIBLE:
+        return _refusal(program, *_falls(program, found))
+    normal, shear = _forces(program, np.maximum(found.amounts, 0.0))
+    imbalance = program.structure.imbalance(np.column_stack([normal, shear]).ravel(), 0.0)
+    residual = float(np.abs(imbalance).max(initial=0.0))
+    if found.kind == ANSWERED and residual <= RESIDUAL:
+        return _refusal(program, OK, residual)
+    return _refusal(program, f"{GIVEN_UP}: cannot tell whether it {FALLS[9:]}", residual)
+
+
+def _falls(program: Program, found: Found) -> tuple[str, float]:
+    """Status and error of the proof: a mechanism that no joint resists and that the dead loads drive.
+
+    Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
+    """
+    s, velocities = program.structure, found.velocities
+    power = float(s.dead @ velocities)
+    violation = max(0.0, float(-(program.motion @ velocities).min(initial=0.0)))
+    error = violation * program.weight * program.n_blocks / power if power > 0.0 else np.inf
+    return _proved(FALLS, error, found), error
+
+
+def _locked(program: Program, found: Found) -> tuple[str, float]:
+    """Status and error of the proof: contact forces in balance with live loads alone."""
+    s, amounts = program.structure, np.maximum(found.amounts, 0.0)
+    unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
+    load = found.multiplier * float(np.abs(s.live / s.scales).max())
+    error = float(np.abs(unbalanced).max()) / load if load > 0.0 else np.inf
+    return _proved(LOCKED, error, found), error
+
+
+def _proved(claim: str, error: float, found: Found) -> str:
+    """The claim, if its proof is good enough."""
+    return claim if error <= PROOF else f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
+
+
+def _forces(program: Program, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Normal forces (n_points,) and shear forces (n_points, 1) [N]."""
+    n_points = program.structure.compatibility.shape[0] // 2
+    forces = program.cone.forces(amounts, n_points).reshape(-1, 2)
+    return forces[:, 0].copy(), forces[:, 1:].copy()
+
+
+def _refusal(program: Program, status: str, residual: float = 0.0) -> LimitLoad:
+    """An answer without a multiplier."""
+    n_points = program.structure.compatibility.shape[0] // 2
+    nothing = np.zeros((program.structure.model.n_blocks, program.structure.n_dof))
+    return LimitLoad(status, None, None, None, residual, np.zeros(n_points), np.zeros((n_points, 1)), nothing, None, 0)
