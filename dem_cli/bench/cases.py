@@ -113,6 +113,7 @@ def answer(known: Known, summary: dict[str, Any]) -> dict[str, Any]:
     found = {"load": load, "error": known.error(load), "steps": summary["steps"]}
     if summary["status"] != "ok":
         found["status"] = summary["status"]
+        found["message"] = (summary.get("warnings") or [""])[-1]
     if "kinematics" in summary:
         found["kinematics"] = summary["kinematics"]
     return found

@@ -6,7 +6,7 @@ from typing import Any
 
 from dem_cli.bench.cases import SIZES, Known
 from dem_cli.bench.record import Found, Options, Record, record
-from dem_cli.bench.table import lines_of
+from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import Job, in_turn
 
 PICTURES: dict[str, Any] = {}
@@ -68,7 +68,8 @@ def page(records: list[Record]) -> list[str]:
     """The table."""
     head = ("blocks", "contact points", "geometry", "best", "median")
     rows = [
-        (f"{r.found['blocks']:,}", f"{r.found['points']:,}", r.value, f"{r.best:.2f}", f"{r.median:.2f}") for r in records
+        (count(r.found["blocks"]), count(r.found["points"]), r.value, f"{r.best:.2f}", f"{r.median:.2f}")
+        for r in records
     ]
     text = (
         "CPU ns per contact point and step of walls under a load that they stand, with the energy ledger, in float64"

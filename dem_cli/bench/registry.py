@@ -14,6 +14,10 @@ from typing import Any
 
 GROUPS = {  # name -> title, in the order of the page
     "kernels": "Cost of a step",
+    "precision": "Work against precision",
+    "growth": "Growth with size",
+    "features": "Cost of features",
+    "others": "Beside pymunk and Box2D",
     "startup": "From shell to shell",
 }
 

@@ -42,12 +42,15 @@ def command(
     Groups: kernels, precision, growth, features, others, startup.
     """
     one_thread()
-    from dem_cli.bench.page import render, write
-    from dem_cli.bench.record import Options, as_json
+    from dem_cli.bench.page import NAME, render, write
+    from dem_cli.bench.record import Options, as_json, read
 
-    found = {} if redraw else measured(checked(groups), Options(quick, long, repeats))
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
+    if redraw:
+        found = read(folder / f"{NAME}.json")
+    else:
+        found = measured(checked(groups), Options(quick, long, repeats))
     if json_file == "-":
         click.echo(as_json(found), nl=False)
     elif json_file is not None:

@@ -1,0 +1,193 @@
+"""What optional features cost, off and on."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench.cases import KNOWN, SIZES, Known, Nobody, solve
+from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
+from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.table import lines_of, seconds
+from dem_cli.bench.timing import Job, in_turn
+
+PICTURES: dict[str, Any] = {}
+KERNEL, RUN = "kernel", "run"
+BLOCKS, QUICK_BLOCKS = (21, 231, 2275), (21,)
+CASES, QUICK_CASES = ("T21 μ 0.6", "T231"), ("T21 μ 0.6",)
+BARE, LEDGER, FULL = "nothing", "ledger", "all, unused"
+MONITORS = "monitor=[" + ", ".join('{block = "top-right", quantity = "rotation"}' for _ in range(10)) + "]"
+PLAIN = "plain"
+FOLLOW = {"T21 μ 0.6": 0.02, "T231": 0.04}  # m, as in cases/verification
+
+
+@dataclass(frozen=True)
+class Feature:
+    """Something that a run may do besides finding a failure load."""
+
+    name: str
+    overrides: tuple[str, ...] = ()
+    observer: Callable[[Any, Any, Path], Any] | None = None  # (case, model, folder) -> an observer that is closed
+
+    def available(self) -> bool:
+        """Whether case files of this version know it."""
+        from dem_cli.errors import CaseError
+
+        try:
+            KNOWN["T21 μ 0.6"].build(*self.overrides)
+        except CaseError:
+            return False
+        return True
+
+
+class Disk(Nobody):
+    """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
+
+    def __init__(self, case: Any, model: Any, folder: Path):
+        from dem_cli.case.writer import case_text
+        from dem_cli.cli.run import monitor_names
+        from dem_cli.output.store import ResultWriter
+
+        names = monitor_names(case.monitor)
+        self.writer = ResultWriter(folder, model, case_text(case), {}, names, case.analysis.kind)
+        self.frame, self.row = self.writer.frame, self.writer.row  # type: ignore[method-assign]
+
+
+def features(name: str) -> tuple[Feature, ...]:
+    """What is measured on a structure, the plain run first."""
+    follow = f"analysis.follow={FOLLOW[name]}"
+    return (
+        Feature(PLAIN),
+        Feature("10 monitors", (MONITORS,)),
+        Feature("20 frames, kept by nobody", ("output.frames=20",)),
+        Feature("20 frames and histories on disk", ("output.frames=20",), Disk),
+        Feature("geometry that moves", ("analysis.kinematics=large",)),
+        Feature("limit analysis beside it", ("analysis.limit=true",)),
+        Feature("collapse followed", (follow,)),
+        Feature("collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), Disk),
+    )
+
+
+def measure(options: Options) -> Found:
+    """Kernels first, then whole runs."""
+    found = Found()
+    _kernels(options, found)
+    _runs(options, found)
+    return found
+
+
+def _kernels(options: Options, found: Found) -> None:
+    """ns per point and step of three stepping loops in turn: bare, with ledger, with everything."""
+    rows: list[tuple[Known, str, str, Job, int]] = []
+    for known in SIZES:
+        if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
+            for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
+                sim = simulation(known, kinematics)
+                start, steps = sim.save(), max(POINT_STEPS // len(sim.joints.kn), 10)
+                for name, loop in loops(sim).items():
+                    job = Job(_stepping(sim, loop, steps), lambda sim=sim, start=start: sim.restore(start))
+                    rows.append((known, kinematics, name, job, steps * len(sim.joints.kn)))
+    for *_, job, _ in rows:
+        job.once()  # compiles
+        job.seconds.clear()
+    in_turn([job for *_, job, _ in rows], options.rounds(25))
+    for known, kinematics, name, job, work in rows:
+        times = [1e9 * s / work for s in job.seconds]
+        found.records.append(
+            record(known.name, KERNEL, f"{kinematics}: {name}", times, "ns", kinematics=kinematics, has=name)
+        )
+
+
+def loops(sim: Any) -> dict[str, Callable]:
+    """Stepping loops that do the same motion, by what they have."""
+    from dem_cli.bench.bare import make_bare
+    from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+    from dem_cli.kernels.drift import drift_centroids, drift_corners
+    from dem_cli.kernels.planar_forces import make_planar_forces
+    from dem_cli.solve.simulation import compiled_advance
+
+    if sim.kinematics == "fixed":
+        parts = (of_bodies(make_contact_forces(sim.law.function, integrates_gap=True)), drift_centroids)
+    else:
+        parts = (make_planar_forces(sim.law.function), drift_corners)
+    full = compiled_advance(sim.kinematics, sim.law)
+    return {BARE: make_bare(*parts, False), LEDGER: make_bare(*parts, True), FULL: full}
+
+
+def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
+    from dem_cli.kernels import records as slot
+
+    return lambda: loop(
+        steps, slot.HOLD_LOAD, 1.0, sim.bodies, sim.shape, sim.joints, sim.contacts, sim.loads,
+        sim.control, sim.ledger, sim.like, sim.like_rotation,
+    )  # fmt: skip
+
+
+def _runs(options: Options, found: Found) -> None:
+    rows: list[tuple[str, Feature, Job]] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in QUICK_CASES if options.quick else CASES:
+            for feature in features(name)[: 4 if options.quick else None]:
+                if feature.available():
+                    rows.append((name, feature, _run(KNOWN[name], feature, Path(folder) / str(len(rows)))))
+                elif name == QUICK_CASES[0]:
+                    found.notes.append(f"{feature.name}: not in this version")
+        in_turn([job for *_, job in rows], options.rounds(5))
+    for name, feature, job in rows:
+        found.records.append(record(name, RUN, feature.name, job.seconds, steps=job.result["steps"]))
+
+
+def _run(known: Known, feature: Feature, folder: Path) -> Job:
+    case, model = known.build(*feature.overrides)
+
+    def run() -> dict[str, Any]:
+        if feature.observer is None:
+            return solve(case, model)
+        folder.mkdir(exist_ok=True)
+        disk = feature.observer(case, model, folder)
+        summary = solve(case, model, disk)
+        disk.writer.close(summary)
+        return summary
+
+    return Job(run)
+
+
+def page(records: list[Record]) -> list[str]:
+    """A table of kernels and one of runs."""
+    kernels, runs = [r for r in records if r.axis == KERNEL], [r for r in records if r.axis == RUN]
+    return [*KERNEL_TEXT, "", *_kernel_table(kernels), "", *RUN_TEXT, "", *_run_table(runs)]
+
+
+def _kernel_table(records: list[Record]) -> list[str]:
+    best = {(r.case, r.found["kinematics"], r.found["has"]): r.best for r in records}
+    rows = []
+    for case, kinematics in dict.fromkeys((r.case, r.found["kinematics"]) for r in records):
+        bare, ledger, full = (best[case, kinematics, has] for has in (BARE, LEDGER, FULL))
+        times = (f"{time:.2f}" for time in (bare, ledger, full))
+        rows.append((case, kinematics, *times, f"{ledger / bare:.2f}", f"{full / ledger:.3f}"))
+    head = ("structure", "geometry", "bare", "with ledger", "the program's", "ledger on", "features off")
+    return lines_of(head, rows)
+
+
+def _run_table(records: list[Record]) -> list[str]:
+    cases = list(dict.fromkeys(r.case for r in records))
+    plain = {r.case: r.best for r in records if r.value == PLAIN}
+    cells = {(r.value, r.case): f"{r.best / plain[r.case]:.2f} · {seconds(r.best)}" for r in records}
+    rows = [
+        (name, *(cells.get((name, case), "") for case in cases)) for name in dict.fromkeys(r.value for r in records)
+    ]
+    return lines_of(("on", *cases), rows)
+
+
+KERNEL_TEXT = """\
+CPU ns per contact point and step of three loops: a *bare* one that can do nothing but hold a load, the same with the
+energy ledger (which the program always keeps: the proof of failure needs it), and the program's own, which can also
+prescribe rates, tilt gravity, steer by FIRE, damp in combination, move supports and limit speeds, and does none of it
+here. *Ledger on* is the ratio of the second to the first, *features off* that of the third to the second (≤ 1.05 is
+wanted).""".splitlines()
+RUN_TEXT = """\
+Whole runs: CPU time over that of the plain run · CPU seconds. In the plain run all of these are off and none of their
+code is called; what that costs is in the table above.""".splitlines()

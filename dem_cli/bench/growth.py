@@ -1,0 +1,80 @@
+"""CPU time and steps of a failure load against the number of blocks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench import draw
+from dem_cli.bench.cases import SIZES, Known, answer, solve
+from dem_cli.bench.kernels import blocks_of
+from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.table import count, lines_of, percent, seconds
+from dem_cli.bench.timing import Job, in_turn
+
+LARGE, LARGEST = 1000, 10_000  # blocks
+QUICK = 2  # sizes
+STEPS = "analysis.max_steps=20000000"
+
+
+def resolution(blocks: int) -> float:
+    """Wider for walls that take long."""
+    return 0.002 if blocks < LARGE else 0.01 if blocks < LARGEST else 0.05
+
+
+def measure(options: Options) -> Found:
+    """One record per size."""
+    found = Found()
+    sizes = [k for k in SIZES if options.long or blocks_of(k) < LARGEST]
+    if not options.long:
+        found.notes.append(f"walls of more than {LARGEST:,} blocks were left out (`--long` measures them)")
+    rows = [(known, _job(known)) for known in (sizes[:QUICK] if options.quick else sizes)]
+    in_turn([job for _, job in rows], options.rounds(3))
+    for known, job in rows:
+        blocks = blocks_of(known)
+        extra = {"blocks": blocks, "resolution": resolution(blocks), "upper": known.upper}
+        found.records.append(record(known.name, "size", blocks, job.seconds, **job.result, **extra))
+    return found
+
+
+def _job(known: Known) -> Job:
+    case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEPS)
+
+    def run() -> dict[str, Any]:
+        summary = solve(case, model)
+        bracket, joints = summary.get("failure_load_bracket"), summary.get("joints")
+        return answer(known, summary) | {"bracket": bracket, "joints": joints}
+
+    return Job(run)
+
+
+def page(records: list[Record]) -> list[str]:
+    """The table."""
+    head = ("blocks", "joints", "resolution", "load", "bracket", "error", "steps", "CPU", "CPU per block")
+    rows = [
+        (
+            count(r.value), count(r.found["joints"]), f"{r.found['resolution']:g}", _load(r.found["load"]),
+            " – ".join(_load(load) for load in r.found["bracket"] or ()), percent(r.found["error"]),
+            count(r.found["steps"]), seconds(r.best), f"{1000 * r.best / r.value:.2g} ms",
+        )
+        for r in records
+    ]  # fmt: skip
+    text = "Walls of the same blocks, friction 0.6, loaded by a share of their weight until failure; solve time."
+    return [text, "", *lines_of(head, rows)]
+
+
+def _load(load: float | None) -> str:
+    return "?" if load is None else f"{load:.4f}"
+
+
+def picture(records: list[Record], path: Path) -> None:
+    """CPU seconds and steps against blocks."""
+    panels = {
+        "CPU seconds": {"walls": [(r.value, r.best) for r in records]},
+        "steps": {"walls": [(r.value, r.found["steps"]) for r in records if r.found["steps"]]},
+        "|error|": {"walls": [(r.value, max(abs(r.found["error"]), draw.FLOOR)) for r in records if r.found["error"]]},
+    }
+    draw.growth(path, panels, "blocks")
+
+
+PICTURES = {"growth": picture}

@@ -1,0 +1,72 @@
+"""Joints with another number of contact points, geometry of the start, 2D."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.assemble import empty_contacts
+from dem_cli.kernels.records import Contacts, Joints
+
+if TYPE_CHECKING:
+    from dem_cli.solve.simulation import Simulation
+
+
+def shares(layout: str) -> np.ndarray:
+    """Places along a joint, 0 … 1: "3" is both ends and the middle, "2 inside" the middles of two halves."""
+    n = int(layout.split()[0])
+    return (np.arange(n) + 0.5) / n if layout.endswith("inside") else np.linspace(0.0, 1.0, n)
+
+
+def refined(joints: Joints, contacts: Contacts, places: np.ndarray) -> tuple[Joints, Contacts]:
+    """The same joints with points at `places` along them, the same stiffness in all; unloaded contacts.
+
+    Levers and gaps are linear between the two ends, because both have the same frame.
+    """
+    n, m = len(joints.blocks), len(places)
+
+    def between(ends: np.ndarray) -> np.ndarray:
+        low, high = ends[0::2, None], ends[1::2, None]
+        along = places.reshape(1, m, *[1] * (ends.ndim - 1))
+        return np.ascontiguousarray(((1.0 - along) * low + along * high).reshape(n * m, *ends.shape[1:]))
+
+    joints = joints._replace(
+        starts=np.arange(0, n * m + 1, m),
+        frames=joints.frames[0::2].repeat(m, axis=0),
+        levers=between(joints.levers),
+        points=between(joints.points),
+        kn=joints.kn[0::2].repeat(m) * (2.0 / m),
+        ks=joints.ks[0::2].repeat(m) * (2.0 / m),
+    )
+    finer = empty_contacts(n, n * m, contacts.shear.shape[1] + 1, contacts.memory.shape[1])
+    finer.gaps[:] = between(contacts.gaps)
+    return joints, finer
+
+
+@contextmanager
+def points_per_joint(layout: str) -> Iterator[None]:
+    """Runs inside have joints with these points (see `shares`); "2" is what they have anyway."""
+    from dem_cli.solve import pushover, run
+
+    plain, describe = run.Simulation, pushover.describe
+    places = shares(layout)
+
+    class Refined(plain):  # type: ignore[misc, valid-type]
+        """A simulation whose first joints have other points."""
+
+        def _detect_first(self: Simulation) -> None:
+            super()._detect_first()
+            if layout != "2" and self.kinematics == "fixed":
+                self.joints, self.contacts = refined(self.joints, self.contacts, places)
+                self._after_detection()
+                self.detections -= 1
+
+    run.Simulation = Refined  # type: ignore[misc]
+    pushover.describe = lambda *_: {}  # the mechanism is told by the two ends of a joint
+    try:
+        yield
+    finally:
+        run.Simulation, pushover.describe = plain, describe  # type: ignore[misc]

@@ -1,0 +1,167 @@
+"""Work-precision diagrams: error of the failure load against CPU time, one knob at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench import constants, draw
+from dem_cli.bench.cases import KNOWN, Known, answer, solve
+from dem_cli.bench.points import points_per_joint
+from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.table import lines_of, percent, seconds
+from dem_cli.bench.timing import Job, in_turn
+
+CASES = ("T21 μ 0.5", "T21 μ 0.65", "T21 μ 0.75", "T21 μ 1", "T231", "COL14", "ARCH μ 0.6", "ARCH μ 0.4")
+QUICK_CASES = ("T21 μ 0.5", "COL14")
+FINE = "analysis.resolution=0.0005"  # for the other knobs, so that it does not hide them
+BUDGET = "analysis.max_steps=2000000"  # ten times what usual settings need: a hopeless one ends there
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One knob: its values, the usual one first, and what a value means for a run."""
+
+    name: str
+    text: str
+    usual: Any
+    values: tuple[Any, ...]
+    overrides: Callable[[Known, Any], list[str]]
+    inside: Callable[[Any], AbstractContextManager] = lambda value: nullcontext()
+
+
+def stiffness(known: Known, ratio: float) -> list[str]:
+    """A given kn with kn·h/W = ratio for a mean block of weight W and smallest edge h."""
+    from dem_cli.model.scales import stiffness_scale
+
+    return [FINE, BUDGET, f"joints.dry.kn={ratio * stiffness_scale(known.build()[1])!r}"]
+
+
+def fine(known: Known, value: Any) -> list[str]:
+    """Nothing but a narrow bracket."""
+    return [FINE, BUDGET]
+
+
+AXES = (
+    Axis(
+        "resolution",
+        "`analysis.resolution`: width of the bracket between proven equilibrium and proven failure, relative.",
+        0.002,
+        (0.02, 0.01, 0.005, 0.002, 0.001, 0.0005),
+        lambda known, value: [f"analysis.resolution={value}"],
+    ),
+    Axis(
+        "stiffness",
+        "`joints.*.kn` as kn·h/W, h the smallest edge and W the mean weight; given values, so that `kinematics = "
+        '"auto"` turns to moving geometry where blocks move visibly before failure (marked *large*). "auto" is 1e6.',
+        1e6,
+        (1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9),
+        stiffness,
+    ),
+    Axis(
+        "tolerance",
+        "Largest unbalanced force of a claimed equilibrium, over the block's own weight.",
+        1e-5,
+        (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
+        fine,
+        constants.tolerance,
+    ),
+    Axis(
+        "time step",
+        "Time-step factor, times the usual one (which keeps a margin to the stable step); fictitious masses grow with"
+        " its inverse square.",
+        1.0,
+        (0.25, 0.5, 0.75, 1.0, 1.1, 1.2, 1.3, 1.5),
+        fine,
+        constants.time_step,
+    ),
+    Axis(
+        "points per joint",
+        "Contact points of a joint: both ends and equally spaced between (n), or only inside, in the middle of n equal"
+        " parts (n inside). Two at the ends are exact for rigid blocks; geometry of the start.",
+        "2",
+        ("2", "3", "5", "9", "2 inside", "4 inside", "8 inside", "16 inside"),
+        fine,
+        points_per_joint,
+    ),
+)
+
+
+def measure(options: Options) -> Found:
+    """One record per knob, value and case."""
+    found = Found()
+    for axis in AXES:
+        try:
+            rows = list(_jobs(axis, options.quick))
+        except constants.Missing as error:
+            found.notes.append(f"{axis.name} was left out: {error}")
+            continue
+        in_turn([job for *_, job in rows], options.rounds(3), long=1.0)
+        for known, value, job in rows:
+            found.records.append(record(known.name, axis.name, value, job.seconds, **job.result))
+    return found
+
+
+def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, Job]]:
+    with axis.inside(axis.usual):
+        pass  # raises constants.Missing
+    for value in (axis.values[0], axis.usual) if quick else axis.values:
+        for name in QUICK_CASES if quick else CASES:
+            yield KNOWN[name], value, _job(KNOWN[name], axis, value)
+
+
+def _job(known: Known, axis: Axis, value: Any) -> Job:
+    case, model = known.build(*axis.overrides(known, value))
+
+    def run() -> dict[str, Any]:
+        with axis.inside(value):
+            return answer(known, solve(case, model))
+
+    return Job(run)
+
+
+def page(records: list[Record]) -> list[str]:
+    """A table per knob: values against structures."""
+    text = (
+        "One knob at a time, everything else as usual; for all knobs but the first `analysis.resolution` is 0.0005, so"
+        " that it does not hide them. Cells: error · CPU seconds; the usual value is bold."
+    )
+    lines = [text]
+    for axis in AXES:
+        chosen = [r for r in records if r.axis == axis.name]
+        if chosen:
+            lines += ["", f"**{axis.name}.** {axis.text}", "", *_table(axis, chosen)]
+    return lines
+
+
+def _table(axis: Axis, records: list[Record]) -> list[str]:
+    cells = {(r.value, r.case): _cell(r) for r in records}
+    cases = list(dict.fromkeys(r.case for r in records))
+    rows = []
+    for value in dict.fromkeys(r.value for r in records):
+        label = value if isinstance(value, str) else f"{value:g}"
+        label = f"**{label}**" if value == axis.usual else label
+        rows.append((label, *(cells.get((value, case), "") for case in cases)))
+    return lines_of((axis.name, *cases), rows)
+
+
+def _cell(r: Record) -> str:
+    error, status = r.found["error"], r.found.get("status")
+    what = percent(error) if error is not None else status or "no answer"
+    if r.axis == "stiffness" and r.found.get("kinematics") == "large":
+        what += " *large*"
+    return f"{what} · {seconds(r.best)}"
+
+
+def picture(records: list[Record], path: Path) -> None:
+    """A panel per knob, a line per structure, along the values of the knob."""
+    panels: dict[str, dict[str, list[tuple[float, float | None]]]] = {}
+    for r in records:
+        panels.setdefault(r.axis, {}).setdefault(r.case, []).append((r.best, r.found["error"]))
+    draw.work_precision(path, panels)
+
+
+PICTURES = {"precision": picture}

@@ -1,0 +1,65 @@
+"""Structures in pymunk (Chipmunk 2D): polygons, point masses and friction as in our model."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from dem_cli.bench.tilting import Setting
+from dem_cli.model.model import Model
+
+NAME, PACKAGE = "pymunk", "pymunk"
+TIGHT = {"collision_slop": 1e-3}  # of the smallest edge, which is 1; the library's own is 0.1
+SETTINGS = (
+    Setting("defaults: 1/60 s, 10 iterations, slop 0.1; edge 17.5 (pixels)", 17.5, 981.0, 1 / 60, (10,), True),
+    Setting("1/60 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 60, (30,), options=TIGHT),
+    Setting("1/240 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (10,), options=TIGHT),
+    Setting("1/240 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (30,), options=TIGHT),
+    Setting("1/240 s, 100 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (100,), options=TIGHT),
+    Setting("1/960 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 960, (10,), True, options=TIGHT),
+    Setting("1/1920 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 1920, (10,), options=TIGHT),
+)
+
+
+class PymunkWorld:
+    """A space; friction of two shapes is multiplied by Chipmunk, so that each has √μ."""
+
+    def __init__(self, model: Model, friction: float, setting: Setting, smallest: float):
+        import pymunk
+
+        self.setting = setting
+        self.space = space = pymunk.Space()
+        space.iterations = setting.iterations[0]
+        for name, value in setting.options.items():
+            setattr(space, name, value)
+        scale, unit = setting.edge / smallest, float(model.masses[~model.fixed].mean())
+        bodies = []
+        for i in range(model.n_blocks):
+            if model.fixed[i]:
+                body = pymunk.Body(body_type=pymunk.Body.STATIC)
+            else:
+                body = pymunk.Body(model.masses[i] / unit, scale**2 * model.inertias[i, 0] / unit)
+            body.position = tuple(map(float, scale * model.centroids[i]))
+            space.add(body)
+            bodies.append(body)
+        for p, i in enumerate(model.part_blocks):
+            corners = scale * model.vertices[model.part_starts[p] : model.part_starts[p + 1]]
+            shape: Any = pymunk.Poly(bodies[i], [tuple(map(float, corner)) for corner in corners])
+            shape.friction, shape.elasticity = math.sqrt(friction), 0.0
+            space.add(shape)
+        self.free = [body for body, fixed in zip(bodies, model.fixed, strict=True) if not fixed]
+
+    def tilt(self, load: float) -> None:
+        self.space.gravity = (load * self.setting.gravity, -self.setting.gravity)
+
+    def step(self, steps: int) -> None:
+        for _ in range(steps):
+            self.space.step(self.setting.step)
+
+    def places(self) -> np.ndarray:
+        return np.array([body.position for body in self.free])
+
+
+make = PymunkWorld

@@ -1,0 +1,86 @@
+"""`dem bench` measures every group and says what it left out; nothing is asserted about time."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from dem_cli.bench import others, registry
+from dem_cli.cli import main as cli
+from dem_cli.cli.bench import command
+
+
+def bench(*words: str):
+    return CliRunner().invoke(cli.main, ["bench", *words])
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bench")
+    done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
+    assert done.exit_code == 0, done.output
+    return folder, json.loads((folder / "all.json").read_text("utf-8"))["groups"]
+
+
+def test_quick_measures_every_group(quick):
+    _, groups = quick
+    assert list(groups) == list(registry.GROUPS)
+    for name, group in groups.items():
+        assert group["records"], name
+        for record in group["records"]:
+            assert 0.0 < record["best"] <= record["median"], record
+        assert {"cores", "processor", "numpy", "numba", "load"} <= set(group["machine"])
+
+
+def test_quick_answers_are_right(quick):
+    _, groups = quick
+    for record in groups["growth"]["records"]:
+        assert abs(record["found"]["error"]) < 0.01
+    for record in groups["precision"]["records"]:
+        if record["axis"] == "resolution":
+            assert abs(record["found"]["error"]) < record["value"] + 1e-4
+
+
+def test_quick_leaves_a_page_and_pictures(quick):
+    folder, groups = quick
+    text = (folder / "page" / "benchmarks.md").read_text("utf-8")
+    assert all(f"## {title}" in text for title in registry.GROUPS.values())
+    assert json.loads((folder / "page" / "benchmarks.json").read_text("utf-8"))["groups"] == groups
+    assert {path.name for path in (folder / "page").glob("*.png")} == {
+        f"benchmarks_{suffix}.png" for name in registry.GROUPS for suffix in registry.module(name).PICTURES
+    }
+
+
+def test_redraw_measures_nothing(quick):
+    folder, _ = quick
+    page = folder / "page" / "benchmarks.md"
+    before = page.read_text("utf-8")
+    page.write_text("gone", encoding="utf-8")
+    assert bench("--redraw", "-o", str(folder / "page")).exit_code == 0
+    assert page.read_text("utf-8") == before
+
+
+def test_engines_that_are_not_installed_are_left_out_and_named(monkeypatch):
+    monkeypatch.setattr(others, "find_spec", lambda name: None)
+    done = bench("others", "--quick", "--json", "-")
+    assert done.exit_code == 0, done.output
+    group = json.loads(done.stdout)["groups"]["others"]
+    assert {record["axis"] for record in group["records"]} == {"dem"}
+    assert [note.split(":")[0] for note in group["notes"]] == ["pymunk was left out", "Box2D was left out"]
+
+
+def test_an_unknown_group_is_named_with_those_that_exist():
+    done = bench("speed")
+    assert done.exit_code == 2
+    assert done.stderr == f"error: no benchmark group 'speed' (groups: {', '.join(registry.GROUPS)})\n"
+
+
+def test_redraw_needs_a_folder_with_results(tmp_path):
+    assert bench("--redraw").stderr == "error: --redraw needs the folder of benchmarks.json: -o DIR\n"
+    assert bench("--redraw", "-o", str(tmp_path)).exit_code == 2
+
+
+def test_help_names_every_group():
+    assert all(name in command.help for name in registry.GROUPS)

@@ -1,0 +1,82 @@
+"""Knobs that only benchmarks turn: they reach the solver, and are as before afterwards."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dem_cli.bench import constants
+from dem_cli.bench.cases import KNOWN, solve
+from dem_cli.bench.points import points_per_joint, refined, shares
+from dem_cli.solve import equilibrium, failure
+from dem_cli.solve.joints import joint_properties, law_of
+from dem_cli.solve.simulation import Simulation
+
+
+def test_tolerance_reaches_names_and_defaults_and_is_given_back():
+    before = equilibrium.TOLERANCE, failure.TOLERANCE, equilibrium.settle_or_fail.__defaults__
+    with constants.tolerance(1e-3):
+        assert (equilibrium.TOLERANCE, failure.TOLERANCE) == (1e-3, 1e-3)
+        assert 1e-3 in equilibrium.settle_or_fail.__defaults__
+    assert before == (equilibrium.TOLERANCE, failure.TOLERANCE, equilibrium.settle_or_fail.__defaults__)
+
+
+def test_a_loose_tolerance_overrates_a_column():
+    """A claimed equilibrium that is none: the higher the unbalanced force, the higher the load."""
+    known = KNOWN["COL14"]
+    case, model = known.build()
+    with constants.tolerance(1e-2):
+        loose = solve(case, model)["failure_load"]
+    assert known.error(loose) > 0.01
+    assert abs(known.error(solve(case, model)["failure_load"])) < 0.003
+
+
+def test_shorter_time_steps_need_more_of_them():
+    case, model = KNOWN["T21 μ 0.5"].build()
+    usual = solve(case, model)["steps"]
+    with constants.time_step(0.5):
+        assert solve(case, model)["steps"] > 1.3 * usual
+
+
+def test_a_constant_that_is_gone_is_said():
+    with pytest.raises(constants.Missing, match="NO_SUCH_THING"), constants.changed({"NO_SUCH_THING": 1.0}):
+        pass
+
+
+def test_what_is_inside_may_fail():
+    before = equilibrium.TOLERANCE
+    with pytest.raises(ZeroDivisionError), constants.tolerance(1e-3):
+        raise ZeroDivisionError
+    assert before == equilibrium.TOLERANCE
+
+
+@pytest.mark.parametrize(
+    ("layout", "places"), [("2", [0, 1]), ("3", [0, 0.5, 1]), ("2 inside", [0.25, 0.75]), ("4 inside", [1, 3, 5, 7])]
+)
+def test_places_of_points(layout, places):
+    assert shares(layout) == pytest.approx(np.array(places) / (8 if max(places) > 1 else 1))
+
+
+def test_refined_joints_have_the_same_stiffness_and_ends():
+    case, model = KNOWN["T21 μ 0.6"].build()
+    sim = Simulation(model, law_of(case), joint_properties(case, model))
+    joints, contacts = refined(sim.joints, sim.contacts, shares("5"))
+    n = len(sim.joints.blocks)
+    assert len(joints.kn) == len(contacts.gaps) == 5 * n == joints.starts[-1]
+    assert joints.kn.reshape(n, 5).sum(axis=1) == pytest.approx(sim.joints.kn.reshape(n, 2).sum(axis=1))
+    for name in ("points", "levers", "frames"):
+        fine, ends = getattr(joints, name), getattr(sim.joints, name)
+        assert fine[0::5] == pytest.approx(ends[0::2], abs=1e-15)
+        assert fine[4::5] == pytest.approx(ends[1::2], abs=1e-15)
+        assert fine[2::5] == pytest.approx(0.5 * (ends[0::2] + ends[1::2]), abs=1e-15)
+
+
+def test_points_at_the_ends_are_exact_and_points_inside_are_not():
+    """A wall that rocks about the ends of its joints; two points in the quarters halve its width."""
+    known = KNOWN["T21 μ 1"]
+    case, model = known.build("analysis.resolution=0.01")
+    with points_per_joint("3"):
+        assert abs(known.error(solve(case, model)["failure_load"])) < 0.01
+    with points_per_joint("2 inside"):
+        assert known.error(solve(case, model)["failure_load"]) < -0.15
+    assert abs(known.error(solve(case, model)["failure_load"])) < 0.01
