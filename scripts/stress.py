@@ -1,4 +1,4 @@
-"""The stability stress test: what held and how exactly, what was refused; exit code 1 where a wrong answer came silently.
+"""The stability stress test: what held and how exactly, what was refused; exit code 1 after a silent wrong answer.
 
 Every stress is one record (stresses/records.py): a structure with a known failure load, or a figure with a
 limit, at one value of an axis. WRONG is an answer of status ok, without a warning, outside its bracket and 0.5 %.
@@ -47,9 +47,11 @@ AXES: dict[str, Callable[[bool], Iterator[Record]]] = {
 }
 
 
-def collect(names: Sequence[str], short: bool, say: Callable[[str], None]) -> list[Record]:
-    """All records of some axes, told as they come."""
-    records = []
+def collect(
+    names: Sequence[str], short: bool, say: Callable[[str], None]
+) -> tuple[list[Record], dict[str, str]]:
+    """All records of some axes, told as they come, and what each axis is."""
+    records, about = [], {}
     for name in names:
         begun, found = time.process_time(), []
         for record in AXES[name](short):
@@ -57,8 +59,10 @@ def collect(names: Sequence[str], short: bool, say: Callable[[str], None]) -> li
             if record.verdict == WRONG:
                 say(f"  {table.line(record)}")
         records += found
+        title, words = found[0].axis, (AXES[name].__doc__ or "").strip()
+        about[title] = f"{about[title]} {words}" if title in about else words
         say(f"{name}: {table.count(found)}, {time.process_time() - begun:.0f} s")
-    return records
+    return records, about
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -75,13 +79,13 @@ def main(words: Sequence[str] | None = None) -> int:
         parser.error(f"'{unknown[0]}' is no axis; there are {', '.join(AXES)}")
     if options.write and (options.axes or options.short):
         parser.error("--write needs all axes in full")
-    records = collect(options.axes or list(AXES), options.short, lambda text: print(text, flush=True))
+    records, about = collect(options.axes or list(AXES), options.short, lambda text: print(text, flush=True))
     if options.verbose:
         print("\n".join(table.line(record) for record in records))
     if options.json:
         options.json.write_text(json.dumps([asdict(record) for record in records], indent=1), encoding="utf-8")
     if options.write:
-        DOCUMENT.write_text(table.document(records), encoding="utf-8")
+        DOCUMENT.write_text(table.document(records, about), encoding="utf-8")
     print(f"in all: {table.count(records)}")
     return int(any(record.verdict == WRONG for record in records))
 

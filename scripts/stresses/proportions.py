@@ -42,7 +42,7 @@ def size_ratios(short: bool) -> Iterator[Record]:
 
 def slender(short: bool) -> Iterator[Record]:
     """Height over width of one block, of the middle blocks of a stack of slabs, and of tall piers."""
-    for value, ratio in powers(short, 1, 2, 3, 4):
+    for value, ratio in powers(False, *((1, 2) if short else (1, 2, 3, 4))):
         yield load_record("slender blocks", replace(rocking_block(1.0 / ratio), name="rocking needle"), value)
         slab = stack((1.0,), (1.0 / ratio,), (2000.0,), 0.4)
         yield load_record("slender blocks", replace(slab, name="sliding slab"), value)
@@ -62,13 +62,12 @@ def chamfered(cut: float) -> Scene:
 
 
 def wedge(thickness: float) -> Scene:
-    """A block on a wedge that thins out to a point: both lie on the ground or on each other; slides at μ' below."""
+    """A block on a wedge that thins out to a point: both slide on the ground at μ, before the block climbs it."""
     blocks = [
         ground(2.0),
         block("wedge", [(0, 0), (1, 0), (1, thickness)]),
         block("b", [(0, 0), (1, thickness), (1, 0.5), (0, 0.5)]),
     ]
-    # The block is pushed up the slope; with the wedge below it slides on the ground at μ = 0.3: both together.
     return drawn("block on a sliver", blocks, 0.3, 0.3)
 
 

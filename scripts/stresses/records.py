@@ -10,7 +10,6 @@ from stresses.scenes import Scene
 
 HELD, WARNED, REFUSED, WRONG = "held", "warned", "refused", "WRONG"
 WITHIN = 0.005  # relative error of a failure load that is no error, where the bracket is narrower
-MAX_STEPS = 2_000_000
 
 
 @dataclass(frozen=True)
@@ -63,6 +62,7 @@ class Keeper:
 def push(scene: Scene) -> Answer:
     """Solve a scene; nothing is raised, everything is kept."""
     from dem_cli.errors import CaseError, DemError
+    from dem_cli.model.validate import warnings as oddities
     from dem_cli.solve.run import run
 
     keeper = Keeper()
@@ -81,14 +81,14 @@ def push(scene: Scene) -> Answer:
     load = summary.get("failure_load")
     bracket = tuple(summary.get("failure_load_bracket") or (None, None))
     # Doubts about units and words about speed excuse no wrong load.
-    about = [line for line in summary["warnings"] if "expect" not in line]
+    about = [line for line in (*oddities(model), *summary["warnings"]) if "expect" not in line]
     return Answer(summary["status"], load, bracket, about, {**summary, "said": said + python}, keeper.frames)
 
 
 def off(load: float, exact: tuple[float, float]) -> float:
     """Relative distance from an interval, with its sign."""
     low, high = exact
-    return (load - high) / high if load > high else (load - low) / low if load < low else 0.0
+    return (load - high) / high if load > high else 0.0 if load >= low else (load - low) / low
 
 
 def judge(answer: Answer, exact: tuple[float, float], within: float = WITHIN) -> tuple[str, float | None]:
@@ -133,9 +133,8 @@ def likeness(answer: Answer, base: Answer) -> str:
     return f"{max(difference, 1e-16):.1e}"
 
 
-def figure(axis: str, structure: str, value: str, measured: float, limit: float, what: str) -> Record:
+def figure(axis: str, structure: str, value: str, measured: float, limit: float) -> Record:
     """A measured figure that must not exceed its limit; not-a-number exceeds every limit."""
     verdict = HELD if measured <= limit else WRONG
     how = "exactly zero" if measured == 0.0 else f"{measured:.1e}"
-    message = f"{what} {measured:.2e}, allowed {limit:.0e}"
-    return Record(axis, structure, value, verdict, f"{measured:.1e}", measured, how, message)
+    return Record(axis, structure, value, verdict, f"{measured:.1e}", measured, how, f"allowed {limit:.0e}")

@@ -75,7 +75,7 @@ def read(tables: Tables) -> Any:
 def quiet(tables: Tables) -> Tables:
     """Without what costs time and says nothing about the failure load."""
     tables = {key: value for key, value in tables.items() if key not in ("monitor", "reference")}
-    analysis = {**tables.get("analysis", {}), "follow": 0.0, "max_steps": 2_000_000}
+    analysis = {**tables.get("analysis", {}), "follow": 0.0, "max_steps": 1_000_000}
     return {**tables, "analysis": analysis, "output": {"frames": 0}}
 
 

@@ -12,7 +12,6 @@ from stresses.records import HELD, REFUSED, WRONG, Record, figure, load_record
 from stresses.scenes import Scene, block, drawn, ground, named, rectangle
 
 AXIS_REST = "a million steps at rest"
-SIZE = 1.0
 COMBINED_SAFETY, COMBINED = 0.75, 0.3
 
 
@@ -54,13 +53,13 @@ def rest(short: bool) -> Iterator[Record]:
             settled = settle(sim, load)
             before, friction = sim.save_places(), sim.ledger[slot.FRICTION]
             sim.advance(steps, slot.HOLD_LOAD)
-            structure, value = f"{scene.name}, {kinematics}", f"{steps:.0e} steps"
+            structure = f"{scene.name}, {kinematics}"
             drift = float(np.abs(sim.save_places() - before).max()) / size
             ratio = sim.kinetic_energy() / sim.elastic_energy()
             slipped = float(sim.ledger[slot.FRICTION] - friction) / sim.elastic_energy()
-            yield figure(AXIS_REST, structure, value, drift if settled else np.nan, 1e-9, "drift in block sizes")
-            yield figure(AXIS_REST, structure, value, ratio, 1e-12, "kinetic over elastic energy")
-            yield figure(AXIS_REST, structure, value, slipped, 1e-12, "friction work over elastic energy")
+            yield figure(AXIS_REST, structure, "drift in block sizes", drift if settled else np.nan, 1e-9)
+            yield figure(AXIS_REST, structure, "kinetic over elastic energy", ratio, 1e-12)
+            yield figure(AXIS_REST, structure, "friction work over elastic energy", slipped, 1e-12)
 
 
 def settle(sim: Any, load: float) -> bool:
@@ -93,15 +92,18 @@ def stretched(factor: float) -> Any:
 
 
 def time_step(short: bool) -> Iterator[Record]:
-    """Pushovers with every time step 0.6 to 2.5 times the one of the solver (safety of 0.6, 0.75 and 0.85)."""
+    """Pushovers with every time step 0.6 to 2 times the one of the solver (safety of 0.6, 0.75 and 0.85)."""
     scenes = named()
-    factors = (0.8, 2.0) if short else (0.6, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.5)
-    for name in ("column",) if short else ("slide", "column", "wall 0.6", "wall 0.75", "arch", "trilith"):
-        for kinematics in ("fixed",) if short else ("fixed", "large"):
-            scene = scenes[name].having("analysis.kinematics", kinematics).having("analysis.max_steps", 500_000)
-            for factor in factors:
-                with stretched(factor):
-                    yield load_record("time step", scene, f"{factor:g}", variant=kinematics)
+    for name in ("column",) if short else ("slide", "column", "wall 0.6", "wall 0.75", "trilith"):
+        scene = scenes[name].having("analysis.kinematics", "fixed").having("analysis.max_steps", 200_000)
+        for factor in (0.8, 2.0) if short else (0.6, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4, 1.6, 2.0):
+            with stretched(factor):
+                yield load_record("time step", scene, f"{factor:g}", variant="fixed")
+    for name in () if short else ("slide", "wall 0.6", "trilith"):  # where they fly apart every step is a detection
+        scene = scenes[name].having("analysis.kinematics", "large").having("analysis.max_steps", 50_000)
+        for factor in (0.8, 1.1, 1.2, 1.3, 1.4, 1.6):
+            with stretched(factor):
+                yield load_record("time step", scene, f"{factor:g}", variant="large")
 
 
 def past_the_limit(short: bool) -> Iterator[Record]:
@@ -156,7 +158,7 @@ def work_identity(short: bool) -> Iterator[Record]:
                 sim.ledger[:] = 0.0
                 error = worst_identity(sim, mode, 20 if short else 200)
                 structure = f"{scenes[name].name}, {kinematics}"
-                yield figure("work identity", structure, what, error, 1e-10, "error of the work identity")
+                yield figure("work identity", structure, what, error, 1e-10)
 
 
 def worst_identity(sim: Any, mode: int, looks: int) -> float:
