@@ -149,9 +149,10 @@ def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
     if parts:
         rows.append(("how sure", ", ".join(parts)))
-    limits = {k: v for k, v in (summary.get("limit_analysis") or {}).items() if isinstance(v, (int, float))}
-    if limits:
-        text = ", ".join(f"{_load(value)} {name.replace('_', '-')}" for name, value in limits.items())
+    limits = summary.get("limit_analysis") or {}
+    known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
+    if known:
+        text = ", ".join(f"{_load(limits[key])} {key.replace('_', '-')}" for key in known)
         rows.append(("limit analysis", text))
     reference = summary.get("reference")
     if reference:
@@ -166,6 +167,25 @@ def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
     time_text = seconds(summary["solve_seconds"]) if summary.get("solve_seconds") is not None else ""
     return [("solved in", " · ".join([time_text, *counts] if time_text else counts))] if counts else []
+
+
+def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
+    """The result of a limit analysis as text."""
+    limits = summary["limit_analysis"]
+    rows = [] if summary["status"] == "ok" else [("status", str(summary["status"]))]
+    if limits["associated"] is not None:
+        low, high = limits["associated_bounds"]
+        how = f"between {low:.7g} and {high:.7g}, {limits['iterations']} iterations"
+        rows.append(("associated", f"{_load(limits['associated'])}  ({how})"))
+    if limits.get("rigid_wall") is not None:
+        rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (rigid part turning about the toe; no bound)"))
+    if limits["heads"] == "frictionless":
+        rows.append(("head joints", "without friction"))
+    rows += _cost_rows(summary)
+    rows += [("warning", text) for text in summary.get("warnings", ())]
+    if folder is not None:
+        rows.append(("written to", str(folder)))
+    return "\n".join([str(summary["title"]), *(f"  {label:<14} {text}" for label, text in rows)])
 
 
 def show(lines: str) -> None:

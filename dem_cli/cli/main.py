@@ -20,6 +20,7 @@ from dem_cli.errors import DemError
 COMMANDS = {  # name -> the line that `dem --help` shows
     "run": "Solve a case and write its results.",
     "check": "Validate a case and print its model; solve nothing.",
+    "limit": "Failure load by rigid-block limit analysis.",
     "build": "Write the geometry of a case to a file.",
     "new": "Print a commented case file to start from.",
     "schema": "Print the JSON Schema of the case file.",

@@ -12,6 +12,8 @@ STAGES = (
     "loading",
     "collapse",
     "settlement",
+    "associated",
+    "non-associated",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
 
 
@@ -32,7 +34,7 @@ class ContactRecord(NamedTuple):
 class Frame(NamedTuple):
     """The structure at one instant."""
 
-    stage: str  # "gravity" | "loading" | "collapse"
+    stage: str  # one of STAGES; the last two are limit analysis: positions are moved a little along the mechanism
     step: int  # solver steps so far
     load: float  # load multiplier
     displacement: float  # control displacement [m] (largest displacement of any block since the start)

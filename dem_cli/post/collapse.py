@@ -13,6 +13,7 @@ from dem_cli.output.record import STATES, Frame
 from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.post import measures, style
 
+MECHANISM = "mechanism"  # of limit analysis
 _WIDEST_FORCE = 6.0  # points
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _LEGEND_ROOM = 0.85  # inches
@@ -44,6 +45,8 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
     frames = results.frames
     if not len(frames):
         return []
+    if results.summary.get("kind") == "limit":
+        return [(f"{frame.stage} {MECHANISM}", frame) for frame in frames]
     last = len(frames) - 1
     first = _failure_frame(results)
     if first is None:
@@ -67,6 +70,8 @@ def _failure_frame(results: Results) -> int | None:
 
 
 def _panel_title(name: str, frame: Frame, scale: float) -> str:
+    if name.endswith(MECHANISM):
+        return f"{name}: λ = {frame.load:.4g}\nof any size: rigid blocks have no displacement at failure"
     factor, unit = style.length_unit(frame.displacement)
     drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
     return f"{name}: λ = {frame.load:.4g}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"

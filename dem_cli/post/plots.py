@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from dem_cli.output.reader import Results, read
 from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
@@ -30,8 +32,9 @@ def draw_all(folder: Path, output: Path) -> list[Path]:
 
 def _has_data(name: str, results: Results) -> bool:
     """Whether there is anything to draw; a capacity curve needs a load that changes."""
+    no_rows = np.zeros(0)
     if name == "collapse.png":
         return len(results.frames) > 0
     if name == "capacity.png":
-        return bool((results.history["load"] != 0.0).any())
-    return len(results.history["load"]) > 0
+        return bool((results.history.get("load", no_rows) != 0.0).any())
+    return len(results.history.get("load", no_rows)) > 0

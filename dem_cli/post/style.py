@@ -61,7 +61,9 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
     """Title of the run and its answer, small enough to fit on one line."""
     load, mode = summary.get("failure_load"), summary.get("failure_mode")
     text = str(summary.get("title", ""))
-    if load is None:
+    if summary.get("kind") == "limit" and summary.get("status") == "ok":
+        text += ": limit analysis"
+    elif load is None:
         text += f": {summary.get('status', 'unfinished')}"
     else:
         text += f": fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")

@@ -54,6 +54,7 @@ class PushoverAnalysis(AnalysisBase):
         gt=0.0,
         description="give up above this multiplier; default: live loads of 100 times the dead ones",
     )
+    limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
 
 
 class SettlementAnalysis(AnalysisBase):

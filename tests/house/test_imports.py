@@ -18,7 +18,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "post": {"output", "model"},
     "output": {"model"},
     "solve": {"limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema"},
-    "limit": {"contact", "model", "laws", "kernels", "case.schema"},
+    "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
     "contact": {"model", "geometry", "kernels"},
     "model": {"structures", "geometry", "contact", "case"},
     "structures": {"geometry", "model.blocks", "case.base"},

@@ -1,0 +1,122 @@
+"""`dem limit`: the failure load of a case by rigid-block limit analysis, without any motion in time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from dem_cli import __version__
+from dem_cli.cli import console
+from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.case.reader import LoadedCase
+    from dem_cli.limit.analysis import LimitLoads
+    from dem_cli.model.model import Model
+    from dem_cli.output.record import Frame
+
+
+@click.command("limit", short_help="Failure load by rigid-block limit analysis.")
+@case_argument
+@overrides_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Write results, for dem plot too.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@click.option(
+    "--heads",
+    type=click.Choice(["frictional", "frictionless"]),
+    default="frictional",
+    show_default=True,
+    help="Joints steeper than 45°; the thesis's Table 5-3 has them without friction.",
+)
+@click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
+def command(
+    case: str, overrides: Sequence[str], output: Path | None, as_json: bool, heads: str, force: bool
+) -> int:
+    """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
+    from dem_cli import api
+    from dem_cli.limit.analysis import limit_loads
+    from dem_cli.output.summary import exit_code, to_json
+    from dem_cli.solve.joints import joint_properties, law_of
+
+    started = time.perf_counter()
+    loaded = api.load_case(case, overrides)
+    require_multiplier(loaded)
+    model = api.build_model(loaded)
+    properties = joint_properties(loaded.case, model)
+    found = limit_loads(model, properties, law_of(loaded.case), heads == "frictionless")
+    summary = summarised(loaded, model, found, heads) | {"wall_seconds": time.perf_counter() - started}
+    if output is not None:
+        write(loaded, model, found, summary, output, force)
+    console.show(to_json(summary).rstrip() if as_json else console.limit_answer(summary, output))
+    return exit_code(summary)
+
+
+def require_multiplier(loaded: LoadedCase) -> None:
+    """Raises UsageError for a kind of analysis that has no live loads."""
+    kind = loaded.case.analysis.kind
+    if kind != "pushover":
+        raise UsageError(
+            f"limit analysis looks for the multiplier of live loads, and analysis.kind = '{kind}' has none; "
+            "add --set analysis.kind=pushover (and its pattern)"
+        )
+
+
+def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) -> dict[str, Any]:
+    """What summary.json holds for kind "limit"."""
+    from dem_cli.limit.rigid_wall import hand_check
+    from dem_cli.output.summary import ordered
+
+    check = hand_check(loaded.case)
+    limits = found.summary() | {"heads": heads}
+    return ordered(
+        {
+            "title": loaded.case.title or loaded.path.stem,
+            "kind": "limit",
+            "version": __version__,
+            "status": found.associated.status,
+            "limit_analysis": limits if check is None else limits | {"rigid_wall": check},
+            "blocks": model.n_blocks,
+            "joints": len(found.structure.joints.blocks),
+            "contacts": len(found.friction),
+            "solve_seconds": found.seconds,
+            "warnings": loaded.warnings,
+        }
+    )
+
+
+def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
+    """The states of collapse that were found."""
+    from dem_cli.limit.associated import OK
+    from dem_cli.limit.snapshot import Collapse, frame
+
+    tilting = loaded.case.analysis.pattern == "tilt"
+    load = found.associated
+    if load.status != OK:
+        return []
+    collapse = Collapse("associated", load.multiplier, load.normal, load.shear, load.velocities, load.iterations)
+    return [frame(found.structure, collapse, tilting)]
+
+
+def write(
+    loaded: LoadedCase, model: Model, found: LimitLoads, summary: dict[str, Any], output: Path, force: bool
+) -> None:
+    """summary.json, results.h5, contacts.vtkhdf and case.toml in the folder `output`, whole or not at all."""
+    from dem_cli.case.writer import case_text
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.provenance import provenance
+    from dem_cli.output.store import ResultWriter
+
+    with OutputFolder(output, force=force) as folder:
+        writer = ResultWriter(folder.path, model, case_text(loaded.case), provenance(), kind="limit", name=output)
+        try:
+            for snapshot in frames(loaded, found):
+                writer.frame(snapshot)
+            writer.close(summary)
+        finally:
+            writer.abandon()
+        folder.commit()
