@@ -7,6 +7,7 @@ larger the blocks, the less this matters, which is why `edge` is a setting. A th
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -32,8 +33,7 @@ class Box2DWorld:
     """A world without sleep, which has to be switched off for every body."""
 
     def __init__(self, model: Model, friction: float, setting: Setting, smallest: float):
-        import Box2D as box2d
-
+        box2d = library()
         self.setting = setting
         self.world = box2d.b2World(gravity=(0.0, -setting.gravity), doSleep=False)
         scale, unit = setting.edge / smallest, float(model.masses[~model.fixed].mean())
@@ -64,6 +64,15 @@ class Box2DWorld:
 
     def places(self) -> np.ndarray:
         return np.array([tuple(body.position) for body in self.free])
+
+
+def library() -> Any:
+    """Box2D. Its bindings warn while they are loaded, and crash the process where warnings are errors."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import Box2D
+
+    return Box2D
 
 
 def inset(corners: np.ndarray, distance: float) -> np.ndarray:

@@ -15,7 +15,7 @@ from dem_cli.bench.record import Found, Options, Record, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import Job, in_turn
 
-CASES = ("T21 μ 0.5", "T21 μ 0.65", "T21 μ 0.75", "T21 μ 1", "T231", "COL14", "ARCH μ 0.6", "ARCH μ 0.4")
+CASES = tuple(KNOWN)
 QUICK_CASES = ("T21 μ 0.5", "COL14")
 FINE = "analysis.resolution=0.0005"  # for the other knobs, so that it does not hide them
 BUDGET = "analysis.max_steps=2000000"  # ten times what usual settings need: a hopeless one ends there

@@ -47,10 +47,7 @@ def command(
 
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
-    if redraw:
-        found = read(folder / f"{NAME}.json")
-    else:
-        found = measured(checked(groups), Options(quick, long, repeats))
+    found = read(folder / f"{NAME}.json") if redraw else measured(checked(groups), Options(quick, long, repeats))
     if json_file == "-":
         click.echo(as_json(found), nl=False)
     elif json_file is not None:
