@@ -33,8 +33,10 @@ TRIES: tuple[dict[str, Any], ...] = (
         "equilibrate_enable": False, "tol_gap_abs": 1e-7, "tol_gap_rel": 1e-7,
         "iterative_refinement_reltol": 1e-9, "iterative_refinement_abstol": 1e-9,
     },
-    {"equilibrate_enable": True, "tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9},
-    {"equilibrate_enable": False, "tol_feas": 1e-10, "tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9},
+    {
+        "equilibrate_enable": True, "equilibrate_min_scaling": 1e-9, "equilibrate_max_scaling": 1e9,
+        "equilibrate_max_iter": 30, "tol_feas": 1e-11, "tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9,
+    },
 )  # fmt: skip
 
 
