@@ -59,8 +59,7 @@ def collect(
             if record.verdict == WRONG:
                 say(f"  {table.line(record)}")
         records += found
-        title, words = found[0].axis, (AXES[name].__doc__ or "").strip()
-        about[title] = f"{about[title]} {words}" if title in about else words
+        about |= {record.axis: (AXES[name].__doc__ or "").strip() for record in found}
         say(f"{name}: {table.count(found)}, {time.process_time() - begun:.0f} s")
     return records, about
 

@@ -11,7 +11,7 @@ import numpy as np
 from stresses.records import HELD, REFUSED, WRONG, Record, figure, load_record
 from stresses.scenes import Scene, block, drawn, ground, named, rectangle
 
-AXIS_REST = "a million steps at rest"
+AXIS_REST, AXIS_RELAX = "a million steps at rest", "time step of a relaxation"
 COMBINED_SAFETY, COMBINED = 0.75, 0.3
 
 
@@ -107,27 +107,27 @@ def time_step(short: bool) -> Iterator[Record]:
 
 
 def past_the_limit(short: bool) -> Iterator[Record]:
-    """A hold at constant load with safety 0.5 to 1.6: it comes to rest, or it never says that it did."""
+    """Relaxation with safety 0.5 to 1.6 (the solver's: 0.6): what is called an equilibrium is one, measured again."""
     from dem_cli.errors import SolverError
     from dem_cli.solve.equilibrium import relax
 
     for scene, load in ((crate(), 0.5), (drums(), 0.05)):
         for kinematics in ("fixed", "large"):
-            for factor in (1.0, 2.0) if short else (0.8, 1.0, 1.2, 1.4, 1.6, 2.0, 2.67):
-                structure, value = f"relaxation: {scene.name}, {kinematics}", f"{factor:g}"
+            for factor in (1.0, 2.0) if short else (0.83, 1.0, 1.2, 1.4, 1.6, 2.0, 2.67):
+                structure, value = f"{scene.name}, {kinematics}", f"{factor:g}"
                 with stretched(factor):
                     sim = simulation(scene, kinematics)
                     try:
                         state = relax(sim, load, 1e-5).state
                     except SolverError as error:
-                        yield Record("time step", structure, value, REFUSED, "–", message=str(error))
+                        yield Record(AXIS_RELAX, structure, value, REFUSED, "–", message=str(error))
                         continue
                 if state != "equilibrium":
-                    yield Record("time step", structure, value, REFUSED, "–", message="no equilibrium claimed")
+                    yield Record(AXIS_RELAX, structure, value, REFUSED, "–", message="no equilibrium claimed")
                     continue
                 wrong = residual(sim)
                 verdict = HELD if wrong < 1e-4 else WRONG
-                yield Record("time step", structure, value, verdict, f"{wrong:.1e}", wrong, f"{wrong:.1e}")
+                yield Record(AXIS_RELAX, structure, value, verdict, f"{wrong:.1e}", wrong, f"{wrong:.1e}")
 
 
 def residual(sim: Any) -> float:

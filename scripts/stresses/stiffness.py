@@ -75,7 +75,7 @@ THESIS = {  # what is changed: factor of kn, factor of density, ks/kn
 
 
 def thesis(short: bool) -> Iterator[Record]:
-    """Thesis 5.3.3 on the 21-block wall: the change of the failure load stays below 1 %, or a warning."""
+    """The 21-block wall of the thesis: first its error, then changes against it, below 1 % or with a warning."""
     scenes = named()
     chosen = ("wall 0.6",) if short else ("wall 0.5", "wall 0.6", "wall 0.65", "wall 0.7", "wall 0.75", "wall 1.0")
     for name in chosen:

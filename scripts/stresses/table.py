@@ -20,8 +20,8 @@ forms) are solved under conditions that break programs. A verdict is
 
 In the tables a number is the relative error of a load that held (for what must not matter: its difference from the
 unstressed run; `=` not a bit differs), or the figure that was measured. *auto*, *fixed* and *large* are the
-kinematics asked for. A run may spend 1,000,000 steps (half of it for stiffnesses, a fifth for time steps), a quarter
-of what `dem run` allows, before it is refused.
+kinematics asked for. A run may spend 1,000,000 steps (fewer for stiffnesses and time steps), a quarter of what
+`dem run` allows, before it is refused.
 """
 
 
