@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.contact.assemble import JointProperties
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.laws.law import Law
-from dem_cli.limit.associated import LimitLoad, limit_load
+from dem_cli.limit.associated import OK, LimitLoad, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.model.model import Model
@@ -27,10 +27,10 @@ class LimitLoads(NamedTuple):
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""
-        found = self.associated
+        found, ok = self.associated, self.associated.status == OK
         return {
-            "associated": found.multiplier,
-            "associated_bounds": [found.lower, found.upper],
+            "associated": found.multiplier if ok else None,
+            "associated_bounds": [found.lower, found.upper] if ok else None,
             "associated_status": found.status,
             "residual": found.residual,
             "gap": found.gap,

@@ -11,7 +11,7 @@ from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
 
-SHOWN = 0.01  # mechanism of a frame: largest motion over the largest radius of a block
+SHOWN = 0.01  # mechanism of a frame: largest motion over the largest radius of a block that can move
 PRESSED = 1e-6  # of the largest normal force: what an interior point leaves at open points is smaller
 MOVES = 1e-3  # of the largest motion of any point
 
@@ -49,7 +49,7 @@ def _amplitude(model: Model, velocities: np.ndarray) -> float:
     d, radii = model.dimension, block_shape(model).radii
     turning = np.linalg.norm(velocities[:, d:], axis=1) * radii
     fastest = float(np.maximum(np.linalg.norm(velocities[:, :d], axis=1), turning).max(initial=0.0))
-    return SHOWN * float(radii.max()) / fastest if fastest > 0.0 else 0.0
+    return SHOWN * float(radii[~model.fixed].max()) / fastest if fastest > 0.0 else 0.0
 
 
 def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, factor: float) -> ContactRecord:

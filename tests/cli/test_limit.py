@@ -1,0 +1,105 @@
+"""`dem limit`: what it prints, what it leaves, and its exit codes."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from casefiles import CASES
+from click.testing import CliRunner
+
+from dem_cli.cli.main import main
+from dem_cli.output.reader import read
+
+WALL = CASES / "verification" / "wall_21_mu075.toml"
+WEDGED = CASES / "verification" / "wedged_block.toml"
+FALLING = CASES / "verification" / "leaning_column.toml"
+
+
+def dem(*arguments):
+    return CliRunner().invoke(main, [str(a) for a in arguments])
+
+
+def test_the_answer_in_a_few_lines():
+    answer = dem("limit", WALL)
+    assert answer.exit_code == 0
+    lines = dict(line.split(maxsplit=1) for line in answer.stdout.splitlines()[1:] if "check" not in line)
+    assert lines["associated"].startswith("0.6812")
+    assert "hand check     0.5714  (rigid part turning about the toe; no bound)" in answer.stdout
+    assert answer.stderr == ""
+
+
+def test_json_is_one_object_with_bounds_around_the_load():
+    summary = json.loads(dem("limit", WALL, "--json").stdout)
+    limits = summary["limit_analysis"]
+    low, high = limits["associated_bounds"]
+    assert summary["kind"] == "limit"
+    assert summary["status"] == limits["associated_status"] == "ok"
+    assert low <= limits["associated"] <= high
+    assert limits["residual"] < 1e-6
+    assert summary["blocks"] == 22
+
+
+def test_heads_without_friction():
+    rough, smooth = (
+        json.loads(dem("limit", WALL, "--json", "--heads", heads).stdout)["limit_analysis"]
+        for heads in ("frictional", "frictionless")
+    )
+    assert smooth["heads"] == "frictionless"
+    assert smooth["associated"] < rough["associated"] - 0.03
+
+
+def test_results_hold_the_mechanism_and_its_forces(tmp_path):
+    folder = tmp_path / "out"
+    assert dem("limit", WALL, "-o", folder).exit_code == 0
+    names = {"summary.json", "results.h5", "contacts.vtkhdf", "case.toml"}
+    assert {path.name for path in folder.iterdir()} == names
+    results = read(folder)
+    (frame,) = results.frames
+    assert frame.stage == "associated"
+    assert frame.load == results.summary["limit_analysis"]["associated"]
+    live = (results.model.live_loads * frame.velocities).sum()
+    assert live == pytest.approx(1.0)
+    assert np.abs(frame.positions - results.model.centroids).max() > 0.0
+    assert dem("plot", folder).output.splitlines() == [str(folder / "collapse.png")]
+
+
+def test_a_case_that_never_fails_says_so(tmp_path):
+    answer = dem("limit", WEDGED, "-o", tmp_path / "out")
+    assert answer.exit_code == 0
+    assert "no load of this direction makes it fail" in answer.stdout
+    assert "associated" not in answer.stdout
+    assert dem("plot", tmp_path / "out").exit_code == 0
+
+
+def test_a_case_that_does_not_stand_says_so():
+    answer = dem("limit", FALLING, "--json")
+    assert answer.exit_code == 0
+    summary = json.loads(answer.stdout)
+    assert summary["status"] == "does not stand under its dead loads"
+    assert summary["limit_analysis"]["associated"] is None
+
+
+def test_an_answer_that_fails_its_checks_is_no_answer(monkeypatch):
+    from dem_cli.limit import associated
+
+    monkeypatch.setattr(associated, "TRIES", ({"max_iter": 3},))
+    answer = dem("limit", WALL)
+    assert answer.exit_code == 3
+    assert "not converged" in answer.stdout
+    assert "associated" not in answer.stdout
+
+
+@pytest.mark.parametrize("name", ["overhang_stands", "settlement_portal"])
+def test_kinds_without_live_loads(name):
+    path = CASES / "verification" / f"{name}.toml"
+    answer = dem("limit", path, "--set", "analysis={kind='gravity'}")
+    assert answer.exit_code == 2
+    assert "analysis.kind = 'gravity' has none" in answer.stderr
+    assert answer.stdout == ""
+
+
+def test_pattern_live_is_the_multiplier_of_the_live_loads():
+    summary = json.loads(dem("limit", CASES / "verification" / "arch_point_load.toml", "--json").stdout)
+    assert summary["limit_analysis"]["associated"] == pytest.approx(8.48487, rel=1e-5)
