@@ -1,0 +1,114 @@
+"""The contact problem of one increment of displacement: elastic joints without tension, Coulomb friction without dilation.
+
+In units of a mean block weight W and of W over a median joint stiffness. For every contact point
+
+    N ≥ 0,  p = g(u) + N/kn ≥ 0,                N p = 0        normal force, opening of the joint
+    c± = μN ± T ≥ 0,  a± ≥ 0,                   c± a± = 0      reserve of friction, slip (plastic) in this increment
+    Bt (u − u₀) = −(T − T₀)/ks + a₊ − a₋                       slide: elastic and plastic part
+
+with equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N inside Newton's
+iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse.linalg import SuperLU, splu
+
+from dem_cli.limit.matrices import Structure, relative_motion
+
+LEAST_FRICTION = 1e-6  # of points without friction: negligible, and the equations stay the same
+SINGULAR = 1e-13  # added to the diagonal, over its mean
+
+
+class State(NamedTuple):
+    """A solution, in the units of `Elastic`."""
+
+    displacements: np.ndarray  # of the free degrees of freedom, (n_free,)
+    load: float  # multiplier of the scaled live loads
+    normal: np.ndarray  # N, (n_points,)
+    shear: np.ndarray  # T, (n_points,)
+    slips: tuple[np.ndarray, np.ndarray]  # a₊ and a₋ of the last increment, (n_points,) each
+
+
+class Direction(NamedTuple):
+    """A Newton direction; `positive` belongs to the vector (N, c₊, c₋, p, a₊, a₋)."""
+
+    displacements: np.ndarray
+    load: float
+    shear: np.ndarray
+    positive: np.ndarray
+
+
+class Elastic:
+    """Matrices of a structure whose joints are elastic, scaled."""
+
+    def __init__(self, structure: Structure, friction: np.ndarray):
+        joints, d, n_dof = structure.joints, structure.model.dimension, structure.n_dof
+        blocks = len(structure.free) // n_dof
+        self.weight = float(structure.scales.reshape(blocks, n_dof)[:, 0].mean())
+        length = float((structure.scales.reshape(blocks, n_dof)[:, -1] / structure.scales[::n_dof]).mean())
+        self.stiffness = float(np.median(joints.kn))
+        self.unit = self.weight / self.stiffness  # of displacements [m]
+        self.columns = np.tile(np.where(np.arange(n_dof) < d, 1.0, 1.0 / length), blocks)
+        scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
+        self.bn, self.bt = scaled[0::2].tocsr(), scaled[1::2].tocsr()
+        self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
+        self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
+        self.friction = np.maximum(friction, LEAST_FRICTION)
+        self.dead = structure.dead * self.columns / self.weight
+        live = structure.live * self.columns / self.weight
+        largest = np.abs(live).max(initial=0.0)
+        self.live_scale = float(np.abs(self.dead).sum() / np.abs(live).sum()) if largest > 0.0 else 1.0
+        self.live = live * self.live_scale
+        self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
+        self._pattern(relative_motion(joints, d), structure, n_dof)
+
+    @property
+    def n_points(self) -> int:
+        return len(self.kn)
+
+    def _pattern(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
+        """Where the entries of every point go in the matrix, and what they are made of."""
+        column = np.full(structure.model.n_blocks, -1)
+        column[structure.free[::n_dof] // n_dof] = np.arange(len(structure.free) // n_dof) * n_dof
+        owner = np.repeat(np.arange(len(structure.joints.blocks)), np.diff(structure.joints.starts))
+        first = column[structure.joints.blocks[owner]]
+        dofs = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof)).reshape(len(owner), -1)
+        scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
+        normal, tangent = (rows[:, k].reshape(len(owner), -1) * scale for k in (0, 1))
+        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+        used = (i >= 0) & (j >= 0)
+        self.point = np.broadcast_to(np.arange(len(owner))[:, None], used.shape)[used]
+        outer = [np.einsum("pi,pj->pij", x, y).reshape(used.shape)[used] for x, y in
+                 ((normal, normal), (tangent, tangent), (tangent, normal))]  # fmt: skip
+        self.outer = outer
+        n = len(self.columns)
+        keys, self.place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
+        self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
+        self.diagonal = np.flatnonzero(self.indices == keys // n)
+
+    def factorised(self, stiff_n: np.ndarray, stiff_t: np.ndarray, coupling: np.ndarray) -> SuperLU:
+        """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn. Raises RuntimeError where it is singular."""
+        p, (nn, tt, tn) = self.point, self.outer
+        values = stiff_n[p] * nn + stiff_t[p] * tt - coupling[p] * tn
+        data = np.bincount(self.place, values, len(self.indices))
+        data[self.diagonal] += SINGULAR * np.abs(data[self.diagonal]).mean()
+        n = len(self.columns)
+        matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
+        return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
+
+    def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
+        """Unbalanced forces, (n_free,)."""
+        return self.bnt @ normal + self.btt @ shear + self.dead + load * self.live
+
+    def residual(self, state: State, before: State) -> float:
+        """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
+        normal = np.maximum(-self.kn * (self.bn @ state.displacements), 0.0)
+        trial = before.shear - self.ks * (self.bt @ (state.displacements - before.displacements))
+        limit = self.friction * normal
+        unbalanced = self.imbalance(normal, np.clip(trial, -limit, limit), state.load)
+        return float((np.abs(unbalanced) / self.own).max(initial=0.0))
