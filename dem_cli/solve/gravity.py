@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
-from dem_cli.solve.equilibrium import Budget, Verdict
-from dem_cli.solve.failure import stand
+from dem_cli.solve.equilibrium import Budget, Verdict, stand
 from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
 from dem_cli.solve.track import Track

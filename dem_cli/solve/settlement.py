@@ -11,8 +11,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
-from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, Budget, check_finite, settle_or_fail
-from dem_cli.solve.failure import stand
+from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, Budget, check_finite, settle_or_fail, stand
 from dem_cli.solve.follow import FALL
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.run import Job, Outcome

@@ -28,6 +28,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
+from dem_cli.solve.motion import depth, widths
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
@@ -98,6 +99,8 @@ class Simulation:
         self.reference_positions = self.bodies.positions.copy()
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
+        self.depth = depth(self.joints.blocks, model.fixed)
+        self.widths = widths(model)
 
     # -- detection ---------------------------------------------------------------------------------
 

@@ -214,3 +214,40 @@ def test_light_block_on_a_heavy_one(density):
     summary, _ = solve(waxed_top(density))
     assert summary["failure_load"] <= 0.2 * (1 + 1e-3)
     assert summary["failure_load"] == pytest.approx(0.2, rel=3e-3)
+
+
+def tower(lower: float, upper: float) -> dict:
+    """A block of 0.5 × 1 m and one of 0.5 × 0.2 m on it, of two densities: both turn over together."""
+    return tables(
+        {**BASE, "material": "m0"},
+        block("lower", rectangle(0, 0, 0.5, 1), material="m0"),
+        block("upper", rectangle(0, 1, 0.5, 1.2), material="m1"),
+        friction=1.0,
+        materials={"m0": {"density": lower}, "m1": {"density": upper}},
+        analysis={"max_steps": 1_000_000},
+    )
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-4, 1e4])
+def test_a_knock_is_no_failure(ratio):
+    """Blocks of very different weight: the light one must not be thrown, nor its flight be taken for failure."""
+    # A jolt of the heavy block once sent the light one flying: "failure" at 0.0078 for 1e-6, at 0.12 for 1e-4.
+    lower, upper = np.array([1.0, 0.2]) * [1.0, ratio]
+    exact = 0.25 * (lower + upper) / (lower * 0.5 + upper * 1.1)
+    summary, _ = solve(tower(2000.0, 2000.0 * ratio))
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] == pytest.approx(exact, rel=2.5e-3)
+    assert summary["failure_load"] <= exact * (1 + 1e-5)
+
+
+@pytest.mark.parametrize("softness", [1e3, 1e4])
+def test_a_toppled_block_at_rest_has_failed(softness):
+    """On joints so soft that it falls over within a few steps and lies on its side for good."""
+    # Its rest was once an equilibrium: 0.4997 and 0.9997 instead of 0.25.
+    weight = 0.25 * WEIGHT
+    joint = {"friction": 1.0, "kn": softness * weight / (0.5 * 0.25)}
+    case = tables(BASE, block("b", rectangle(0, 0, 0.25, 1)), joints={"dry": joint}, analysis={"kinematics": "large"})
+    summary, _ = solve(case, "analysis.max_steps=500000", "analysis.follow=0.0")
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] <= 0.25 * (1 + 1e-5)
+    assert summary["failure_load"] > 0.25 * (1 - 25 / softness)

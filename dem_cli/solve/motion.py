@@ -1,0 +1,114 @@
+"""Motion at a constant load: when it can be nothing but failure, and when coming to rest is no equilibrium.
+
+A failure is shown by power: the motion accelerates while the loads release more energy than friction and
+joints take, both since the start and in the last doubling of time. The blocks that show it must have been
+carried there by their own loads: pseudo-time lets a light block on stiff joints fall slowly, so that a knock
+of its neighbours sends it flying for longer than any look.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.geometry import polygon
+from dem_cli.kernels import records as slot
+
+if TYPE_CHECKING:
+    from dem_cli.model.model import Model
+    from dem_cli.solve.simulation import Simulation
+
+# Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
+ACCELERATED, STEADY = 2.5, 1.55
+FAR = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
+FAR_PER_DEPTH = 0.125  # times the square of the courses: walls of 22 find equilibrium after 40, of 70 after 300
+STEADILY = 3.3  # times as far, where the motion does not accelerate
+GROSS, TURNED = 0.1, 0.05  # of the width of a block; of its rotation [rad]: no elastic motion
+NOT_ELASTIC = 10.0  # elastic displacements that gross motion is beyond, where joints are soft
+
+
+class Failing(NamedTuple):
+    """The proof of a failure."""
+
+    released: float  # share of the work of the loads that became motion or was damped
+    growth: float  # of the displacement in the last doubling of time
+
+
+class Motion:
+    """How the blocks move from the moment at which a load became constant.
+
+    scale: displacement that is elastic [m].
+    """
+
+    def __init__(self, sim: Simulation, scale: float) -> None:
+        self.sim, self.start, self.begun = sim, sim.save_places(), sim.steps
+        self.far = max(FAR, FAR_PER_DEPTH * sim.depth**2) * scale
+        if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
+            self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
+        self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
+        self.energies = [sim.energy_sums()]
+
+    def look(self) -> Failing | None:
+        """To be called whenever the time grew by √2; the proof of failure where there is one."""
+        moved = np.abs(self.sim.save_places() - self.start).max(axis=1)
+        self.moved.append(moved)
+        self.energies.append(self.sim.energy_sums())
+        if len(self.moved) < 9:
+            return None
+        own = moved <= 0.5 * falls(self.sim) * (self.sim.steps - self.begun) ** 2
+        block = int(np.where(own, moved, 0.0).argmax())
+        last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
+        if last[-1] <= self.far or not own[block] or min(last) <= 0.0:
+            return None
+        accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > ACCELERATED
+        steady = last[-1] > STEADY**4 * last[0] and last[-1] > STEADILY * self.far
+        if not (accelerated or steady):
+            return None
+        for since in (self.energies[-3], self.energies[0]):
+            given, taken = (now - then for now, then in zip(self.energies[-1], since))
+            if given <= max(taken, 0.0):
+                return None
+        return Failing(1.0 - taken / given, last[-1] / last[-2])
+
+
+def falls(sim: Simulation) -> np.ndarray:
+    """Largest acceleration that its own loads alone can give each block [m per step²], (n_blocks,)."""
+    loads, control, d = sim.loads, sim.control, sim.model.dimension
+    force = control[slot.DEAD_FACTOR] * loads.dead[:, :d] + control[slot.LIVE_FACTOR] * loads.live[:, :d]
+    light = loads.inverse_masses.copy()
+    light[:, d:] *= sim.shape.radii[:, None] ** 2
+    return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
+
+
+def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
+    """How many joints lie between the supports and the block furthest from them; joints: (n, 2) blocks."""
+    near, reached = 0, fixed.copy()
+    while True:
+        a, b = reached[joints].T
+        new = np.concatenate([joints[a & ~b, 1], joints[b & ~a, 0]])
+        if not len(new):
+            return near
+        reached[new] = True
+        near += 1
+
+
+def widths(model: Model) -> np.ndarray:
+    """About the smaller side of each block [m], (n_blocks,): area over largest extent of its narrowest piece."""
+    areas = polygon.properties_of_all(model.vertices, model.part_starts).area
+    narrow = np.full(model.n_blocks, np.inf)
+    np.minimum.at(narrow, model.part_blocks, areas / polygon.sizes(model.vertices, model.part_starts))
+    return narrow
+
+
+def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
+    """The block that moved furthest since `since` (Simulation.save_places), where that was no elastic motion.
+
+    A structure that comes to rest after it is another structure: something toppled or slid down.
+    """
+    motion = np.abs(sim.save_places() - since)
+    d = sim.model.dimension
+    moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
+    gross = (moved > GROSS * sim.widths) | (turned > TURNED * sim.shape.radii)
+    gross &= (np.maximum(moved, turned) > NOT_ELASTIC * scale) & ~sim.model.fixed
+    return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None
