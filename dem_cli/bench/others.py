@@ -115,7 +115,7 @@ def _best(records: list[Record], program: str) -> list[str]:
         return []
     setting = min(worst, key=lambda name: worst[name])
     total = sum(r.best for r in records if r.axis == program and r.value == setting and r.case in NARROW)
-    text = f"* {program}, best setting: {setting}; largest error {100 * worst[setting]:.2f} %, {seconds(total)} in all"
+    text = f"* {program}, best setting: {setting}; largest error {100 * worst[setting]:.2g} %, {seconds(total)} in all"
     return [f"{text} ({', '.join(name for name in NARROW if any(r.case == name for r in records))})."]
 
 

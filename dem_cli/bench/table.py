@@ -16,6 +16,8 @@ def percent(error: float | None) -> str:
         return "–"
     value = 100.0 * error
     places = 1 if abs(value) >= 9.95 else 2 if abs(value) >= 0.0995 else 3
+    if abs(value) < 5e-4:
+        return "0.000 %"
     return f"{value:+.{places}f} %".replace("-", "−")
 
 
