@@ -24,8 +24,9 @@ CENTRED, WIDE = 4.0, 3.0  # largest ratio of a product to the mean: of a kept it
 REVERSAL = 0.6  # τ of one kept iterate over that of the last
 STRIDE = 0.9  # relative change of any product's factor in one prediction
 PASSED = 0.3  # τ over that of the fold, below which it is passed
-FOLDS, ON_ARC = 6, 150  # folds, and iterations on one arc, before giving up
+ON_ARC = 500  # iterations on one arc
 SLOW = 150  # iterations without a fold
+ENDLESS = 1e12  # relative change by τ at which the path turns on the spot
 
 
 @dataclass
@@ -63,9 +64,16 @@ class Increment:
         x = np.concatenate([normal, mu * normal + shear, mu * normal - shear, opening, slip_one, slip_two])
         return Iterate(before.displacements.copy(), before.load, shear, x)
 
-    def solve(self, tau: float, ahead: float = 1.0, stop: Callable[[], bool] = lambda: False) -> State | None:
-        """The state after the increment, or None where the iteration got stuck."""
-        at, length, kept, means, folds = self.start(tau, ahead), 1.0, None, [], 0
+    def solve(
+        self, tau: float, ahead: float = 0.0, folds: int = 6, stop: Callable[[], bool] = lambda: False
+    ) -> State | None:
+        """The state after the increment, or None where the iteration got stuck.
+
+        tau    of the first products
+        ahead  how far slips go on from the last increment, as a share of that
+        folds  how many folds of the central path to go round
+        """
+        at, length, kept, means = self.start(tau, ahead), 1.0, None, []
         first = True
         while len(means) < SLOW and not stop():
             mean = float((at.x[: len(at.x) // 2] * at.x[len(at.x) // 2 :]).mean())
@@ -79,11 +87,10 @@ class Increment:
                 if self._spread(at, mean) < CENTRED and (kept is None or mean < REVERSAL * kept[0]):
                     kept = (mean, at.copy())
                 if len(means) > PATIENCE and mean > STALLED * means[-PATIENCE]:
-                    folds += 1
-                    turned = self._arc(*kept, mean, stop) if kept is not None and folds <= FOLDS else None
+                    turned = self._arc(*kept, mean, stop) if kept is not None and folds > 0 else None
                     if turned is None:
                         return None
-                    at, kept, means, length = turned, None, [], 1.0
+                    at, kept, means, length, folds = turned, None, [], 1.0, folds - 1
                     continue
             centring = next(share for least, share in CENTRING if length > least or least == 0.0)
             step = self._direction(at, tau if first else max(centring * mean, self.end))
@@ -108,6 +115,8 @@ class Increment:
             spread = self._spread(at, tau)
             onto, along = self._direction(at, tau), self._tangent()
             relative = tau * along.positive / at.x
+            if not np.abs(relative).max() < ENDLESS:
+                return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
             tangent *= -1.0 if last is None else np.sign(tangent @ last)
             on_path = on_path or (infeasible < 1e-3 and spread < WIDE)

@@ -9,7 +9,7 @@ that of the explicit solver (gaps, shear springs), which can go on from it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,10 +21,14 @@ from dem_cli.limit.matrices import Structure
 OK = "ok"
 FALLS = "does not stand under its dead loads"
 UNFINISHED = "not converged: the load still grows with displacement"
-FIRST = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
-GROWTH = (2.0, 2.8, 4.0, 1.5, 1.2)  # of the displacement from increment to increment; the next where one fails
+# Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
+# increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
+WAYS = ((0.25, 2.0), (1.0, 2.0), (0.5, 4.0), (2.0, 4.0), (1.0, 8.0))
+# Where an increment fails: shares of its growth, and how many folds of the central path to go round.
+ATTEMPTS = ((1.0, 0), (1.4, 0), (1.0, 4), (2.0, 0), (4.0, 0), (0.75, 0), (0.75, 4))
 FURTHEST = 1e5  # displacement at which a structure counts as self-locking
 PLATEAU = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
+CALM = 0.2  # share of the plateau's growth that is calm enough at once
 TAU = 0.1  # of the first products, over the square of the largest normal force
 ACCEPTED = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
 
@@ -72,33 +76,62 @@ def trace(
     """
     problem = Elastic(structure, friction)
     path = Path(FALLS)
-    state = _at_rest(problem)
-    standing = _advance(problem, path, state, None, 1.0, stop)
-    if standing is None:
+    at_rest = _at_rest(problem)
+    for easier in (1.0, 1e2, 1e4):
+        standing = _advance(problem, path, at_rest, None, stop, easier=easier)
+        if standing is not None:
+            break
+    else:
         return path
-    path.status, calm = UNFINISHED, 0
-    origin = float(problem.live @ standing.displacements)
-    elastic = _compliance(problem, standing)
-    before, state, reached = state, standing, 0.0
-    _keep(path, structure, problem, state, before, 0.0)
+    _keep(path, structure, problem, standing, at_rest, 0.0)
+    path.status = UNFINISHED
+    best = path
+    for first, growth in WAYS:
+        tried = replace(path, loads=[*path.loads], reached=[*path.reached], factorisations=best.factorisations)
+        _follow(tried, structure, problem, standing, first, growth, plateau, stop, progress)
+        spent = tried.factorisations
+        if tried.status == OK or tried.reached[-1] > best.reached[-1]:
+            best = tried
+        best.factorisations = spent
+        if best.status == OK or stop():
+            break
+    return best
+
+
+def _follow(
+    path: Path,
+    structure: Structure,
+    problem: Elastic,
+    state: State,
+    first: float,
+    growth: float,
+    plateau: float,
+    stop: Callable[[], bool],
+    progress: Callable[[float, float], None],
+) -> None:
+    """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
+    origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
+    reached = last = 0.0
+    calm = 0
     while calm < 2 and reached < FURTHEST:
-        for growth in GROWTH:
-            further = reached * growth if reached else FIRST
-            ahead = (further - reached) / reached if reached else 0.0
-            found = _advance(problem, path, state, origin + elastic * further, ahead, stop)
+        for share, folds in ATTEMPTS:
+            further = reached * growth * share if reached else first * share
+            ahead = (further - reached) / last if last else 0.0
+            found = None
+            if further > reached:
+                found = _advance(problem, path, state, origin + elastic * further, stop, ahead, folds)
             if stop() or (found is not None and problem.residual(found, state) < ACCEPTED):
                 break
             found = None
         if found is None:
-            break
+            return
         grown = abs(found.load - state.load) / max(abs(found.load), 1e-12)
-        calm = calm + 1 if reached and grown < plateau else 0
-        before, state, reached = state, found, further
-        _keep(path, structure, problem, state, before, reached)
+        calm += 0 if not reached else 2 if grown < CALM * plateau else 1 if grown < plateau else -calm
+        _keep(path, structure, problem, found, state, further)
+        state, reached, last = found, further, further - reached
         progress(path.load, reached)
-    if calm == 2:
+    if calm >= 2:
         path.status = OK
-    return path
 
 
 def _at_rest(problem: Elastic) -> State:
@@ -107,12 +140,19 @@ def _at_rest(problem: Elastic) -> State:
 
 
 def _advance(
-    problem: Elastic, path: Path, state: State, target: float | None, ahead: float, stop: Callable[[], bool]
+    problem: Elastic,
+    path: Path,
+    state: State,
+    target: float | None,
+    stop: Callable[[], bool],
+    ahead: float = 0.0,
+    folds: int = 4,
+    easier: float = 1.0,
 ) -> State | None:
     """The state at a displacement of the live load; without one, under dead loads alone."""
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
     increment = Increment(problem, state, target)
-    found = increment.solve(TAU * max(largest, 1.0) ** 2, ahead, stop)
+    found = increment.solve(easier * TAU * max(largest, 1.0) ** 2, ahead, folds, stop)
     path.factorisations += increment.factorisations
     return found
 
