@@ -113,7 +113,8 @@ def answer(known: Known, summary: dict[str, Any]) -> dict[str, Any]:
     found = {"load": load, "error": known.error(load), "steps": summary["steps"]}
     if summary["status"] != "ok":
         found["status"] = summary["status"]
-        found["message"] = (summary.get("warnings") or [""])[-1]
+    if summary.get("warnings"):
+        found["warning"] = summary["warnings"][-1]
     if "kinematics" in summary:
         found["kinematics"] = summary["kinematics"]
     return found

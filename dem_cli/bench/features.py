@@ -31,6 +31,7 @@ class Feature:
     name: str
     overrides: tuple[str, ...] = ()
     observer: Callable[[Any, Any, Path], Any] | None = None  # (case, model, folder) -> an observer that is closed
+    shows: str | None = None  # key of the summary without which it was not done
 
     def available(self) -> bool:
         """Whether case files of this version know it."""
@@ -65,7 +66,7 @@ def features(name: str) -> tuple[Feature, ...]:
         Feature("20 frames, kept by nobody", ("output.frames=20",)),
         Feature("20 frames and histories on disk", ("output.frames=20",), Disk),
         Feature("geometry that moves", ("analysis.kinematics=large",)),
-        Feature("limit analysis beside it", ("analysis.limit=true",)),
+        Feature("limit analysis beside it", ("analysis.limit=true",), shows="limit_analysis"),
         Feature("collapse followed", (follow,)),
         Feature("collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), Disk),
     )
@@ -137,7 +138,10 @@ def _runs(options: Options, found: Found) -> None:
                     found.notes.append(f"{feature.name}: not in this version")
         in_turn([job for *_, job in rows], options.rounds(5))
     for name, feature, job in rows:
-        found.records.append(record(name, RUN, feature.name, job.seconds, steps=job.result["steps"]))
+        if feature.shows is None or job.result.get(feature.shows):
+            found.records.append(record(name, RUN, feature.name, job.seconds, steps=job.result["steps"]))
+        else:
+            found.notes.append(f"{feature.name}, {name}: left out, the run's summary has no {feature.shows}")
 
 
 def _run(known: Known, feature: Feature, folder: Path) -> Job:

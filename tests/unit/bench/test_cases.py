@@ -56,7 +56,7 @@ def test_walls_have_as_many_blocks_as_they_say(known):
 def test_an_answer_that_is_none_says_why():
     known = KNOWN["COL14"]
     found = answer(known, {"status": "not converged", "failure_load": None, "steps": 9, "warnings": ["a", "gave up"]})
-    assert (found["error"], found["status"], found["message"]) == (None, "not converged", "gave up")
+    assert (found["error"], found["status"], found["warning"]) == (None, "not converged", "gave up")
     assert answer(known, {"status": "ok", "failure_load": known.load, "steps": 9}) == {
         "load": known.load, "error": 0.0, "steps": 9,
     }  # fmt: skip
