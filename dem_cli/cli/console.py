@@ -175,10 +175,13 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
     rows = [] if summary["status"] == "ok" else [("status", str(summary["status"]))]
     if limits["associated"] is not None:
         low, high = limits["associated_bounds"]
-        how = f"between {low:.7g} and {high:.7g}, {limits['iterations']} iterations"
+        how = f"between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
         rows.append(("associated", f"{_load(limits['associated'])}  ({how})"))
+    if limits.get("non_associated") is not None:
+        how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
+        rows.append(("non-associated", f"{_load(limits['non_associated'])}  ({how})"))
     if limits.get("rigid_wall") is not None:
-        rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (rigid part turning about the toe; no bound)"))
+        rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
     if limits["heads"] == "frictionless":
         rows.append(("head joints", "without friction"))
     rows += _cost_rows(summary)

@@ -33,9 +33,18 @@ if TYPE_CHECKING:
     show_default=True,
     help="Joints steeper than 45°; the thesis's Table 5-3 has them without friction.",
 )
+@click.option("--associated-only", is_flag=True, help="Leave out the load of joints that do not dilate.")
+@click.option("-q", "--quiet", is_flag=True, help="No progress.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
 def command(
-    case: str, overrides: Sequence[str], output: Path | None, as_json: bool, heads: str, force: bool
+    case: str,
+    overrides: Sequence[str],
+    output: Path | None,
+    as_json: bool,
+    heads: str,
+    associated_only: bool,
+    quiet: bool,
+    force: bool,
 ) -> int:
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
     from dem_cli import api
@@ -47,8 +56,12 @@ def command(
     loaded = api.load_case(case, overrides)
     require_multiplier(loaded)
     model = api.build_model(loaded)
-    properties = joint_properties(loaded.case, model)
-    found = limit_loads(model, properties, law_of(loaded.case), heads == "frictionless")
+    properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
+    with console.Progress(quiet) as bar:
+        found = limit_loads(
+            model, properties, law, heads == "frictionless", associated_only,
+            lambda load, reached: bar.update("no dilation", load, 0.0, None),
+        )  # fmt: skip
     summary = summarised(loaded, model, found, heads) | {"wall_seconds": time.perf_counter() - started}
     if output is not None:
         write(loaded, model, found, summary, output, force)
@@ -78,15 +91,23 @@ def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) 
             "title": loaded.case.title or loaded.path.stem,
             "kind": "limit",
             "version": __version__,
-            "status": found.associated.status,
+            "status": status(found),
             "limit_analysis": limits if check is None else limits | {"rigid_wall": check},
             "blocks": model.n_blocks,
             "joints": len(found.structure.joints.blocks),
             "contacts": len(found.friction),
-            "solve_seconds": found.seconds,
+            "solve_seconds": found.seconds + (found.path_seconds or 0.0),
             "warnings": loaded.warnings,
         }
     )
+
+
+def status(found: LimitLoads) -> str:
+    """Status of the whole: that of the first load that was not found."""
+    from dem_cli.limit.associated import OK
+
+    path = found.non_associated
+    return path.status if found.associated.status == OK and path is not None else found.associated.status
 
 
 def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
@@ -94,12 +115,16 @@ def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
     from dem_cli.limit.associated import OK
     from dem_cli.limit.snapshot import Collapse, frame
 
-    tilting = loaded.case.analysis.pattern == "tilt"
-    load = found.associated
-    if load.status != OK:
-        return []
-    collapse = Collapse("associated", load.multiplier, load.normal, load.shear, load.velocities, load.iterations)
-    return [frame(found.structure, collapse, tilting)]
+    states, load, path = [], found.associated, found.non_associated
+    if load.status == OK:
+        states.append(
+            Collapse("associated", load.multiplier, load.normal, load.shear, load.velocities, load.iterations)
+        )
+    if path is not None and path.status == OK:
+        states.append(
+            Collapse("non-associated", path.load, path.normal, path.shear, path.mechanism, path.factorisations)
+        )
+    return [frame(found.structure, state, loaded.case.analysis.pattern == "tilt") for state in states]
 
 
 def write(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,11 +11,14 @@ import numpy as np
 from dem_cli.contact.assemble import JointProperties
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.laws.law import Law
-from dem_cli.limit.associated import OK, LimitLoad, limit_load
+from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure, structure_of
+from dem_cli.limit.path import Path, trace
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
+
+Progress = Callable[[float, float], None]
 
 
 class LimitLoads(NamedTuple):
@@ -22,13 +26,15 @@ class LimitLoads(NamedTuple):
 
     structure: Structure
     friction: np.ndarray  # coefficient of every point [-], (n_points,)
-    associated: LimitLoad
-    seconds: float  # wall time of all of it, with detection and matrices
+    associated: LimitLoad  # joints dilate as they slide: an upper bound
+    non_associated: Path | None  # joints do not; None where not asked for, or where the first answer leaves no question
+    seconds: float  # wall time of the associated load, with detection and matrices
+    path_seconds: float | None  # of the non-associated load
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""
         found, ok = self.associated, self.associated.status == OK
-        return {
+        said = {
             "associated": found.multiplier if ok else None,
             "associated_bounds": [found.lower, found.upper] if ok else None,
             "associated_status": found.status,
@@ -37,19 +43,42 @@ class LimitLoads(NamedTuple):
             "iterations": found.iterations,
             "seconds": self.seconds,
         }
+        path = self.non_associated
+        if path is None:
+            return said
+        of_path = path.summary()
+        load = of_path.pop("load")
+        said["non_associated"] = load if path.status == OK else None
+        return said | {f"non_associated_{key}": value for key, value in of_path.items()} | {
+            "non_associated_seconds": self.path_seconds
+        }
 
 
-def limit_loads(model: Model, properties: JointProperties, law: Law, heads_frictionless: bool = False) -> LimitLoads:
+def limit_loads(
+    model: Model,
+    properties: JointProperties,
+    law: Law,
+    heads_frictionless: bool = False,
+    associated_only: bool = False,
+    progress: Progress = lambda load, reached: None,
+) -> LimitLoads:
     """Limit analysis of the faces that touch at the start; the multiplier is that of model.live_loads.
 
-    heads_frictionless: no friction in joints steeper than 45° to the horizontal (thesis Table 5-3).
+    heads_frictionless  no friction in joints steeper than 45° to the horizontal (thesis Table 5-3)
+    associated_only     leave out the load of joints that do not dilate, which takes longer
+    progress            told the load and the displacement of every increment of the latter (limit.path)
+
     Raises UsageError without live loads, or where the law has no cone |T| ≤ μ N.
     """
     begun = time.perf_counter()
     structure = start_structure(model, properties)
     friction = friction_of(structure.joints, law, heads_frictionless)
     associated = limit_load(structure, friction)
-    return LimitLoads(structure, friction, associated, time.perf_counter() - begun)
+    seconds = time.perf_counter() - begun
+    if associated_only or associated.status in (FALLS, LOCKED) or not structure.dead.any():
+        return LimitLoads(structure, friction, associated, None, seconds, None)
+    path = trace(structure, friction, progress=progress)
+    return LimitLoads(structure, friction, associated, path, seconds, time.perf_counter() - begun - seconds)
 
 
 def start_structure(model: Model, properties: JointProperties) -> Structure:

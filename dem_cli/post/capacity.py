@@ -108,8 +108,7 @@ def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None
 
 def _limit_loads(axis: Any, results: Results) -> None:
     loads = [results.history["load"].max(initial=0.0), results.summary.get("failure_load") or 0.0]
-    loads += [
-        v for v in (results.summary.get("limit_analysis") or {}).values() if isinstance(v, (int, float))
-    ]
+    limits = results.summary.get("limit_analysis") or {}
+    loads += [limits.get(name) or 0.0 for name in ("associated", "non_associated")]
     top = max(loads) or 1.0
     axis.set_ylim(min(0.0, 1.1 * results.history["load"].min(initial=0.0)) - 0.02 * top, 1.12 * top)

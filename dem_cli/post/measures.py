@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import ContactRecord, Frame
+from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.shapes import placed_vertices
 from dem_cli.output.store import contact_forces
 
@@ -27,7 +27,7 @@ class Resultants:
 
 def resultants(contacts: ContactRecord) -> Resultants:
     """Force of each joint at the force-weighted mean of its points."""
-    pressed = contacts.normal_force > 0.0
+    pressed = (contacts.state != STATES.index("open")) & (contacts.normal_force > 0.0)
     joints, first, owner = np.unique(contacts.joint[pressed], return_index=True, return_inverse=True)
     weights = contacts.normal_force[pressed]
     totals = np.bincount(owner, weights, len(joints))
