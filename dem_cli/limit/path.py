@@ -47,6 +47,7 @@ class Path:
     mechanism: np.ndarray | None = None  # motion of the last increment; its live power is one, (n_blocks, n_dof)
     loads: list[float] = field(default_factory=list)  # multiplier after each increment
     reached: list[float] = field(default_factory=list)  # displacement, in elastic ones at the multiplier of one
+    live_displacements: list[float] = field(default_factory=list)  # live loads × displacements since before gravity [J]
     factorisations: int = 0
 
     def summary(self) -> dict[str, Any]:
@@ -87,7 +88,10 @@ def trace(
     path.status = UNFINISHED
     best = path
     for first, growth in WAYS:
-        tried = replace(path, loads=[*path.loads], reached=[*path.reached], factorisations=best.factorisations)
+        tried = replace(
+            path, loads=[*path.loads], reached=[*path.reached], factorisations=best.factorisations,
+            live_displacements=[*path.live_displacements],
+        )  # fmt: skip
         _follow(tried, structure, problem, standing, first, growth, plateau, stop, progress)
         spent = tried.factorisations
         if tried.status == OK or tried.reached[-1] > best.reached[-1]:
@@ -182,3 +186,4 @@ def _keep(
     path.mechanism = structure.on_blocks(motion / power) if power > 0.0 else structure.on_blocks(0.0 * motion)
     path.loads.append(path.load)
     path.reached.append(reached)
+    path.live_displacements.append(float(structure.live @ (state.displacements * columns)))

@@ -54,6 +54,11 @@ class PushoverAnalysis(AnalysisBase):
         gt=0.0,
         description="give up above this multiplier; default: live loads of 100 times the dead ones",
     )
+    start: Literal["auto", "gravity", "path", "limit"] = Field(
+        default="auto",
+        description="how to come next to failure: gravity: raise the load step by step; path: static path of joints "
+        "that do not dilate; limit: forces of limit analysis; auto: by the number of blocks",
+    )
     limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
 
 

@@ -12,7 +12,7 @@ creep ended in an equilibrium inside that bracket, that one is the highest.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,8 +20,9 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.solve.equilibrium import (
     CHUNK,
+    COMBINED,
+    COMBINED_SAFETY,
     CREEP_SAFETY,
-    GRAVITY_TOLERANCE,
     TOLERANCE,
     Budget,
     Verdict,
@@ -29,9 +30,11 @@ from dem_cli.solve.equilibrium import (
     relax,
     settle_or_fail,
 )
+from dem_cli.solve.start import place
 
 if TYPE_CHECKING:
     from dem_cli.solve.simulation import Simulation
+    from dem_cli.solve.start import Start
     from dem_cli.solve.track import Track
 
 REACH = 15.0  # displacement of the creep, in elastic displacements at multiplier 1
@@ -43,13 +46,17 @@ PROBE = 0.02  # internal multiplier of the first load
 LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
 GROWTH = 1.5  # of the step from load to load after these
+BELOW = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
+BEYOND = 1e-4  # of a load proved impossible, that failure is shown at
+COARSE = 0.01  # bracket, over its load, that is narrow enough between a held load and one proved impossible
+SHOWN = 5.0  # elastic displacements that show a mechanism moving where failure is proved by limit analysis
 
 
 @dataclass(frozen=True)
 class Pass:
     """One creep or one constant load; multipliers as users know them."""
 
-    kind: str  # "creep" | "load"
+    kind: str  # "creep" | "start" | "load" | "impossible"
     steps: int
     load: float  # estimate of the creep, or the constant load
     state: str  # "estimate" | "equilibrium" | "failure"
@@ -72,14 +79,7 @@ class Search:
     crept_state: tuple | None = None
     limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[Pass] = field(default_factory=list)
-
-
-def stand(sim: Simulation, budget: Budget) -> Verdict:
-    """Equilibrium under dead loads alone, or proof that there is none."""
-    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE)
-    if verdict.state == "equilibrium":
-        return verdict
-    return settle_or_fail(sim, 0.0, budget, sim.dead_scale(), GRAVITY_TOLERANCE)
+    start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
 
 
 def compliance(sim: Simulation) -> tuple[float, float]:
@@ -101,13 +101,20 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
 
 def find_failure(
-    sim: Simulation, resolution: float, max_load: float | None, budget: Budget, track: Track, search: Search
+    sim: Simulation,
+    resolution: float,
+    max_load: float | None,
+    budget: Budget,
+    track: Track,
+    search: Search,
+    start: Start | None = None,
 ) -> None:
     """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
 
     max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
-    LOCKED times the dead loads). What is found goes to `search` as it is found, so that it is not lost
-    where the budget ends; the equilibria are kept as rows in the track.
+    LOCKED times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
+    where it does not hold, these are the way after all. What is found goes to `search` as it is found, so that
+    it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
     search.low, search.held = 0.0, sim.save()
     limit = LOCKED if max_load is None else max_load / sim.live_scale
@@ -115,10 +122,63 @@ def find_failure(
     search.compliance, search.elastic = compliance(sim)
     if search.compliance <= 0.0:
         raise SolverError("the live load moves nothing: no free block has a live load")
+    if start is not None and _holds(sim, search, start, resolution, limit, budget, track):
+        low = search.low / sim.live_scale
+        if start.impossible is not None:
+            above = (1.0 + BEYOND) * start.impossible / sim.live_scale
+            if above - low <= max(resolution, COARSE) * low:
+                _fail_above(sim, search, above, budget, track)
+                return
+        _raise_load(sim, search, low, [], resolution * low, resolution, limit, budget, track)
+        return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)
     sim.restore(search.held)
-    _raise_load(sim, search, min(max(estimate, PROBE), limit), resolution, limit, budget, track)
+    estimate = min(max(estimate, PROBE), limit)
+    levels = [share * estimate for share in SHARES]
+    _raise_load(sim, search, 0.0, levels, 0.5 * resolution * estimate, resolution, limit, budget, track)
+
+
+def _holds(
+    sim: Simulation, search: Search, start: Start, resolution: float, limit: float, budget: Budget, track: Track
+) -> bool:
+    """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
+    load = (1.0 - BELOW * resolution) * start.load / sim.live_scale
+    if not 0.0 < load < limit:
+        return False
+    track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
+    place(sim, start)
+    before = sim.steps
+    verdict = settle_or_fail(sim, load, budget, search.elastic * max(load, PROBE))
+    search.passes.append(Pass("start", sim.steps - before, load * sim.live_scale, verdict.state))
+    if verdict.state != "equilibrium":
+        sim.restore(search.held)
+        return False
+    _keep(sim, search, load, track)
+    return True
+
+
+def _fail_above(sim: Simulation, search: Search, load: float, budget: Budget, track: Track) -> None:
+    """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in the
+    friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
+    """
+    track.observer.progress("failing", load * sim.live_scale, search.peak_displacement, None)
+    before, start, ledger = sim.steps, sim.save_places(), sim.energy_sums()
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.set_load(load)
+    moved, released = 0.0, 0.0
+    while moved < SHOWN * search.elastic * load or released <= 0.0:
+        sim.advance(CHUNK, slot.HOLD_LOAD)
+        budget.spend(CHUNK, f"at load multiplier {load * sim.live_scale:.5g}")
+        check_finite(sim)
+        moved = float(np.abs(sim.save_places() - start).max())
+        now = sim.energy_sums()
+        given = now.given - ledger.given
+        released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
+    search.failing = Verdict("failure", sim.unbalanced, released)
+    search.passes.append(Pass("impossible", sim.steps - before, load * sim.live_scale, "failure"))
+    search.high, search.status, search.found = load * sim.live_scale, "ok", True
+    track.keep("collapse")
 
 
 def _creep(sim: Simulation, distance: float, budget: Budget, search: Search) -> float:
@@ -156,16 +216,16 @@ def _creep(sim: Simulation, distance: float, budget: Budget, search: Search) -> 
 def _raise_load(
     sim: Simulation,
     search: Search,
-    estimate: float,
+    low: float,
+    levels: list[float],
+    step: float,
     resolution: float,
     limit: float,
     budget: Budget,
     track: Track,
 ) -> None:
-    """From gravity up, first to shares of the estimate, then by growing steps, after failure back by halves."""
-    low, high, failed = 0.0, None, None
-    levels = [share * estimate for share in SHARES]
-    step = 0.5 * resolution * estimate
+    """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
+    high, failed = None, None
     while high is None or high - low > resolution * max(abs(low), 1e-3):
         if high is not None:
             load = 0.5 * (low + high)

@@ -13,12 +13,12 @@ from dem_cli.solve.gravity import FALLS, settle
 from dem_cli.solve.mechanism import describe
 from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
+from dem_cli.solve.start import GRAVITY, LARGE, LIMIT, find_start
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 INTERRUPTED = "interrupted"
-MANY = 1000  # blocks; larger walls find new equilibria after more motion than the proof of failure waits for
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
@@ -28,8 +28,13 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     search, sim = _search(job)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
-    if search.found and len(sim.free) > MANY:
-        job.warnings.append(f"more than {MANY} blocks: the true failure load may lie some per cent higher")
+    if search.found and search.start["kind"] == LIMIT:
+        job.warnings.append(
+            "started from the forces of limit analysis without friction in head joints: "
+            "the load that the structure reaches from gravity may be some per cent lower"
+        )
+    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > LARGE:
+        job.warnings.append(f"more than {LARGE} blocks raised from gravity: the true failure load may be higher")
     if search.status == "ok":
         found |= describe(sim, search.held)
         failing = sim.save()
@@ -58,7 +63,8 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         track = job.track(sim)
         try:
             if settle(sim, track, job.budget).state == "equilibrium":
-                find_failure(sim, analysis.resolution, analysis.max_load, job.budget, track, search)
+                start, search.start = find_start(job, sim)
+                find_failure(sim, analysis.resolution, analysis.max_load, job.budget, track, search, start)
             else:
                 search.status = FALLS
         except SolverError as error:
@@ -105,6 +111,7 @@ def _answer(search: Search, sim: Simulation) -> dict[str, Any]:
         "failure_load": search.low if search.found else None,
         "failure_load_bracket": [search.low, search.high],
         "kinematics": sim.kinematics,
+        "start": search.start,
         "search": [vars(p) for p in search.passes],
     }
     if search.failing is not None:

@@ -1,0 +1,134 @@
+"""A start next to failure: a state from a static solver, which the explicit solver proves and goes on from.
+
+Raising the load from gravity step by step costs the explicit solver most of its time, and large walls need
+more motion than it can wait for. A static solver knows where failure is: the zero-dilation path of limit.path, a
+state that the structure reaches from gravity, or, for structures too large for that, the forces of limit analysis.
+Its forces become the springs of the contact points; nothing is claimed before the explicit solver held it.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.kernels import records as slot
+
+if TYPE_CHECKING:
+    from dem_cli.limit.matrices import Structure
+    from dem_cli.solve.run import Job
+    from dem_cli.solve.simulation import Simulation
+
+GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
+SMALL = 100  # blocks, up to which raising the load from gravity is as fast
+LARGE = 1000  # blocks, beyond which the path takes too many factorisations
+SECONDS = 600.0  # for a path
+
+
+class Start(NamedTuple):
+    """A state in equilibrium."""
+
+    kind: str  # PATH or LIMIT
+    load: float  # its multiplier, as users know it
+    normal: np.ndarray  # [N], (n_points,)
+    shear: np.ndarray  # [N], (n_points, d − 1)
+    gaps: np.ndarray  # [m], (n_points,)
+    displacements: np.ndarray  # since before gravity, (n_blocks, n_dof)
+    work: float  # of the live loads on the way [J]
+    impossible: float | None = None  # multiplier above which limit analysis proved that there is no equilibrium
+
+
+def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]:
+    """The start that the case asks for or that its size needs (None: gravity), and what summary.json says of it."""
+    wanted = job.case.analysis.start
+    blocks = len(sim.free)
+    automatic = GRAVITY if blocks <= SMALL else PATH if blocks <= LARGE else LIMIT
+    kind = automatic if wanted == "auto" else wanted
+    if sim.kinematics != "fixed":
+        kind = GRAVITY  # gaps that may close, or soft joints: the geometry of the start is not that of failure
+    report: dict[str, Any] = {"kind": kind, "chosen": "by size" if wanted == "auto" else "by the case"}
+    if kind == GRAVITY:
+        return None, report
+    begun = time.perf_counter()
+    start = _found(job, sim, kind, report)
+    report["seconds"] = time.perf_counter() - begun
+    if start is None:
+        report["kind"] = GRAVITY
+    return start, report
+
+
+def place(sim: Simulation, start: Start) -> None:
+    """Puts the simulation into the state of `start`; what the work on the way did not store counts as friction."""
+    sim.set_load(start.load / sim.live_scale)
+    share = sim.control[slot.DEAD_FACTOR]  # a tilted table has less of all loads
+    contacts, bodies = sim.contacts, sim.bodies
+    d = sim.model.dimension
+    contacts.normal[:] = share * start.normal
+    contacts.shear[:] = share * start.shear
+    contacts.gaps[:] = np.where(start.normal > 0.0, -share * start.normal / sim.joints.kn, start.gaps)
+    bodies.positions[:] = sim.reference_positions + start.displacements[:, :d]
+    bodies.orientations[:] = start.displacements[:, d:]
+    bodies.velocities[:] = 0.0
+    sim.ledger[:] = 0.0
+    by_dead = float((sim.loads.dead * start.displacements).sum())
+    sim.ledger[slot.EXTERNAL] = by_dead + start.work
+    sim.ledger[slot.CONTACT] = -sim.ledger[slot.EXTERNAL]
+    sim.ledger[slot.FRICTION] = sim.ledger[slot.EXTERNAL] - sim.elastic_energy()
+
+
+def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Start | None:
+    from dem_cli.limit.cone import friction_of
+    from dem_cli.limit.matrices import structure_of
+
+    try:
+        structure = structure_of(sim.model, sim.joints)
+        if kind == PATH:
+            return _by_path(job, structure, friction_of(sim.joints, sim.law), report)
+        return _by_limit_analysis(structure, job, sim, report)
+    except UsageError as error:
+        report["note"] = str(error)
+        return None
+
+
+def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[str, Any]) -> Start | None:
+    from dem_cli.limit.path import OK, trace
+
+    until = time.perf_counter() + SECONDS
+    path = trace(
+        structure, friction,
+        stop=lambda: time.perf_counter() > until,
+        progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
+    )  # fmt: skip
+    report |= path.summary()
+    if path.status != OK:
+        report["note"] = "the path did not reach a plateau; the load is raised from gravity"
+        return None
+    work = _work(path.loads, path.live_displacements)
+    return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work)
+
+
+def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: dict[str, Any]) -> Start | None:
+    """Forces in equilibrium without friction in head joints, whose wedging no real joint can be trusted with."""
+    from dem_cli.limit.associated import OK, limit_load
+    from dem_cli.limit.cone import friction_of
+
+    job.clock.progress("limit analysis", 0.0, 0.0, None)
+    safe = limit_load(structure, friction_of(sim.joints, sim.law, heads_frictionless=True))
+    most = limit_load(structure, friction_of(sim.joints, sim.law))
+    report |= {"load": safe.multiplier, "status": safe.status, "residual": safe.residual, "associated": most.multiplier}
+    if safe.status != OK or most.status != OK:
+        report["note"] = f"limit analysis: {safe.status}; the load is raised from gravity"
+        return None
+    still = np.zeros((structure.model.n_blocks, structure.n_dof))
+    return Start(
+        LIMIT, safe.multiplier, safe.normal, safe.shear, np.zeros(len(safe.normal)), still, 0.0, most.upper
+    )  # fmt: skip
+
+
+def _work(loads: list[float], displacements: list[float]) -> float:
+    """Of a load that grew from one value to the next in proportion to its displacement [J]."""
+    means = 0.5 * (np.array(loads[1:]) + loads[:-1])
+    return float((means * np.diff(displacements)).sum())
+
