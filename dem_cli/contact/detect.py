@@ -11,6 +11,8 @@ from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.records import Shape
 from dem_cli.model.model import Model
 
+INNER = 1e-3  # of a piece: edges of one block that face each other closer than that lie inside it
+
 
 class Faces(NamedTuple):
     """Pairs of faces of convex parts, ordered by parts."""
@@ -37,13 +39,45 @@ def world_corners(shape: Shape, positions: np.ndarray, orientations: np.ndarray)
     return corners
 
 
-def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
+def inner_edges(model: Model) -> np.ndarray:
+    """Edges that other pieces of the same block cover, so that nothing else can touch them, (n_vertices,) bool; 2D."""
+    inner = np.zeros(len(model.vertices), bool)
+    if model.n_parts == model.n_blocks:
+        return inner
+    starts, after = model.part_starts, polygon.following(model.part_starts)
+    part = np.repeat(np.arange(model.n_parts), np.diff(starts))
+    sizes = polygon.sizes(model.vertices, starts)
+    block = model.part_blocks[part]
+    for i in np.flatnonzero(np.bincount(model.part_blocks)[block] > 1):
+        others = np.flatnonzero((block == block[i]) & (part != part[i]))
+        inner[i] = _covered(model.vertices[[i, after[i]]], model.vertices[np.stack([others, after[others]])],
+                            INNER * sizes[part[i]])  # fmt: skip
+    return inner
+
+
+def _covered(edge: np.ndarray, others: np.ndarray, reach: float) -> bool:
+    """Whether other edges (2 ends, n, 2) that run the other way within `reach` [m] cover an edge (2 ends, 2)."""
+    along = edge[1] - edge[0]
+    length = float(np.hypot(*along))
+    along = along / length
+    arms = others - edge[0]
+    places, heights = arms @ along, arms @ np.array([along[1], -along[0]])
+    near = (np.abs(heights) <= reach).all(axis=0) & (places[1] < places[0])
+    end = 1e-6 * length
+    for k in np.argsort(places[1]):
+        if near[k] and places[1, k] <= end:
+            end = max(end, places[0, k] + 1e-6 * length)
+    return end >= length
+
+
+def find_joints(model: Model, corners: np.ndarray, reach: float, inner: np.ndarray | None = None) -> Faces:
     """All pairs of faces of different blocks that are closer than `reach` [m].
 
-    corners: world coordinates of all corners [m], (n_vertices, d), see `world_corners`.
-    Two fixed blocks have no joint. Two convex parts have one, and more where they meet corner to corner:
-    those that may come to touch next.
+    corners: world coordinates of all corners [m], (n_vertices, d), see `world_corners`; inner: `inner_edges`,
+    where they are known already. Two fixed blocks have no joint. Two convex parts have one, and more where they
+    meet corner to corner: those that may come to touch next.
     """
+    inner = inner_edges(model) if inner is None else inner
     starts = model.part_starts
     low = np.minimum.reduceat(corners, starts[:-1], axis=0)
     high = np.maximum.reduceat(corners, starts[:-1], axis=0)
@@ -60,7 +94,9 @@ def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:
         if n <= capacity:
             break
         capacity = n
+    # Where a piece touches another block with an inner edge only, it is at a corner that another piece has too.
     by_part = np.lexsort((edges[:n, 1], edges[:n, 0], parts[:n, 1], parts[:n, 0]))
+    by_part = by_part[~inner[edges[by_part]].any(axis=1)]
     parts, edges = parts[by_part], edges[by_part]
     following = polygon.following(starts)
     four = np.column_stack([edges[:, 0], following[edges[:, 0]], edges[:, 1], following[edges[:, 1]]])

@@ -10,6 +10,7 @@ from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
 TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
+PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 
 
 def bodies_at_rest(model: Model) -> Bodies:
@@ -34,13 +35,23 @@ def joints_of_start(
 ) -> tuple[Joints, Contacts]:
     """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
 
-    smallest: shortest edge of a block [m] (model.scales). Faces that meet in a point only are left out: to
+    smallest: shortest edge of a block [m] (model.scales). Faces that meet corner to corner are left out: to
     first order they cannot carry force. Both points of a joint share one frame, that of its closer end.
     """
     faces = find_joints(model, bodies.corners, TOUCH * smallest)
     keep = overlap_lengths(faces.edges, bodies.corners) > TOUCH * smallest
+    keep &= ~corner_to_corner(faces.edges, bodies.corners, TOUCH * smallest)
     joints, contacts = build_joints(model, Faces(*(field[keep] for field in faces)), bodies, properties, n_memory)
     close_touching(contacts, smallest)
     closer = 2 * np.arange(len(joints.blocks)) + (contacts.gaps[1::2] < contacts.gaps[0::2])
     share_frames(joints, closer, bodies.positions)
     return joints, contacts
+
+
+def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
+    """Edges under an angle that meet with an end each, closer than `reach` [m], (n,) bool; 2D."""
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    a, b = ((end - start) / np.hypot(*(end - start).T)[:, None] for start, end in ((a0, a1), (b0, b1)))
+    angled = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > PARALLEL
+    apart = np.minimum(np.hypot(*(a0 - b1).T), np.hypot(*(a1 - b0).T))
+    return angled & (apart <= reach)

@@ -27,8 +27,8 @@ COMBINED = 0.3  # combined damping: as much against the velocity as against the 
 # Mass scaling for FIRE, for local damping (numerics, section 3) and for combined damping, which makes a
 # reversal of force 1 + 2·COMBINED times as strong and is stable below 1/√(1 + 2·COMBINED) = 0.79.
 RELAX_SAFETY, CREEP_SAFETY, COMBINED_SAFETY = 0.6, 0.85, 0.75
-GENTLE = 0.1  # of what a block falls by itself: how fast a new load may move what it rests on
-RAMP, STAIRS = 500, 50  # a ramp shorter than that many steps is none; loads on the way up a ramp
+GENTLE = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
+SHORTEST, LONGEST, STAIR = 500, 20_000, 20  # steps: of a ramp (a shorter one is none), and between its loads
 
 
 @dataclass(frozen=True)
@@ -138,14 +138,14 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
     sim.set_load(load)
     fall = falls(sim)[sim.free]
     slowest = fall[fall > 0.0].min(initial=math.inf)
-    steps = int(math.sqrt(4.0 * scale / (GENTLE * slowest)))
-    if steps < RAMP:
+    stairs = int(min(math.sqrt(4.0 * scale / (GENTLE * slowest)), LONGEST)) // STAIR
+    if load == before or stairs * STAIR < SHORTEST:
         return
-    for stair in range(1, STAIRS + 1):
-        share = stair / STAIRS
+    for stair in range(1, stairs + 1):
+        share = stair / stairs
         sim.set_load(before + (load - before) * share * share * (3.0 - 2.0 * share))
-        sim.advance(max(1, steps // STAIRS), slot.HOLD_LOAD)
-    budget.spend(steps, doing)
+        sim.advance(STAIR, slot.HOLD_LOAD)
+    budget.spend(stairs * STAIR, doing)
 
 
 def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:

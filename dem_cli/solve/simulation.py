@@ -14,7 +14,7 @@ from dem_cli.contact.assemble import (
     build_joints,
     carry_memory,
 )
-from dem_cli.contact.detect import block_shape, find_joints
+from dem_cli.contact.detect import block_shape, find_joints, inner_edges
 from dem_cli.contact.start import bodies_at_rest, close_touching, joints_of_start
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
@@ -72,7 +72,7 @@ class Simulation:
         d, r = model.dimension, model.inertias.shape[1]
         n = model.n_blocks
         self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
-        self.shape = block_shape(model)
+        self.shape, self.inner = block_shape(model), inner_edges(model)
         self.bodies = bodies_at_rest(model)
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
@@ -112,7 +112,7 @@ class Simulation:
                 model, self.bodies, self.properties, self.smallest, n_memory
             )
         else:
-            faces = find_joints(model, self.bodies.corners, SKIN * self.smallest)
+            faces = find_joints(model, self.bodies.corners, SKIN * self.smallest, self.inner)
             self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory)
             close_touching(self.contacts, self.smallest)
         self._after_detection()
@@ -121,7 +121,7 @@ class Simulation:
         """New faces after large motion; memory follows the contact points."""
         old, memory = self.joints, self.contacts
         self.measured()  # the points of the old joints, for those that move on
-        faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest)
+        faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest, self.inner)
         joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.law.n_memory)
         carry_memory(old, memory, joints, contacts)
         if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
@@ -288,9 +288,12 @@ class Simulation:
         return float(travel)
 
     def dead_scale(self) -> float:
-        """Displacement of a typical contact point under all dead loads [m]: no elastic one is larger by much."""
-        total = np.sqrt((self.loads.dead[self.free, : self.model.dimension] ** 2).sum(axis=1)).sum()
-        return float(total / np.median(self.joints.kn)) if len(self.joints.kn) else self.smallest
+        """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
+        joints, total = self.joints, np.sqrt((self.loads.dead[:, : self.model.dimension] ** 2).sum(axis=1)).sum()
+        if not len(joints.kn):
+            return self.smallest
+        stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
+        return float(total / stiffness.min())
 
     def largest_displacement(self) -> float:
         """Largest displacement of a centroid [m]."""

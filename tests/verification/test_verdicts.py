@@ -251,3 +251,25 @@ def test_a_toppled_block_at_rest_has_failed(softness):
     assert summary["status"] == "ok"
     assert summary["failure_load"] <= 0.25 * (1 + 1e-5)
     assert summary["failure_load"] > 0.25 * (1 - 25 / softness)
+
+
+def in_two_pieces(b: dict) -> dict:
+    """The same block, cut along a diagonal."""
+    corners = b["vertices"]
+    return {**{k: v for k, v in b.items() if k != "vertices"}, "parts": [corners[:3], [corners[0], *corners[2:]]]}
+
+
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+def test_pieces_change_no_load(kinematics):
+    """Two columns and a lintel, each of two triangles: b/H."""
+    # Inner edges were faces once: 0.128 with either geometry.
+    blocks = [
+        block("left", rectangle(0.0, 0.0, 0.4, 2.0)),
+        block("right", rectangle(2.6, 0.0, 3.0, 2.0)),
+        block("lintel", rectangle(-0.1, 2.0, 3.1, 2.5)),
+    ]
+    ground = block("ground", rectangle(-4, -1, 7, 0), fixed=True)
+    case = tables(ground, *map(in_two_pieces, blocks), friction=0.7, analysis={"kinematics": kinematics, "follow": 0.0})
+    summary, _ = solve(case)
+    assert summary["failure_load"] == pytest.approx(0.2, rel=1e-3)
+    assert abs(summary["energy_closure"]) < 1e-2

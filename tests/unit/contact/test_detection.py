@@ -8,7 +8,7 @@ from engine import block, rectangle, running_wall, scene, simulation, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
+from dem_cli.contact.detect import Faces, block_shape, find_joints, inner_edges, world_corners
 from dem_cli.model.model import Model
 
 REACH = 0.05
@@ -224,3 +224,66 @@ def test_joints_by_pair_of_materials():
         assert frictions == expected
         stiffness = {0.6: 0.5e9, 0.3: 1e9, 0.1: 1.5e9}
         assert joints.kn[::2] == pytest.approx([stiffness[law[0]] for law in joints.law])
+
+
+# -- blocks of several pieces --------------------------------------------------------------------------
+
+
+def cut(b: dict) -> dict:
+    """The same block of two pieces, cut along a diagonal."""
+    corners = b["vertices"]
+    return {**{k: v for k, v in b.items() if k != "vertices"}, "parts": [corners[:3], [corners[0], *corners[2:]]]}
+
+
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+def test_pieces_have_the_joints_of_their_block(kinematics):
+    """A cut is no face: the joints are those of the whole blocks, in the same places."""
+    whole = running_wall(4, 3)
+    sims = [simulation(tables(*blocks), kinematics) for blocks in (whole, [cut(b) for b in whole])]
+    placed = []
+    for sim in sims:
+        touching = np.abs(sim.measured().gaps) < 1e-9
+        order = np.lexsort(sim.joints.points[touching].round(9).T)
+        placed.append(np.column_stack([sim.joints.points, np.abs(sim.joints.frames[:, :2])])[touching][order].round(9))
+    if kinematics == "fixed":
+        assert np.array_equal(*placed)
+        assert len(sims[0].joints.blocks) == len(sims[1].joints.blocks)
+    else:  # several joints where corners meet
+        assert {tuple(row) for row in placed[1][:, :2]} == {tuple(row) for row in placed[0][:, :2]}
+
+
+def test_an_edge_that_is_covered_in_part_is_a_face():
+    """An L of two rectangles: a block stands beside its upright."""
+    ell = {"id": "ell", "parts": [rectangle(0, 0, 1, 3), rectangle(1, 0, 2, 1)], "fixed": True}
+    case = tables(ell, block("b", rectangle(1, 1, 2, 2)))
+    model = scene(case).model
+    assert inner_edges(model).sum() == 1  # the left side of the foot
+    assert len(simulation(case).joints.blocks) == 2
+
+
+def test_pieces_that_cover_an_edge_together():
+    """A course of two rectangles on one of one: neither is the whole of the edge between."""
+    block_of_three = {"id": "b", "parts": [rectangle(0, 0, 2, 1), rectangle(0, 1, 1, 2), rectangle(1, 1, 2, 2)]}
+    ground = block("ground", rectangle(-1, -1, 3, 0), fixed=True)
+    model = scene(tables(ground, block_of_three)).model
+    assert inner_edges(model).sum() == 1 + 2 + 2
+
+
+def test_a_corner_on_a_face_is_a_joint_of_the_start():
+    """A beam that leans: one corner on the ground, one at the wall."""
+    angle = np.arctan2(3.0, 4.0)
+    along, across = np.array([np.cos(angle), np.sin(angle)]), 0.1 * np.array([-np.sin(angle), np.cos(angle)])
+    low = np.array([-4.0, 0.0])
+    corners = [low, low + 5.0 * along, low + 5.0 * along + across, low + across]
+    wall = block("wall", rectangle(0, -1, 1, 5), fixed=True)
+    ground = block("ground", rectangle(-9, -1, -0.5, 0), fixed=True)
+    sim = simulation(tables(wall, ground, block("beam", np.array(corners))))
+    assert len(sim.joints.blocks) == 2
+    assert np.sort(np.abs(sim.joints.frames[::2, 1])).round(9).tolist() == [0.0, 1.0]
+
+
+def test_corner_to_corner_is_no_joint_of_the_start():
+    """Two roofs that meet at their eaves."""
+    one = block("one", [[0, 0], [2, 0], [1, 1]], fixed=True)
+    two = block("two", [[2, 0], [4, 0], [3, 1]])
+    assert len(simulation(tables(one, two)).joints.blocks) == 0
