@@ -8,17 +8,21 @@ from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
 
 
+WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are lost in round-off
+
+
 def smallest_edge(model: Model) -> float:
-    """Shortest edge of any block [m]."""
+    """Shortest edge of a block that can move [m]; of any block where none can."""
     edges = model.vertices[polygon.following(model.part_starts)] - model.vertices
-    return float(np.sqrt((edges**2).sum(axis=1)).min())
+    free = np.repeat(~model.fixed[model.part_blocks], np.diff(model.part_starts))
+    lengths = np.sqrt((edges**2).sum(axis=1))
+    return float((lengths[free] if free.any() else lengths).min())
 
 
 def own_weights(dead: np.ndarray, live: np.ndarray, dimension: int) -> np.ndarray:
-    """Dead force on each block [N]; where there is next to none, a millionth of the mean, (n_blocks,)."""
+    """Dead force on each block [N]; where there is next to none, WEIGHTLESS of the mean, (n_blocks,)."""
     weights = np.sqrt((dead[:, :dimension] ** 2).sum(axis=1))
-    loaded = weights > 0.0
-    return np.maximum(weights, 1e-6 * mean_weight(dead[loaded], live, dimension))
+    return np.maximum(weights, WEIGHTLESS * mean_weight(dead[weights > 0.0], live, dimension))
 
 
 def mean_weight(dead: np.ndarray, live: np.ndarray, dimension: int) -> float:

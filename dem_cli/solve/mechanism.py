@@ -25,8 +25,8 @@ def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
     turn = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1) * sim.shape.radii
     motion = np.maximum(shift, turn)
-    weights = -sim.loads.dead[:, d - 1]
-    lifted = float((weights * (sim.bodies.positions - bodies.positions)[:, d - 1]).sum())
+    weights = -sim.loads.dead[sim.free, d - 1]
+    lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
     external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
     released = max(external, 0.0) + max(-lifted, 0.0)
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 from dem_cli.model.scales import smallest_edge
 from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.solve.audit import closure
+from dem_cli.solve.audit import warnings as doubts
 from dem_cli.solve.equilibrium import Budget
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.monitors import Monitors
@@ -27,7 +30,6 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 NEAR = 1e-3  # gaps below this share of the smallest edge are meant: they may close
-CLOSURE, OVERLAP = 0.01, 0.01  # energy error, and overlap in smallest edges, above which a run warns
 
 
 @dataclass
@@ -77,6 +79,12 @@ class Clock:
         sim.compile()
         self.compiling += time.perf_counter() - (begun if cold else built)
         return sim
+
+    def imported(self, module: str) -> None:
+        """Imports a module that only some runs need, off the clock."""
+        begun = time.perf_counter()
+        import_module(module)
+        self.compiling += time.perf_counter() - begun
 
     def seconds(self) -> float:
         return time.perf_counter() - self.started - self.compiling - self.observing
@@ -132,10 +140,7 @@ class Job:
         """The summary of all simulations of this job, audited."""
         worst = max((closure(sim) for sim in sims), key=abs)
         overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
-        if abs(worst) > CLOSURE:
-            self.warnings.append(f"the energy does not close: {worst:.2%} is missing; do not trust this run")
-        if overlap > OVERLAP:
-            self.warnings.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
+        self.warnings += doubts(self.case, sims, found)
         summary = {
             "joints": sims[0].first_joints,
             "contacts": sims[0].first_points,
@@ -164,11 +169,3 @@ def open_joints(model: Model) -> int:
     """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
     edge = smallest_edge(model)
     return int((np.abs(find_joints(model, undeformed(model), NEAR * edge).separation) > TOUCH * edge).sum())
-
-
-def closure(sim: Simulation) -> float:
-    """Energy error over the largest energy in the ledger: 0 where the books balance."""
-    e = sim.energy()
-    error = e.kinetic + e.elastic + e.gravity + e.friction + e.damping - e.external - e.supports
-    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.friction, e.elastic, e.damping)
-    return float(error / largest) if largest > 0.0 else 0.0

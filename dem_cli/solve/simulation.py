@@ -282,14 +282,16 @@ class Simulation:
     def live_displacement(self) -> float:
         """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
         d = self.model.dimension
-        travel = (self.loads.live[:, :d] * self.displacement()).sum()
+        live, free = self.loads.live, self.free  # sums over free blocks: a far support changes no bit of them
+        travel = (live[free, :d] * self.displacement()[free]).sum()
         if d == 2:
-            travel += (self.loads.live[:, 2] * self.bodies.orientations[:, 0]).sum()
+            travel += (live[free, 2] * self.bodies.orientations[free, 0]).sum()
         return float(travel)
 
     def dead_scale(self) -> float:
         """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
-        joints, total = self.joints, np.sqrt((self.loads.dead[:, : self.model.dimension] ** 2).sum(axis=1)).sum()
+        joints = self.joints
+        total = np.sqrt((self.loads.dead[self.free, : self.model.dimension] ** 2).sum(axis=1)).sum()
         if not len(joints.kn):
             return self.smallest
         stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
@@ -301,9 +303,9 @@ class Simulation:
 
     def energy(self) -> Energy:
         """The ledger since the start [J]; external counts applied loads without gravity."""
-        d = self.model.dimension
-        weight = -self.loads.dead[:, d - 1]
-        gravity = float((weight * self.displacement()[:, d - 1]).sum())
+        d, free = self.model.dimension, self.free
+        weight = -self.loads.dead[free, d - 1]
+        gravity = float((weight * self.displacement()[free, d - 1]).sum())
         return Energy(
             kinetic=self.kinetic_energy(),
             elastic=self.elastic_energy(),

@@ -74,9 +74,9 @@ FAR = {
 each_far = pytest.mark.parametrize("far", FAR.values(), ids=FAR)
 
 
-# With moving geometry the smallest edge of all blocks sets the reach of detection: a far block with smaller
+# With moving geometry the smallest edge of all free blocks sets the reach of detection: a far one with smaller
 # edges makes detections, and with them fictitious masses, come at other times.
-STEADY = [("fixed", name) for name in FAR] + [("large", name) for name in FAR if "small" not in name]
+STEADY = [("fixed", name) for name in FAR] + [("large", name) for name in FAR if name != "small"]
 
 
 @pytest.mark.parametrize(("kinematics", "name"), STEADY)
@@ -105,3 +105,28 @@ def test_a_far_block_leaves_the_failure_load(far):
     (alone, _), (beside, _) = solve(tables(*WALL, **case)), solve(tables(*WALL, *far, **case))
     assert beside["status"] == alone["status"] == "ok"
     assert beside["failure_load"] == pytest.approx(alone["failure_load"], rel=2e-3)
+
+
+LONELY = {
+    "tiny": block("lonely", rectangle(5, 2, 5.001, 2.001), fixed=True),
+    "huge": block("a-lonely", rectangle(50, -800, 950, 90), fixed=True),
+    "needle": block("lonely", rectangle(-7, 0, -6.999999, 9), fixed=True),
+}
+
+
+def numbers(summary: dict, records) -> list:
+    """Every number of an answer that is not about time."""
+    timed = ("seconds", "solve_seconds", "compile_seconds")
+    kept = {key: value for key, value in summary.items() if key not in timed}
+    kept["start"] = {key: value for key, value in (kept.get("start") or {}).items() if key not in timed}
+    rows = [tuple(row) for row in records.rows]
+    return [kept, rows]
+
+
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+@pytest.mark.parametrize("lonely", LONELY.values(), ids=LONELY)
+def test_a_block_that_touches_nothing_changes_no_bit(lonely, kinematics):
+    """Of a whole pushover: load, bracket, search, energy, history."""
+    case = {"friction": 0.7, "analysis": {"kinematics": kinematics, "follow": 0.0}}
+    alone, beside = (numbers(*solve(tables(*blocks, **case))) for blocks in (WALL, [*WALL, lonely]))
+    assert alone == beside

@@ -9,7 +9,11 @@ import sys
 import numpy as np
 import pytest
 from casefiles import CASES
-from engine import block, rectangle, solve, tables
+from engine import block, rectangle, simulation, solve, tables
+
+from dem_cli.kernels import records as slot
+from dem_cli.solve.equilibrium import Budget, settle_or_fail, stand
+from dem_cli.solve.failure import compliance
 
 VERIFICATION = CASES / "verification"
 QUIET = ("analysis.follow=0.0", "output.frames=0")
@@ -273,3 +277,21 @@ def test_pieces_change_no_load(kinematics):
     summary, _ = solve(case)
     assert summary["failure_load"] == pytest.approx(0.2, rel=1e-3)
     assert abs(summary["energy_closure"]) < 1e-2
+
+
+@pytest.mark.parametrize(("name", "load"), [("wall_21", 0.599), ("arch_21", 0.147), ("column_14", 0.163)])
+def test_a_held_equilibrium_does_not_move(name, load):
+    """Held on just below failure: kinetic energy below 1e-12 of the elastic one, forces that balance ever better."""
+    sim = simulation(VERIFICATION / f"{name}.toml")
+    load, budget = load / sim.live_scale, Budget(10**6)
+    assert stand(sim, budget).state == "equilibrium"
+    _, elastic = compliance(sim)
+    verdict = settle_or_fail(sim, load, budget, elastic * load)
+    assert verdict.state == "equilibrium"
+    assert verdict.unbalanced < 1e-5
+    assert sim.kinetic_energy() == 0.0  # brought to rest
+    places, way = sim.save_places(), sim.largest_displacement()
+    sim.advance(60_000, slot.HOLD_LOAD)
+    assert sim.kinetic_energy() < 1e-12 * sim.elastic_energy()
+    assert sim.unbalanced < 0.1 * verdict.unbalanced
+    assert np.abs(sim.save_places() - places).max() < 1e-3 * way

@@ -1,0 +1,46 @@
+"""What a run says of its own answer, and how to get one where there is none."""
+
+from __future__ import annotations
+
+import pytest
+from engine import block, rectangle, solve, tables
+
+GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
+CRATE = block("crate", rectangle(0, 0, 1, 1))
+
+
+def said(*blocks: dict, **more) -> str:
+    summary, _ = solve(tables(GROUND, *blocks, **more))
+    return " | ".join(summary["warnings"])
+
+
+@pytest.mark.parametrize(("ratio", "warns"), [(0.009, True), (0.01, False), (10.0, False), (11.0, True)])
+def test_shear_stiffness_far_from_the_normal_one(ratio, warns):
+    joints = {"dry": {"friction": 0.6, "kn": 1e11, "ks": ratio * 1e11}}
+    assert ("ks/kn" in said(CRATE, joints=joints, analysis={"kind": "gravity"})) is warns
+
+
+def test_a_block_without_weight_is_named():
+    """A push from below that leaves nothing of the weight."""
+    lift = [{"block": "crate", "force": [0.0, 2000.0 * 9.81 * (1 - 1e-13)]}]
+    heavy = block("heavy", rectangle(2, 0, 3, 1))
+    assert "'crate'" in said(CRATE, heavy, load=lift, analysis={"kind": "gravity", "max_steps": 20_000})
+    assert "weight" not in said(CRATE, heavy, analysis={"kind": "gravity"})
+
+
+def test_what_to_do_where_steps_end():
+    """The bracket so far, the key to raise, and the blocks that make it slow."""
+    light = block("light", rectangle(0, 1, 1, 1.2), material="cork")
+    materials = {"stone": {"density": 2000.0}, "cork": {"density": 0.002}}
+    blocks = [{**GROUND, "material": "stone"}, {**CRATE, "material": "stone"}, light]
+    summary, _ = solve(tables(*blocks, materials=materials, analysis={"max_steps": 60_000}))
+    advice = summary["warnings"][-1]
+    assert summary["status"] == "not converged"
+    assert f"stands at {summary['failure_load_bracket'][0]:.5g}" in advice
+    assert "analysis.max_steps (60,000)" in advice
+    assert "'light'" in advice
+    assert "'crate'" in advice
+
+
+def test_nothing_is_said_where_nothing_is_doubtful():
+    assert said(CRATE) == ""
