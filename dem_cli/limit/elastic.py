@@ -1,4 +1,4 @@
-"""The contact problem of one increment of displacement: elastic joints without tension, Coulomb friction without dilation.
+"""The contact problem of one increment: elastic joints without tension, Coulomb friction without dilation.
 
 In units of a mean block weight W and of W over a median joint stiffness. For every contact point
 
@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
 from dem_cli.limit.matrices import Structure, relative_motion
@@ -65,6 +65,7 @@ class Elastic:
         self.live_scale = float(np.abs(self.dead).sum() / np.abs(live).sum()) if largest > 0.0 else 1.0
         self.live = live * self.live_scale
         self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
+        self.factorisations = 0
         self._pattern(relative_motion(joints, d), structure, n_dof)
 
     @property
@@ -93,6 +94,7 @@ class Elastic:
 
     def factorised(self, stiff_n: np.ndarray, stiff_t: np.ndarray, coupling: np.ndarray) -> SuperLU:
         """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn. Raises RuntimeError where it is singular."""
+        self.factorisations += 1
         p, (nn, tt, tn) = self.point, self.outer
         values = stiff_n[p] * nn + stiff_t[p] * tt - coupling[p] * tn
         data = np.bincount(self.place, values, len(self.indices))

@@ -47,7 +47,6 @@ class Increment:
 
     def __init__(self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
-        self.factorisations = 0
         self.end = END * min(1.0, float(problem.own.min(initial=1.0))) ** 2
 
     def start(self, tau: float, ahead: float) -> Iterate:
@@ -164,7 +163,6 @@ class Increment:
             self.lu = problem.factorised(self.stiff_n, self.stiff_t, self.drag * self.stiff_n)
         except RuntimeError:
             return False
-        self.factorisations += 1
         self.by_live = self.lu.solve(problem.live)
         return bool(np.isfinite(self.by_live).all())
 

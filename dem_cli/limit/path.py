@@ -23,12 +23,13 @@ FALLS = "does not stand under its dead loads"
 UNFINISHED = "not converged: the load still grows with displacement"
 # Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
 # increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
-WAYS = ((0.25, 2.0), (1.0, 2.0), (0.5, 4.0), (2.0, 4.0), (1.0, 8.0))
+WAYS = ((0.5, 4.0), (0.25, 2.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
 # Where an increment fails: shares of its growth, and how many folds of the central path to go round.
-ATTEMPTS = ((1.0, 0), (1.4, 0), (1.0, 4), (2.0, 0), (4.0, 0), (0.75, 0), (0.75, 4))
+ATTEMPTS = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
+EFFORT = 2e7  # factorisations × points before giving up: about half a minute
 FURTHEST = 1e5  # displacement at which a structure counts as self-locking
 PLATEAU = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
-CALM = 0.2  # share of the plateau's growth that is calm enough at once
+CALM = 0.5  # share of the plateau's growth that is calm enough at once
 TAU = 0.1  # of the first products, over the square of the largest normal force
 ACCEPTED = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
 
@@ -65,21 +66,25 @@ def trace(
     structure: Structure,
     friction: np.ndarray,
     plateau: float = PLATEAU,
-    stop: Callable[[], bool] = lambda: False,
+    effort: float = EFFORT,
     progress: Callable[[float, float], None] = lambda load, reached: None,
 ) -> Path:
     """From gravity to the plateau of the load, 2D.
 
     friction  coefficient of every point [-], (n_points,)
     plateau   relative growth of the load, from one increment to the next, that counts as none
-    stop      asked at every factorisation; True ends the search with what there is
+    effort    factorisations × points after which what was reached is returned
     progress  told the load and the displacement of every increment
     """
     problem = Elastic(structure, friction)
     path = Path(FALLS)
+
+    def spent() -> bool:
+        return problem.factorisations * problem.n_points > effort
+
     at_rest = _at_rest(problem)
     for easier in (1.0, 1e2, 1e4):
-        standing = _advance(problem, path, at_rest, None, stop, easier=easier)
+        standing = _advance(problem, at_rest, None, spent, easier=easier)
         if standing is not None:
             break
     else:
@@ -89,15 +94,13 @@ def trace(
     best = path
     for first, growth in WAYS:
         tried = replace(
-            path, loads=[*path.loads], reached=[*path.reached], factorisations=best.factorisations,
-            live_displacements=[*path.live_displacements],
-        )  # fmt: skip
-        _follow(tried, structure, problem, standing, first, growth, plateau, stop, progress)
-        spent = tried.factorisations
+            path, loads=[*path.loads], reached=[*path.reached], live_displacements=[*path.live_displacements]
+        )
+        _follow(tried, structure, problem, standing, first, growth, plateau, spent, progress)
         if tried.status == OK or tried.reached[-1] > best.reached[-1]:
             best = tried
-        best.factorisations = spent
-        if best.status == OK or stop():
+        best.factorisations = problem.factorisations
+        if best.status == OK or spent():
             break
     return best
 
@@ -123,7 +126,7 @@ def _follow(
             ahead = (further - reached) / last if last else 0.0
             found = None
             if further > reached:
-                found = _advance(problem, path, state, origin + elastic * further, stop, ahead, folds)
+                found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
             if stop() or (found is not None and problem.residual(found, state) < ACCEPTED):
                 break
             found = None
@@ -145,7 +148,6 @@ def _at_rest(problem: Elastic) -> State:
 
 def _advance(
     problem: Elastic,
-    path: Path,
     state: State,
     target: float | None,
     stop: Callable[[], bool],
@@ -155,10 +157,7 @@ def _advance(
 ) -> State | None:
     """The state at a displacement of the live load; without one, under dead loads alone."""
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
-    increment = Increment(problem, state, target)
-    found = increment.solve(easier * TAU * max(largest, 1.0) ** 2, ahead, folds, stop)
-    path.factorisations += increment.factorisations
-    return found
+    return Increment(problem, state, target).solve(easier * TAU * max(largest, 1.0) ** 2, ahead, folds, stop)
 
 
 def _compliance(problem: Elastic, state: State) -> float:

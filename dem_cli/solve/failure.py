@@ -47,6 +47,7 @@ LOCKED = 100.0  # internal multiplier at which a structure counts as self-lockin
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
 GROWTH = 1.5  # of the step from load to load after these
 BELOW = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
+ONE_STEP = 0.99  # of the resolution: the next load, so that one failure closes the bracket
 BEYOND = 1e-4  # of a load proved impossible, that failure is shown at
 COARSE = 0.01  # bracket, over its load, that is narrow enough between a held load and one proved impossible
 SHOWN = 5.0  # elastic displacements that show a mechanism moving where failure is proved by limit analysis
@@ -129,7 +130,7 @@ def find_failure(
             if above - low <= max(resolution, COARSE) * low:
                 _fail_above(sim, search, above, budget, track)
                 return
-        _raise_load(sim, search, low, [], resolution * low, resolution, limit, budget, track)
+        _raise_load(sim, search, low, [], ONE_STEP * resolution * low, resolution, limit, budget, track)
         return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.errors import SolverError
+from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.solve import follow
 from dem_cli.solve.failure import Search, find_failure
 from dem_cli.solve.gravity import FALLS, settle
+from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.mechanism import describe
 from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
-from dem_cli.solve.start import GRAVITY, LARGE, LIMIT, find_start
+from dem_cli.solve.start import GRAVITY, LARGE, LIMIT, PATH, find_start
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 INTERRUPTED = "interrupted"
+ABOVE = 0.005  # of the associated load, that a failure load may lie above it
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
@@ -52,6 +54,8 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
+    if case.analysis.limit:
+        found["limit_analysis"] = _limit_analysis(job, search)
     return job.outcome(sims, _answer(search, sim) | found)
 
 
@@ -80,6 +84,29 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
         job.warnings.clear()
         search, sim = Search(), job.simulation("large")
+
+
+def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
+    """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
+    from dem_cli.limit.analysis import limit_loads
+
+    case, model = job.case, job.model
+    by_path = search.start.get("kind") == PATH  # known already
+    try:
+        loads = limit_loads(model, joint_properties(case, model), law_of(case), associated_only=by_path)
+    except UsageError as error:
+        job.warnings.append(f"no limit analysis: {error}")
+        return {}
+    summary = loads.summary()
+    if by_path:
+        summary["non_associated"] = search.start["load"]
+    bound = loads.associated.upper
+    if search.found and bound is not None and search.low > (1.0 + ABOVE) * bound:
+        job.warnings.append(
+            f"the failure load {search.low:.5g} is above the associated limit load {bound:.5g}, "
+            "which rigid blocks cannot exceed: do not trust this run"
+        )
+    return summary
 
 
 def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float | None]]:

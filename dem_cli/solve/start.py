@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
 SMALL = 100  # blocks, up to which raising the load from gravity is as fast
 LARGE = 1000  # blocks, beyond which the path takes too many factorisations
-SECONDS = 600.0  # for a path
 
 
 class Start(NamedTuple):
@@ -51,6 +50,7 @@ def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]
     report: dict[str, Any] = {"kind": kind, "chosen": "by size" if wanted == "auto" else "by the case"}
     if kind == GRAVITY:
         return None, report
+    job.clock.imported("dem_cli.limit.analysis")
     begun = time.perf_counter()
     start = _found(job, sim, kind, report)
     report["seconds"] = time.perf_counter() - begun
@@ -95,16 +95,16 @@ def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Star
 def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[str, Any]) -> Start | None:
     from dem_cli.limit.path import OK, trace
 
-    until = time.perf_counter() + SECONDS
     path = trace(
         structure, friction,
-        stop=lambda: time.perf_counter() > until,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
     )  # fmt: skip
     report |= path.summary()
-    if path.status != OK:
-        report["note"] = "the path did not reach a plateau; the load is raised from gravity"
+    if path.load is None or path.load <= 0.0:
+        report["note"] = "no path; the load is raised from gravity"
         return None
+    if path.status != OK:
+        report["note"] = "the path ended before the load stopped growing; the load is raised from there"
     work = _work(path.loads, path.live_displacements)
     return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work)
 
