@@ -75,14 +75,20 @@ def references() -> list[str]:
     return [text, "", *lines_of(head, rows)]
 
 
-def write(folder: Path, groups: dict[str, dict[str, Any]]) -> list[Path]:
-    """Write JSON, page and pictures; groups that are in the folder's JSON and not in `groups` stay."""
+def keep(folder: Path, groups: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Write the JSON and return what it holds; groups that were in it and are not in `groups` stay."""
     folder.mkdir(parents=True, exist_ok=True)
     data = folder / f"{NAME}.json"
     merged = (read(data) if data.exists() else {}) | groups
     merged = {name: merged[name] for name in registry.GROUPS if name in merged}
     data.write_text(as_json(merged), encoding="utf-8", newline="\n")
-    written = [data, folder / f"{NAME}.md"]
+    return merged
+
+
+def write(folder: Path, groups: dict[str, dict[str, Any]]) -> list[Path]:
+    """Write JSON (see `keep`), page and pictures."""
+    merged = keep(folder, groups)
+    written = [folder / f"{NAME}.json", folder / f"{NAME}.md"]
     written[1].write_text(render(merged), encoding="utf-8", newline="\n")
     for name in merged:
         for suffix, draw in registry.module(name).PICTURES.items():

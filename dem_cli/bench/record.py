@@ -51,12 +51,23 @@ class Options:
 
 def record(case: str, axis: str, value: Any, seconds: Sequence[float], unit: str = "s", **found: Any) -> Record:
     """A record of repeated measurements; other work only adds time, so that the best counts."""
-    return Record(case, axis, value, min(seconds), statistics.median(seconds), len(seconds), unit, found)
+    best, median = (float(f"{time:.4g}") for time in (min(seconds), statistics.median(seconds)))
+    return Record(case, axis, value, best, median, len(seconds), unit, found)
 
 
 def as_json(groups: dict[str, dict[str, Any]]) -> str:
-    """The text of a results file. groups: name -> {"machine", "notes", "records"}."""
-    return json.dumps({"format": FORMAT, "groups": groups}, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    """The text of a results file, a line per record. groups: name -> {"machine", "notes", "records"}."""
+
+    def text(value: Any) -> str:
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+    lines = []
+    for name, group in groups.items():
+        records = ",\n   ".join(text(table) for table in group["records"])
+        parts = (f'"machine": {text(group["machine"])}', f'"notes": {text(group["notes"])}')
+        lines.append(f"  {text(name)}: {{\n   " + ",\n   ".join((*parts, f'"records": [\n   {records}\n   ]')) + "}")
+    body = "{\n" + ",\n".join(lines) + "\n }" if lines else "{}"
+    return f'{{"format": {FORMAT},\n "groups": {body}}}\n'
 
 
 def group_table(found: Found, machine: dict[str, Any]) -> dict[str, Any]:

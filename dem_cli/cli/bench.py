@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from dem_cli.bench import registry
 from dem_cli.bench.machine import describe, one_thread
 from dem_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.bench.record import Options
 
 
 @click.command("bench")
@@ -42,12 +46,17 @@ def command(
     Groups: kernels, precision, growth, features, others, startup.
     """
     one_thread()
-    from dem_cli.bench.page import NAME, render, write
+    from dem_cli.bench.page import NAME, keep, render, write
     from dem_cli.bench.record import Options, as_json, read
 
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
-    found = read(folder / f"{NAME}.json") if redraw else measured(checked(groups), Options(quick, long, repeats))
+    check_places(folder, json_file)
+    found = read(folder / f"{NAME}.json") if redraw and folder is not None else {}
+    for name in [] if redraw else checked(groups):
+        found[name] = measured(name, Options(quick, long, repeats))
+        if folder is not None:
+            keep(folder, found)  # at once: what was measured is not lost if the rest is interrupted
     if json_file == "-":
         click.echo(as_json(found), nl=False)
     elif json_file is not None:
@@ -59,6 +68,19 @@ def command(
         click.echo(render(found), nl=False)
 
 
+def check_places(folder: Path | None, json_file: str | None) -> None:
+    """Raises UsageError before anything is measured where results could not be written."""
+    if json_file not in (None, "-") and not Path(str(json_file)).resolve().parent.is_dir():
+        raise UsageError(f"--json {json_file}: there is no such folder")
+    if folder is not None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UsageError(f"-o {folder}: {error.strerror}") from None
+        if not os.access(folder, os.W_OK):
+            raise UsageError(f"-o {folder}: cannot be written to")
+
+
 def checked(groups: Sequence[str]) -> list[str]:
     """The groups wanted, in their order. Raises UsageError on an unknown one."""
     unknown = [name for name in groups if name not in registry.GROUPS]
@@ -67,15 +89,12 @@ def checked(groups: Sequence[str]) -> list[str]:
     return [name for name in registry.GROUPS if name in groups or not groups]
 
 
-def measured(names: Sequence[str], options: Any) -> dict[str, dict[str, Any]]:
-    """Groups as JSON holds them."""
+def measured(name: str, options: Options) -> dict[str, Any]:
+    """One group as JSON holds it."""
     from dem_cli.bench.cases import compiled
     from dem_cli.bench.record import group_table
 
-    found = {}
-    for name in names:
-        click.echo(f"measuring {name}: {registry.GROUPS[name]}", err=True)
-        machine = describe()
-        compiled()
-        found[name] = group_table(registry.module(name).measure(options), machine)
-    return found
+    click.echo(f"measuring {name}: {registry.GROUPS[name]}", err=True)
+    machine = describe()
+    compiled()
+    return group_table(registry.module(name).measure(options), machine)

@@ -82,5 +82,13 @@ def test_redraw_needs_a_folder_with_results(tmp_path):
     assert bench("--redraw", "-o", str(tmp_path)).exit_code == 2
 
 
+def test_places_that_cannot_be_written_are_said_before_measuring(tmp_path):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    done = bench("--json", str(tmp_path / "none" / "all.json"))
+    assert (done.exit_code, done.stderr) == (2, f"error: --json {tmp_path}/none/all.json: there is no such folder\n")
+    done = bench("-o", str(tmp_path / "file" / "page"))
+    assert (done.exit_code, done.stderr) == (2, f"error: -o {tmp_path}/file/page: Not a directory\n")
+
+
 def test_help_names_every_group():
     assert all(name in command.help for name in registry.GROUPS)
