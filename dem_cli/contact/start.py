@@ -13,11 +13,11 @@ TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 
 
-def bodies_at_rest(model: Model) -> Bodies:
-    """All blocks where the model places them, without motion."""
+def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
+    """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,)."""
     d, n_dof = model.dimension, model.dimension + model.inertias.shape[1]
     n = model.n_blocks
-    positions, orientations = model.centroids.copy(), np.zeros((n, 1 if d == 2 else 4))
+    positions, orientations = model.centroids - origin, np.zeros((n, 1 if d == 2 else 4))
     corners = world_corners(block_shape(model), positions, orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,

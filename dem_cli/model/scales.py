@@ -7,8 +7,20 @@ import numpy as np
 from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
 
-
+REMOTE = 1e3  # times the extent of the blocks that can move: from there on coordinates are counted from among them
 WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are lost in round-off
+
+
+def origin_of(model: Model) -> np.ndarray:
+    """Where coordinates are best counted from [m], (d,): [0, 0], but for a structure far from there among its blocks.
+
+    A coordinate has 16 digits; of a block that is 1e5 times its size away, too few are left to see joints close.
+    """
+    free = model.centroids[~model.fixed]
+    middle = free.mean(axis=0) if len(free) else np.zeros(model.dimension)
+    low, high = (limit(free, axis=0) if len(free) else middle for limit in (np.min, np.max))
+    size = float((high - low).max()) + smallest_edge(model)
+    return middle if np.abs(middle).max() > REMOTE * size else np.zeros(model.dimension)
 
 
 def smallest_edge(model: Model) -> float:

@@ -22,7 +22,7 @@ TOUCH = 1e-3  # of the smaller block: a wider gap is no support
 SLIVER = 1e-3  # width over length of a block
 SIZE_RATIO = 1e3  # largest over smallest free block
 MASS_RATIO = 1e6  # heaviest over lightest free block
-REMOTE = 3e4  # distance from the origin over the size of a typical free part
+REMOTE = 1e8  # distance from the origin over the size of a typical free part
 SHOWN = 5  # mistakes of one sort that are reported one by one
 
 
@@ -82,9 +82,9 @@ def warnings(model: Model) -> list[str]:
 
 
 def _remote(model: Model, size: float) -> list[str]:
-    """Coordinates of 16 digits, of which the distance from the origin takes too many.
+    """Coordinates of 16 digits, of which the distance from the origin takes too many to say what touches.
 
-    Forces are held to 1e-5 of a weight under which a joint closes by 1e-6 of a block (solve.equilibrium).
+    Solvers count coordinates from the structure (model.scales.origin_of); what the case says cannot be mended.
     """
     low, high = model.centroids.min(axis=0), model.centroids.max(axis=0)
     away = float(np.hypot(*np.maximum(np.maximum(low, -high), 0.0)))
@@ -92,7 +92,7 @@ def _remote(model: Model, size: float) -> list[str]:
         return []
     return [
         f"the blocks lie {away:.3g} m from [0, 0], {away / size:.1e} times the size of one: too few digits are left to "
-        "move them; shift the structure to the origin"
+        "say which faces touch; shift the structure to the origin"
     ]
 
 

@@ -25,7 +25,7 @@ from dem_cli.kernels.planar_geometry import measure
 from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.scales import own_weights, smallest_edge
+from dem_cli.model.scales import origin_of, own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.motion import depth, widths
@@ -73,7 +73,8 @@ class Simulation:
         n = model.n_blocks
         self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
         self.shape, self.inner = block_shape(model), inner_edges(model)
-        self.bodies = bodies_at_rest(model)
+        self.origin = origin_of(model)
+        self.bodies = bodies_at_rest(model, self.origin)
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
         dead = model.dead_loads.copy()
@@ -326,7 +327,7 @@ class Simulation:
         return ContactRecord(
             joint=owner,
             blocks=joints.blocks[owner],
-            points=joints.points.copy(),
+            points=joints.points + self.origin,
             normals=joints.frames[:, : self.model.dimension].copy(),
             normal_force=contacts.normal,
             shear_force=contacts.shear,
@@ -340,5 +341,5 @@ class Simulation:
         bodies = self.bodies
         return Frame(
             stage, self.steps, self.load * self.live_scale, self.largest_displacement(),
-            bodies.positions.copy(), bodies.orientations.copy(), bodies.velocities.copy(), self.contact_record(),
+            bodies.positions + self.origin, bodies.orientations.copy(), bodies.velocities.copy(), self.contact_record(),
         )  # fmt: skip

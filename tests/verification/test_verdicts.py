@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 from casefiles import CASES
-from engine import block, rectangle, simulation, solve, tables
+from engine import block, moved, rectangle, simulation, solve, tables
 
 from dem_cli.kernels import records as slot
 from dem_cli.solve.equilibrium import Budget, settle_or_fail, stand
@@ -295,3 +295,17 @@ def test_a_held_equilibrium_does_not_move(name, load):
     assert sim.kinetic_energy() < 1e-12 * sim.elastic_energy()
     assert sim.unbalanced < 0.1 * verdict.unbalanced
     assert np.abs(sim.save_places() - places).max() < 1e-3 * way
+
+
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+def test_far_from_the_origin(kinematics):
+    """Eight million blocks away: the same load, and places as the case has them."""
+    # Coordinates from [0, 0] leave moving geometry too few digits: from 1e5 blocks on nothing came to rest.
+    away = 2.0**23
+    case = crate(analysis={"kinematics": kinematics, "follow": 0.0}, output={"frames": 3})
+    (near, _), (far, records) = solve(case), solve(moved(case, shift=(away, -away)))
+    assert far["status"] == "ok"
+    assert far["failure_load"] == pytest.approx(near["failure_load"], rel=1e-6)
+    frame = records.frames[0]
+    assert frame.positions[1] == pytest.approx([away + 0.5, -away + 0.5], abs=1e-3)
+    assert frame.contacts.points[:, 1] == pytest.approx(-away, abs=1e-3)

@@ -148,7 +148,7 @@ def test_far_from_the_origin(case_of, wall):
     """Said where the digits end, and not for a long structure that begins at the origin."""
     near, far, long = (
         warnings(assemble(case_of(structure=[wall | {"origin": [x, 0.0]} | more])))
-        for x, more in ((1.0, {}), (-1e5, {}), (0.0, {"blocks_per_course": 40}))
+        for x, more in ((-1e5, {}), (-1e9, {}), (0.0, {"blocks_per_course": 40}))
     )
     assert near == long == []
     assert len(far) == 1
