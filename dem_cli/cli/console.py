@@ -103,6 +103,9 @@ def _new_bar(stream: TextIO) -> Any:
     return Bar(*columns, console=Console(file=stream), transient=True)
 
 
+STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
+
+
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
     lines = [str(summary["title"])]
@@ -149,6 +152,9 @@ def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
     if parts:
         rows.append(("how sure", ", ".join(parts)))
+    start = summary.get("start") or {}
+    if start.get("kind") in STARTS and start.get("load") is not None:
+        rows.append(("started from", f"{STARTS[start['kind']]} at {_load(start['load'])}, {seconds(start['seconds'])}"))
     limits = summary.get("limit_analysis") or {}
     known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
     if known:
@@ -180,6 +186,9 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
     if limits.get("non_associated") is not None:
         how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
         rows.append(("non-associated", f"{_load(limits['non_associated'])}  ({how})"))
+    if limits.get("non_associated_at_least") is not None:
+        how = f"{limits['non_associated_status']}, {seconds(limits['non_associated_seconds'])}"
+        rows.append(("non-associated", f"at least {_load(limits['non_associated_at_least'])}  ({how})"))
     if limits.get("rigid_wall") is not None:
         rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
     if limits["heads"] == "frictionless":

@@ -49,6 +49,8 @@ class LimitLoads(NamedTuple):
         of_path = path.summary()
         load = of_path.pop("load")
         said["non_associated"] = load if path.status == OK else None
+        if path.status != OK and load is not None:
+            said["non_associated_at_least"] = load  # every state of the path is in equilibrium
         return said | {f"non_associated_{key}": value for key, value in of_path.items()} | {
             "non_associated_seconds": self.path_seconds
         }

@@ -37,6 +37,11 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         )
     elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > LARGE:
         job.warnings.append(f"more than {LARGE} blocks raised from gravity: the true failure load may be higher")
+    if search.found and None not in (search.crept, search.high) and search.crept * sim.live_scale > search.high:
+        job.warnings.append(
+            f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
+            "how much this structure carries depends on the way it is loaded"
+        )
     if search.status == "ok":
         found |= describe(sim, search.held)
         failing = sim.save()
@@ -92,8 +97,9 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
 
     case, model = job.case, job.model
     by_path = search.start.get("kind") == PATH  # known already
+    quick = by_path or search.start.get("kind") == LIMIT  # the path would take longer than all the rest
     try:
-        loads = limit_loads(model, joint_properties(case, model), law_of(case), associated_only=by_path)
+        loads = limit_loads(model, joint_properties(case, model), law_of(case), associated_only=quick)
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return {}

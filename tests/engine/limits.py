@@ -53,3 +53,14 @@ def renumbered(model: Model, order: np.ndarray) -> Model:
         vertices=model.vertices[np.concatenate(spans)],
         **{name: getattr(model, name)[order] for name in fields},
     )
+
+
+def mirrored_model(model: Model) -> Model:
+    """The mirror image of blocks of one part each, and its loads mirrored too."""
+    vertices, centroids = model.vertices.copy(), model.centroids * [-1.0, 1.0]
+    for start, end in zip(model.part_starts, model.part_starts[1:]):
+        vertices[start:end] = model.vertices[start:end][::-1] * [-1.0, 1.0]
+    flip = np.array([-1.0, 1.0, -1.0])
+    return model._replace(
+        vertices=vertices, centroids=centroids, dead_loads=model.dead_loads * flip, live_loads=model.live_loads * flip
+    )

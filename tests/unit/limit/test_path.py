@@ -1,0 +1,150 @@
+"""The zero-dilation path: exact loads, the law at its states, folds, and what it says when it cannot finish."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dem_cli.limit.analysis import start_structure
+from dem_cli.limit.cone import friction_of
+from dem_cli.limit.elastic import Elastic
+from dem_cli.limit.interior import Increment, _apart
+from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
+from dem_cli.solve.joints import joint_properties, law_of
+from engine import block, rectangle, scene
+from engine.limits import mirrored_model, on_a_base, rotated, tower
+
+CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
+EXACT = {  # closed forms and published exact loads
+    "sliding_block": (0.4, 1e-6),
+    "tilting_table": (0.25, 1e-6),
+    "trilith": (0.2, 1e-6),
+    "column_14": (8 / 49, 1e-6),  # (w/h)/14 of the data book
+    "wall_21": (0.6, 1e-6),
+    "arch_21": (0.1483, 4e-4),
+    "arch_21_mu040": (0.0522, 1e-3),
+    "portal": (0.3247, 1e-4),
+}
+
+
+def ingredients(case, *overrides):
+    made = scene(case, *overrides)
+    structure = start_structure(made.model, joint_properties(made.case, made.model))
+    return structure, friction_of(structure.joints, law_of(made.case))
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_exact_loads(name):
+    load, tolerance = EXACT[name]
+    path = trace(*ingredients(CASES / f"{name}.toml"))
+    assert path.status == OK
+    assert path.load == pytest.approx(load, rel=tolerance)
+
+
+@pytest.mark.parametrize("mu", [0.5, 0.6, 0.75, 1.0])
+def test_frictional_heads_do_not_wedge(mu):
+    """Thesis Table 5-3, where the associated load is up to 1.0."""
+    path = trace(*ingredients(CASES / "wall_21.toml", f"joints.dry.friction={mu}"))
+    assert path.load == pytest.approx(min(mu, 0.645963), rel=1e-5)
+
+
+def test_its_state_obeys_the_law():
+    """Balanced, inside the cones, no tension, closed where it presses."""
+    structure, friction = ingredients(CASES / "wall_21_mu075.toml")
+    path = trace(structure, friction)
+    reactions = np.column_stack([path.normal, path.shear]).ravel()
+    assert np.abs(structure.imbalance(reactions, path.load)).max() < 1e-5
+    assert (path.normal >= 0.0).all()
+    weight = structure.scales[0]
+    assert (np.abs(path.shear[:, 0]) <= friction * path.normal + 1e-6 * weight).all()
+    pressed = path.normal > 1e-3 * weight
+    assert path.gaps[pressed] == pytest.approx(-path.normal[pressed] / structure.joints.kn[pressed])
+    assert path.residual < 1e-3
+
+
+def test_its_mechanism_slides_without_opening():
+    """The associated mechanism of a sliding block would lift it by μ times the slip."""
+    structure, friction = ingredients(on_a_base(block("b", rectangle(0.0, 0.0, 2.0, 0.5)), friction=0.3))
+    path = trace(structure, friction)
+    motion = path.mechanism[-1]
+    assert motion[0] > 0.0
+    assert abs(motion[1]) < 1e-6 * motion[0]
+    assert float((structure.live * path.mechanism.ravel()[structure.free]).sum()) == pytest.approx(1.0)
+
+
+def test_the_plateau_does_not_depend_on_stiffness():
+    soft = trace(*ingredients(CASES / "wall_21_mu065.toml", "joints.dry.kn=1e9", "joints.dry.ks=2e8"))
+    stiff = trace(*ingredients(CASES / "wall_21_mu065.toml"))
+    assert soft.load == pytest.approx(stiff.load, rel=3e-3)
+
+
+@pytest.mark.parametrize("change", ["mirrored", "rotated", "scaled"])
+def test_it_does_not_depend_on_the_point_of_view(change):
+    made = scene(CASES / "wall_21_mu075.toml")
+    properties, law = joint_properties(made.case, made.model), law_of(made.case)
+    model = made.model
+    if change == "mirrored":
+        model = mirrored_model(model)
+    elif change == "rotated":
+        model = rotated(model, 0.7)
+    else:
+        model = model._replace(dead_loads=1e3 * model.dead_loads, live_loads=1e3 * model.live_loads)
+    loads = []
+    for each in (made.model, model):
+        structure = start_structure(each, properties)
+        loads.append(trace(structure, friction_of(structure.joints, law)).load)
+    assert loads[1] == pytest.approx(loads[0], rel=1e-6)
+
+
+def test_what_does_not_stand():
+    assert trace(*ingredients(CASES / "leaning_column.toml")).status == FALLS
+
+
+def test_too_little_effort_leaves_a_state_in_equilibrium():
+    structure, friction = ingredients(CASES / "wall_3.toml")
+    path = trace(structure, friction, effort=100 * structure.joints.kn.size)
+    assert path.status == UNFINISHED
+    assert 0.1 < path.load < 0.4687
+    assert path.residual < 1e-2
+
+
+def test_folds_of_the_central_path_are_gone_round():
+    """An increment of this wall stops at a fold; by arc length it arrives, at an equilibrium under the law."""
+    structure, friction = ingredients(
+        CASES.parent / "gallery" / "gatehouse.toml", "analysis.follow=0.0"
+    )
+    problem = Elastic(structure, friction)
+    rest = _at_rest(problem)
+    standing = Increment(problem, rest, None).solve(1.0)
+    lu = problem.factorised(problem.kn, problem.ks, np.zeros(problem.n_points))
+    elastic = float(problem.live @ lu.solve(problem.live))
+    target = float(problem.live @ standing.displacements) + 0.25 * elastic
+    ahead = {"tau": 0.1 * float(standing.normal.max()) ** 2}
+    direct = Increment(problem, standing, target).solve(**ahead, folds=0)
+    around = Increment(problem, standing, target).solve(**ahead, folds=6)
+    assert around is not None
+    assert problem.residual(around, standing) < 1e-2
+    if direct is not None:  # where this machine's round-off meets no fold, both arrive at the same place
+        assert direct.load == pytest.approx(around.load, rel=1e-2)
+
+
+def test_light_blocks_on_heavy_ones():
+    """Each of two towers tilts at w/h of itself, the weights of which differ by 1e6."""
+    heavy, light = tower(2), tower(2)
+    for b in heavy:
+        b["material"] = "stone"
+    for i, b in enumerate(light):
+        b |= {"id": f"l{i}", "material": "light", "vertices": [[x + 2.0, y] for x, y in b["vertices"]]}
+    case = on_a_base(*heavy, *light, friction=5.0)
+    case["block"][0]["material"] = "stone"
+    case["materials"] = {**case["materials"], "light": {"density": 2e-3}}
+    path = trace(*ingredients(case))
+    assert path.load == pytest.approx(0.4, rel=1e-3)
+
+
+def test_apart():
+    one, two = _apart(np.array([-3.0, 0.0, 1e8, -1e8]), 0.25)
+    assert one - two == pytest.approx([-3.0, 0.0, 1e8, -1e8])
+    assert one * two == pytest.approx(0.25)

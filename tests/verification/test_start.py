@@ -1,0 +1,95 @@
+"""Starts next to failure: the explicit solver proves them, goes on from them, and believes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dem_cli.solve import pushover, start
+from engine import solve
+
+CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
+QUICK = "analysis.follow=0.0"
+
+
+def run(name: str, *overrides: str) -> dict:
+    return solve(CASES / f"{name}.toml", QUICK, *overrides)[0]
+
+
+@pytest.mark.parametrize("name", ["wall_21", "wall_21_mu075", "wall_2", "column_14", "arch_21_mu040", "portal"])
+def test_path_and_gravity_agree(name):
+    by_path, by_hand = (run(name, f'analysis.start="{kind}"') for kind in ("path", "gravity"))
+    assert by_path["status"] == by_hand["status"] == "ok"
+    assert by_path["start"]["kind"] == "path"
+    assert by_path["failure_load"] == pytest.approx(by_hand["failure_load"], rel=5e-3)
+    assert [p["state"] for p in by_path["search"]][0] == "equilibrium"
+    low, high = by_path["failure_load_bracket"]
+    assert low < by_path["start"]["load"] < high <= low * 1.00201
+    assert abs(by_path["energy_closure"]) < 1e-3
+
+
+def test_small_structures_are_raised_from_gravity_and_larger_ones_follow_the_path():
+    assert run("wall_21")["start"] == {"kind": "gravity", "chosen": "by size"}
+    assert run("wall_2")["start"]["kind"] == "path"
+
+
+@pytest.mark.parametrize("factor", [1.3, 0.7])
+def test_a_wrong_start_is_not_believed(factor, monkeypatch):
+    """Its forces do not balance at the load that it claims: the load is raised from gravity or from what holds."""
+    real = start.find_start
+
+    def wrong(job, sim):
+        found, report = real(job, sim)
+        return found._replace(load=factor * found.load), report
+
+    monkeypatch.setattr(pushover, "find_start", wrong)
+    summary = run("wall_21", 'analysis.start="path"')
+    assert summary["failure_load"] == pytest.approx(0.6, rel=4e-3)
+
+
+def test_forces_out_of_the_air_are_not_believed(monkeypatch):
+    """A start whose forces are nothing like equilibrium."""
+    real = start.find_start
+
+    def wrong(job, sim):
+        found, report = real(job, sim)
+        return found._replace(normal=np.zeros_like(found.normal), shear=np.zeros_like(found.shear)), report
+
+    monkeypatch.setattr(pushover, "find_start", wrong)
+    assert run("wall_21", 'analysis.start="path"')["failure_load"] == pytest.approx(0.6, rel=4e-3)
+
+
+def test_a_start_from_limit_analysis_says_so():
+    """WALL3: held a little below the load without head friction, failing above the associated one."""
+    summary = run("wall_3", 'analysis.start="limit"', "analysis.resolution=0.03")
+    assert summary["start"]["kind"] == "limit"
+    low, high = summary["failure_load_bracket"]
+    assert low == pytest.approx(0.46648, rel=8e-3)
+    assert high >= summary["start"]["associated"] * (1.0 - 1e-9) or high / low < 1.0301
+    assert any("limit analysis without friction in head joints" in text for text in summary["warnings"])
+
+
+def test_beyond_the_associated_load_nothing_has_to_be_waited_for():
+    summary = run("wall_2", 'analysis.start="limit"', "analysis.resolution=0.05")
+    last = summary["search"][-1]
+    assert (last["kind"], last["state"]) == ("impossible", "failure")
+    assert summary["proof_of_failure"]["released_share_of_work"] > 0.0
+
+
+def test_geometry_that_moves_is_raised_from_gravity():
+    assert run("wall_21", 'analysis.start="path"', 'analysis.kinematics="large"')["start"]["kind"] == "gravity"
+
+
+def test_limit_analysis_beside_the_failure_load():
+    summary = run("wall_21_mu100", "analysis.limit=true")
+    limits = summary["limit_analysis"]
+    assert limits["associated"] == pytest.approx(1.0, rel=1e-5)
+    assert limits["non_associated"] == pytest.approx(0.645963, rel=1e-5)
+    assert summary["failure_load"] == pytest.approx(limits["non_associated"], rel=5e-3)
+
+
+def test_a_failure_load_above_the_bound_is_not_trusted(monkeypatch):
+    monkeypatch.setattr(pushover, "ABOVE", -0.1)
+    assert any("do not trust this run" in text for text in run("wall_21", "analysis.limit=true")["warnings"])
