@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from engine import solve
 
 from dem_cli.solve import pushover, start
-from engine import solve
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 QUICK = "analysis.follow=0.0"
@@ -24,7 +24,7 @@ def test_path_and_gravity_agree(name):
     assert by_path["status"] == by_hand["status"] == "ok"
     assert by_path["start"]["kind"] == "path"
     assert by_path["failure_load"] == pytest.approx(by_hand["failure_load"], rel=5e-3)
-    assert [p["state"] for p in by_path["search"]][0] == "equilibrium"
+    assert by_path["search"][0]["state"] == "equilibrium"
     low, high = by_path["failure_load_bracket"]
     assert low < by_path["start"]["load"] < high <= low * 1.00201
     assert abs(by_path["energy_closure"]) < 1e-3

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from engine import block, rectangle, scene
+from engine.limits import mirrored_model, on_a_base, rotated, tower
 
 from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.cone import friction_of
@@ -13,8 +15,6 @@ from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment, _apart
 from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
 from dem_cli.solve.joints import joint_properties, law_of
-from engine import block, rectangle, scene
-from engine.limits import mirrored_model, on_a_base, rotated, tower
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 EXACT = {  # closed forms and published exact loads
