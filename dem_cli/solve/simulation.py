@@ -31,6 +31,7 @@ from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.motion import depth, widths
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
+SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
 LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 ALPHA = 0.4  # local damping near failure
 
@@ -83,7 +84,9 @@ class Simulation:
         live[model.fixed] = 0.0
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
-        force_scales[:, d:] /= self.shape.radii[:, None]
+        self.widths = widths(model)
+        arms = np.clip(self.widths, SLIVER * self.shape.radii, self.shape.radii)  # small moments turn a needle over
+        force_scales[:, d:] /= arms[:, None]
         self.loads = Loads(
             dead=np.ascontiguousarray(dead),
             live=np.ascontiguousarray(live),
@@ -101,7 +104,6 @@ class Simulation:
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
-        self.widths = widths(model)
 
     # -- detection ---------------------------------------------------------------------------------
 

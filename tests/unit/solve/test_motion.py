@@ -9,6 +9,7 @@ from engine import block, rectangle, running_wall, simulation, tables
 from dem_cli.contact.detect import world_corners
 from dem_cli.kernels import records as slot
 from dem_cli.solve.equilibrium import Budget, relax, settle_or_fail, stand
+from dem_cli.solve.failure import compliance
 from dem_cli.solve.motion import Motion, depth, displaced, falls, widths
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
@@ -94,3 +95,14 @@ def test_relax_says_when_blocks_moved_away():
     above = block("b", rectangle(0, 0.5, 1, 1.5))
     sim = simulation(tables(GROUND, above, joints={"dry": {"friction": 1.0, "kn": 1e7}}), "large")
     assert relax(sim, 0.0, 1e-5, 400_000).state == "failure"
+
+
+def test_a_needle_is_held_by_its_width():
+    """1.5 % above the load that turns it over, moments over its length seem to balance."""
+    sim = simulation(tables(GROUND, block("needle", rectangle(0, 0, 1e-3, 1)), friction=1.0))
+    assert stand(sim, Budget(10**5)).state == "equilibrium"
+    exact, (_, elastic) = 1e-3, compliance(sim)
+    held = sim.save()
+    assert settle_or_fail(sim, 0.995 * exact, Budget(10**6), elastic * exact).state == "equilibrium"
+    sim.restore(held)
+    assert settle_or_fail(sim, 1.015 * exact, Budget(10**6), elastic * exact).state == "failure"
