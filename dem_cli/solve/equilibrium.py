@@ -102,18 +102,19 @@ def settle_or_fail(
     scale: float,
     tolerance: float = TOLERANCE,
     since: np.ndarray | None = None,
+    plateau: bool = False,
 ) -> Verdict:
     """Constant load with combined damping until equilibrium or failure is proven.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (solve/motion.py). since:
     places of the structure that must not have moved grossly when it comes to rest (Simulation.save_places);
-    default: where it is now.
+    default: where it is now. plateau: see Motion.
     """
     since = sim.save_places() if since is None else since
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     _limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
-    motion = Motion(sim, scale)
+    motion = Motion(sim, scale, plateau)
     _ramp(sim, load, scale, budget, doing)
     done, calm = 0, 0
     for look in count(2):

@@ -130,7 +130,8 @@ def find_failure(
             if above - low <= max(resolution, COARSE) * low:
                 _fail_above(sim, search, above, budget, track)
                 return
-        _raise_load(sim, search, low, [], ONE_STEP * resolution * low, resolution, limit, budget, track)
+        step = ONE_STEP * resolution * low
+        _raise_load(sim, search, low, [], step, resolution, limit, budget, track, start.plateau)
         return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)
@@ -224,6 +225,7 @@ def _raise_load(
     limit: float,
     budget: Budget,
     track: Track,
+    plateau: bool = False,
 ) -> None:
     """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
     high, failed = None, None
@@ -238,7 +240,7 @@ def _raise_load(
         track.observer.progress("raising the load", load * sim.live_scale, search.peak_displacement, None)
         sim.restore(search.held)
         before = sim.steps
-        verdict = settle_or_fail(sim, load, budget, search.elastic * max(abs(load), PROBE))
+        verdict = settle_or_fail(sim, load, budget, search.elastic * max(abs(load), PROBE), plateau=plateau)
         search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
         if verdict.state == "equilibrium":
             low = load

@@ -38,12 +38,13 @@ class Failing(NamedTuple):
 class Motion:
     """How the blocks move from the moment at which a load became constant.
 
-    scale: displacement that is elastic [m].
+    scale    displacement that is elastic [m]
+    plateau  the load is known to grow no more with displacement: high structures need not go further than low ones
     """
 
-    def __init__(self, sim: Simulation, scale: float) -> None:
+    def __init__(self, sim: Simulation, scale: float, plateau: bool = False) -> None:
         self.sim, self.start, self.begun = sim, sim.save_places(), sim.steps
-        self.far = max(FAR, FAR_PER_DEPTH * sim.depth**2) * scale
+        self.far = (FAR if plateau else max(FAR, FAR_PER_DEPTH * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]

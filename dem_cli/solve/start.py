@@ -36,6 +36,7 @@ class Start(NamedTuple):
     gaps: np.ndarray  # [m], (n_points,)
     displacements: np.ndarray  # since before gravity, (n_blocks, n_dof)
     work: float  # of the live loads on the way [J]
+    plateau: bool = False  # the load grows no more with displacement
     impossible: float | None = None  # multiplier above which limit analysis proved that there is no equilibrium
 
 
@@ -106,7 +107,8 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
     if path.status != OK:
         report["note"] = "the path ended before the load stopped growing; the load is raised from there"
     work = _work(path.loads, path.live_displacements)
-    return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work)
+    return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work,
+                 path.status == OK)  # fmt: skip
 
 
 def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: dict[str, Any]) -> Start | None:
@@ -123,7 +125,7 @@ def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: 
         return None
     still = np.zeros((structure.model.n_blocks, structure.n_dof))
     return Start(
-        LIMIT, safe.multiplier, safe.normal, safe.shear, np.zeros(len(safe.normal)), still, 0.0, most.upper
+        LIMIT, safe.multiplier, safe.normal, safe.shear, np.zeros(len(safe.normal)), still, 0.0, False, most.upper
     )  # fmt: skip
 
 
