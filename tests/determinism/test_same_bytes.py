@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 import subprocess
 import sys
 
@@ -45,6 +47,28 @@ def test_two_runs_have_the_same_results(twice):
     assert len(one) > 10
     assert one.keys() == two.keys()
     assert [name for name in one if one[name] != two[name]] == []
+
+
+def test_threads_of_the_libraries_change_nothing(tmp_path):
+    """A run that starts from the static path (sparse LU, BLAS) and does limit analysis (Clarabel)."""
+    found = []
+    for threads in ("1", "2"):
+        folder = tmp_path / threads
+        command = [sys.executable, "-m", "dem_cli", "run", CASES / "verification" / "wall_2.toml", "-q", "-o", folder]
+        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS")
+        options = ["--set", "analysis.follow=0.0", "--set", "analysis.limit=true"]
+        subprocess.run([*command, *options], check=True, env=os.environ | dict.fromkeys(names, threads))
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        assert summary["start"]["kind"] == "path"
+        found.append((datasets(folder), without_times(summary)))
+    assert found[0] == found[1]
+
+
+def without_times(value):
+    """A summary without what depends on the clock."""
+    if isinstance(value, dict):
+        return {key: without_times(item) for key, item in value.items() if "seconds" not in key}
+    return [without_times(item) for item in value] if isinstance(value, list) else value
 
 
 def test_two_runs_have_the_same_effective_case(twice):
