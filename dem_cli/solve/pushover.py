@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = "interrupted"
 ABOVE = 0.005  # of the associated load, that a failure load may lie above it
+LOWERED = 0.005  # of the load on stiff joints, that soft ones may change it by without a word
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
@@ -68,6 +69,7 @@ def _search(job: Job) -> tuple[Search, Simulation]:
     """Gravity and the failure search; again with moving geometry where given joints are too soft to freeze it."""
     analysis = job.case.analysis
     search, sim = Search(), job.first_simulation()
+    rigid: float | None = None  # failure load of the same blocks on stiff joints
     while True:
         track = job.track(sim)
         try:
@@ -83,11 +85,18 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         moved = search.peak_displacement / sim.smallest
         soft = moved > SOFT * analysis.resolution and any(j.kn != "auto" for j in job.case.joints.values())
         if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
+            if rigid and search.found and abs(search.low - rigid) > LOWERED * rigid:
+                change = f"by {100 * abs(search.low / rigid - 1):.2g} %"
+                job.warnings.append(
+                    f"the given kn {'lowers' if search.low < rigid else 'raises'} the failure load {change}: "
+                    f"on stiff joints it is {rigid:.5g}"
+                )
             if search.status != "ok" or analysis.follow == 0.0:
                 track.flush()  # else the rows of the collapse tell the whole way
             return search, sim
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
         job.warnings.clear()
+        rigid = search.low if search.found else None
         search, sim = Search(), job.simulation("large")
 
 

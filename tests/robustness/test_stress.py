@@ -23,17 +23,7 @@ stress, records, scenes, changes, proportions, steady, table = (
 )  # fmt: skip
 Answer, judge = records.Answer, records.judge
 
-# What the short form still finds; a mended one fails here and leaves the list.
-WRONG = {
-    "mass": "a light block knocked off a heavy one flies for 10,000 steps: a false failure",
-    "size": "blocks of less than a millionth of the mean weight are held too loosely",
-}
-
-
-@pytest.mark.parametrize(
-    "axis",
-    [pytest.param(a, marks=pytest.mark.xfail(reason=WRONG[a], strict=True)) if a in WRONG else a for a in stress.AXES],
-)
+@pytest.mark.parametrize("axis", stress.AXES)
 def test_short_form(axis):
     """Nothing wrong without a word, and most of it held."""
     found = list(stress.AXES[axis](True))
