@@ -44,13 +44,13 @@ class Box2DWorld:
             body = make_body(position=tuple(map(float, scale * model.centroids[i])))
             body.sleepingAllowed = False
             bodies.append(body)
-        for p, i in enumerate(model.part_blocks):
+        for p, i in enumerate(model.part_blocks.tolist()):
             corners = scale * model.vertices[model.part_starts[p] : model.part_starts[p + 1]]
             shape = box2d.b2PolygonShape(vertices=[tuple(map(float, c)) for c in inset(corners, radius)])
             shape.radius = radius
             bodies[i].CreateFixture(shape=shape, density=1.0, friction=friction, restitution=0.0)
         self.free = []
-        for i in np.flatnonzero(~model.fixed):
+        for i in np.flatnonzero(~model.fixed).tolist():
             mass, inertia = model.masses[i] / unit, scale**2 * model.inertias[i, 0] / unit
             bodies[i].massData = box2d.b2MassData(mass=float(mass), center=(0, 0), I=float(inertia))
             self.free.append(bodies[i])

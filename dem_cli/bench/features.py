@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -87,9 +88,9 @@ def _kernels(options: Options, found: Found) -> None:
         if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
             for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
                 sim = simulation(known, kinematics)
-                start, steps = sim.save(), max(POINT_STEPS // len(sim.joints.kn), 10)
+                restore, steps = partial(sim.restore, sim.save()), max(POINT_STEPS // len(sim.joints.kn), 10)
                 for name, loop in loops(sim).items():
-                    job = Job(_stepping(sim, loop, steps), lambda sim=sim, start=start: sim.restore(start))
+                    job = Job(_stepping(sim, loop, steps), restore)
                     rows.append((known, kinematics, name, job, steps * len(sim.joints.kn)))
     for *_, job, _ in rows:
         job.once()  # compiles

@@ -32,7 +32,7 @@ def measure(options: Options) -> Found:
     in_turn([job for _, job in rows], options.rounds(3))
     for known, job in rows:
         blocks = blocks_of(known)
-        extra = {"blocks": blocks, "resolution": resolution(blocks), "upper": known.upper}
+        extra: dict[str, Any] = {"blocks": blocks, "resolution": resolution(blocks), "upper": known.upper}
         found.records.append(record(known.name, "size", blocks, job.seconds, **job.result, **extra))
     return found
 

@@ -57,12 +57,12 @@ def machines(groups: dict[str, dict[str, Any]]) -> list[str]:
 def references() -> list[str]:
     """The loads that errors are measured against."""
     from dem_cli.bench.cases import KNOWN, SIZES
-    from dem_cli.bench.table import lines_of
+    from dem_cli.bench.table import lines_of, percent
 
     rows, seen = [], set()
     for known in (*KNOWN.values(), *SIZES):
         if (known.file, known.overrides) not in seen and known.name != "wall 21":  # which is T21 μ 0.6
-            upper = "" if known.upper is None else f"{known.upper:.6g}"
+            upper = "" if known.upper is None else f"{known.upper:.6g} ({percent(known.error(known.upper))})"
             rows.append((known.name, f"{known.load:.6g}", upper, known.source))
         seen.add((known.file, known.overrides))
     head = ("structure", "load", "associated", "source")

@@ -58,7 +58,7 @@ def points_per_joint(layout: str) -> Iterator[None]:
         """A simulation whose first joints have other points."""
 
         def _detect_first(self: Simulation) -> None:
-            super()._detect_first()
+            super()._detect_first()  # type: ignore[misc]
             if layout != "2" and self.kinematics == "fixed":
                 self.joints, self.contacts = refined(self.joints, self.contacts, places)
                 self._after_detection()

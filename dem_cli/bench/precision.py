@@ -152,7 +152,8 @@ def page(records: list[Record]) -> list[str]:
 
 def _table(axis: Axis, records: list[Record]) -> list[str]:
     cells = {(r.value, r.case): _cell(r) for r in records}
-    cases = list(dict.fromkeys(r.case for r in records))
+    measured = {r.case for r in records}
+    cases = [name for name in CASES if name in measured]
     rows = []
     for value in dict.fromkeys(r.value for r in records):
         label = value if isinstance(value, str) else f"{value:g}"

@@ -41,12 +41,12 @@ class PymunkWorld:
                 body = pymunk.Body(body_type=pymunk.Body.STATIC)
             else:
                 body = pymunk.Body(model.masses[i] / unit, scale**2 * model.inertias[i, 0] / unit)
-            body.position = tuple(map(float, scale * model.centroids[i]))
+            body.position = pair(scale * model.centroids[i])
             space.add(body)
             bodies.append(body)
-        for p, i in enumerate(model.part_blocks):
+        for p, i in enumerate(model.part_blocks.tolist()):
             corners = scale * model.vertices[model.part_starts[p] : model.part_starts[p + 1]]
-            shape: Any = pymunk.Poly(bodies[i], [tuple(map(float, corner)) for corner in corners])
+            shape: Any = pymunk.Poly(bodies[i], [pair(corner) for corner in corners])
             shape.friction, shape.elasticity = math.sqrt(friction), 0.0
             space.add(shape)
         self.free = [body for body, fixed in zip(bodies, model.fixed, strict=True) if not fixed]
@@ -60,6 +60,11 @@ class PymunkWorld:
 
     def places(self) -> np.ndarray:
         return np.array([body.position for body in self.free])
+
+
+def pair(place: np.ndarray) -> tuple[float, float]:
+    """A point as pymunk takes it."""
+    return float(place[0]), float(place[1])
 
 
 make = PymunkWorld
