@@ -50,10 +50,9 @@ class Disk(Nobody):
 
     def __init__(self, case: Any, model: Any, folder: Path):
         from dem_cli.case.writer import case_text
-        from dem_cli.cli.run import monitor_names
         from dem_cli.output.store import ResultWriter
 
-        names = monitor_names(case.monitor)
+        names = [f"monitor {i + 1}" for i in range(len(case.monitor))]
         self.writer = ResultWriter(folder, model, case_text(case), {}, names, case.analysis.kind)
         self.frame, self.row = self.writer.frame, self.writer.row  # type: ignore[method-assign]
 
