@@ -12,7 +12,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ANYTHING = None
 ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
-    "bench": ANYTHING,
+    "bench": {"api", "case", "contact", "kernels", "laws", "limit", "model", "output", "post", "solve"},
     "api": {"case", "model", "structures", "laws", "solve", "output.record"},
     "case": {"case"},
     "post": {"output", "model"},
