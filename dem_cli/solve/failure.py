@@ -45,6 +45,7 @@ SOFTENED = 0.95  # of the highest load: a creep past its peak
 PROBE = 0.02  # internal multiplier of the first load
 LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
+JUMP = 5.0  # resolutions; a failure after a larger step is tried again from close by
 GROWTH = 1.5  # of the step from load to load after these
 BELOW = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
 ONE_STEP = 0.99  # of the resolution: the next load, so that one failure closes the bracket
@@ -122,6 +123,8 @@ def find_failure(
     search.limit = limit * sim.live_scale
     search.compliance, search.elastic = compliance(sim)
     if search.compliance <= 0.0:
+        if sim.loads.live[sim.free].any():
+            raise SolverError("a small live load moves the structure against its direction: it hardly stands as it is")
         raise SolverError("the live load moves nothing: no free block has a live load")
     if start is not None and _holds(sim, search, start, resolution, limit, budget, track):
         low = search.low / sim.live_scale
@@ -136,7 +139,7 @@ def find_failure(
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)
     sim.restore(search.held)
-    estimate = min(max(estimate, PROBE), limit)
+    estimate = min(estimate if estimate > 0.0 else PROBE, limit)
     levels = [share * estimate for share in SHARES]
     _raise_load(sim, search, 0.0, levels, 0.5 * resolution * estimate, resolution, limit, budget, track)
 
@@ -151,7 +154,7 @@ def _holds(
     track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
     place(sim, start)
     before = sim.steps
-    verdict = settle_or_fail(sim, load, budget, search.elastic * max(load, PROBE))
+    verdict = settle_or_fail(sim, load, budget, search.elastic * load)
     search.passes.append(Pass("start", sim.steps - before, load * sim.live_scale, verdict.state))
     if verdict.state != "equilibrium":
         sim.restore(search.held)
@@ -228,35 +231,52 @@ def _raise_load(
     plateau: bool = False,
 ) -> None:
     """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
-    high, failed = None, None
-    while high is None or high - low > resolution * max(abs(low), 1e-3):
-        if high is not None:
+    high, failed, jumped = None, None, False
+    first_step = step
+    while high is None or jumped or high - low > resolution * max(abs(low), 1e-3):
+        if high is not None and high - low <= resolution * max(abs(low), 1e-3):
+            load = high  # failed after a jump, which may break what a gentler step does not: once more from close by
+        elif high is not None:
             load = 0.5 * (low + high)
         elif levels:
             load = levels.pop(0)
         else:
             load, step = low + step, GROWTH * step
         load = min(load, limit)
-        track.observer.progress("raising the load", load * sim.live_scale, search.peak_displacement, None)
-        sim.restore(search.held)
-        before = sim.steps
-        verdict = settle_or_fail(sim, load, budget, search.elastic * max(abs(load), PROBE), plateau=plateau)
-        search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
+        verdict = _settle(sim, search, load, budget, track, plateau)
         if verdict.state == "equilibrium":
-            low = load
+            if high is not None and load >= high:
+                high, step = None, first_step
+            low, jumped = load, False if high is None else jumped
             _keep(sim, search, low, track)
             if low >= limit:
                 search.status = "no failure"
                 return
         else:
+            jumped = load - low > JUMP * resolution * load
             high, failed = load, (verdict, sim.save())
             search.high, search.failing = high * sim.live_scale, verdict
     if search.crept is not None and low < search.crept < high:
-        sim.restore(search.crept_state)  # the creep ended in an equilibrium that is closer to failure still
-        _keep(sim, search, search.crept, track)
+        search.held, held = search.crept_state, search.held  # closer to failure still, if it holds as well
+        if _settle(sim, search, search.crept, budget, track, plateau).state == "equilibrium":
+            _keep(sim, search, search.crept, track)
+        else:
+            search.held = held
     search.status, search.found = "ok", True
     sim.restore(failed[1])
     track.keep("collapse")
+
+
+def _settle(
+    sim: Simulation, search: Search, load: float, budget: Budget, track: Track, plateau: bool = False
+) -> Verdict:
+    """The verdict on a load, from the highest equilibrium so far."""
+    track.observer.progress("raising the load", load * sim.live_scale, search.peak_displacement, None)
+    sim.restore(search.held)
+    before = sim.steps
+    verdict = settle_or_fail(sim, load, budget, search.elastic * abs(load), plateau=plateau)
+    search.passes.append(Pass("load", sim.steps - before, load * sim.live_scale, verdict.state))
+    return verdict
 
 
 def _keep(sim: Simulation, search: Search, load: float, track: Track) -> None:
