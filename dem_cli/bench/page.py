@@ -63,14 +63,16 @@ def references() -> list[str]:
     for known in (*KNOWN.values(), *SIZES):
         if (known.file, known.overrides) not in seen and known.name != "wall 21":  # which is T21 μ 0.6
             upper = "" if known.upper is None else f"{known.upper:.6g} ({percent(known.error(known.upper))})"
-            rows.append((known.name, f"{known.load:.6g}", upper, known.source))
+            path = "" if known.path is None else f"{known.path:.6g}"
+            rows.append((known.name, f"{known.load:.6g}", path, upper, known.source))
         seen.add((known.file, known.overrides))
-    head = ("structure", "load", "associated", "source")
+    head = ("structure", "load", "zero-dilation", "associated", "source of the load")
     text = (
         "T21 is the wall of 21 blocks of Table 5-3 of the thesis, T231 its wall of 231 blocks; the walls by size have"
-        " the same blocks and μ 0.6. Where head joints carry friction the load is not unique: the associated load is an"
-        " upper bound, the load without friction in the head joints is what a wall loaded from gravity comes close to"
-        " (docs/numerics.md), and a positive error that stays below the associated load is an admissible answer."
+        " the same blocks and μ 0.6. Where head joints carry friction the load is not unique: loading from gravity"
+        " ends between the load without that friction and that of the zero-dilation path of `dem limit`"
+        " (docs/numerics.md), and between the two there is no error. The associated load is an upper bound; in brackets"
+        " its distance from what is admissible."
     )
     return [text, "", *lines_of(head, rows)]
 

@@ -11,6 +11,8 @@ from oracle.limit_lp import frictionless_heads, limit_load
 
 from dem_cli.bench.cases import FOLDER, KNOWN, SIZES, answer
 from dem_cli.bench.kernels import blocks_of
+from dem_cli.limit.analysis import limit_loads
+from dem_cli.solve.joints import joint_properties, law_of
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 COMPUTED = [*KNOWN.values(), *(known for known in SIZES if blocks_of(known) <= 231)]
@@ -35,6 +37,16 @@ def test_loads_are_those_of_the_oracle(known):
 def test_associated_loads(known):
     assert known.upper == pytest.approx(oracle(known, heads=True), abs=1e-6)
     assert known.upper > known.load
+
+
+@pytest.mark.parametrize("known", [k for k in COMPUTED if k.path], ids=lambda known: known.name)
+def test_zero_dilation_loads(known):
+    case, model = known.build()
+    path = limit_loads(model, joint_properties(case, model), law_of(case)).non_associated
+    assert path.load == pytest.approx(known.path, rel=1e-4)
+    assert known.error(0.5 * (known.load + known.path)) == 0.0
+    assert known.error(1.01 * known.path) == pytest.approx(0.01)
+    assert known.error(0.99 * known.load) == pytest.approx(-0.01)
 
 
 @pytest.mark.parametrize(("mine", "theirs"), [("wall", "wall_21"), ("column", "column_14"), ("arch", "arch_21")])
