@@ -66,7 +66,30 @@ class Elastic:
         self.live = live * self.live_scale
         self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
         self.factorisations = 0
+        self.order = np.arange(len(self.columns))
+        self.permutation = "MMD_AT_PLUS_A"
         self._pattern(relative_motion(joints, d), structure, n_dof)
+        self._reorder(relative_motion(joints, d), structure, n_dof)
+
+    def _reorder(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
+        """Degrees of freedom in an order that keeps the factors sparse, found once for all factorisations."""
+        if not len(self.columns) or not self.n_points:
+            return
+        lu = self.factorised(self.kn, self.ks, np.zeros(self.n_points))
+        self.order = order = np.argsort(lu.perm_c)
+        self.bn, self.bt = self.bn[:, order].tocsr(), self.bt[:, order].tocsr()
+        self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
+        self.columns, self.dead, self.live, self.own = (
+            values[order] for values in (self.columns, self.dead, self.live, self.own)
+        )
+        self._pattern(rows, structure, n_dof)
+        self.permutation = "NATURAL"
+
+    def displacements(self, scaled: np.ndarray) -> np.ndarray:
+        """Displacements of the free degrees of freedom as the structure numbers them [m, rad], (n_free,)."""
+        values = np.empty_like(scaled)
+        values[self.order] = scaled * self.columns * self.unit
+        return values
 
     @property
     def n_points(self) -> int:
@@ -79,6 +102,9 @@ class Elastic:
         owner = np.repeat(np.arange(len(structure.joints.blocks)), np.diff(structure.joints.starts))
         first = column[structure.joints.blocks[owner]]
         dofs = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof)).reshape(len(owner), -1)
+        place = np.empty_like(self.order)
+        place[self.order] = np.arange(len(place))
+        dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)])
         scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
         normal, tangent = (rows[:, k].reshape(len(owner), -1) * scale for k in (0, 1))
         i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
@@ -101,7 +127,7 @@ class Elastic:
         data[self.diagonal] += SINGULAR * np.abs(data[self.diagonal]).mean()
         n = len(self.columns)
         matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
-        return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
+        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
         """Unbalanced forces, (n_free,)."""

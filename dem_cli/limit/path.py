@@ -23,7 +23,8 @@ FALLS = "does not stand under its dead loads"
 UNFINISHED = "not converged: the load still grows with displacement"
 # Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
 # increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
-WAYS = ((0.5, 4.0), (0.25, 2.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
+WAYS = ((0.25, 2.0), (0.35, 2.0), (0.5, 4.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
+NEAR, SLOWER = 0.01, 1.4  # growth of the load in one increment, below which displacements grow by no more than that
 # Where an increment fails: shares of its growth, and how many folds of the central path to go round.
 ATTEMPTS = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
 EFFORT = 2e7  # factorisations × points before giving up: about half a minute
@@ -36,7 +37,7 @@ ACCEPTED = 1e-2  # unbalanced force under the exact law, in own weights, of a st
 
 @dataclass
 class Path:
-    """The way to collapse, and its last state."""
+    """The way to collapse, and its state at the highest load."""
 
     status: str  # OK, FALLS, UNFINISHED
     load: float | None = None  # multiplier of the live loads, as users know it
@@ -45,10 +46,11 @@ class Path:
     shear: np.ndarray | None = None  # on b along the tangent [N], (n_points, 1)
     gaps: np.ndarray | None = None  # opening of the points [m], (n_points,)
     displacements: np.ndarray | None = None  # since before gravity, (n_blocks, n_dof)
-    mechanism: np.ndarray | None = None  # motion of the last increment; its live power is one, (n_blocks, n_dof)
+    mechanism: np.ndarray | None = None  # motion of its increment; its live power is one, (n_blocks, n_dof)
     loads: list[float] = field(default_factory=list)  # multiplier after each increment
     reached: list[float] = field(default_factory=list)  # displacement, in elastic ones at the multiplier of one
     live_displacements: list[float] = field(default_factory=list)  # live loads × displacements since before gravity [J]
+    highest: int = 0  # increment at which the load was highest: the state is that
     factorisations: int = 0
 
     def summary(self) -> dict[str, Any]:
@@ -57,7 +59,7 @@ class Path:
             "load": self.load,
             "status": self.status,
             "residual": self.residual if np.isfinite(self.residual) else None,
-            "displacement": self.reached[-1] if self.reached else None,
+            "displacement": self.reached[self.highest] if self.reached else None,
             "factorisations": self.factorisations,
         }
 
@@ -87,7 +89,8 @@ def trace(
         standing = _advance(problem, at_rest, None, spent, easier=easier)
         if standing is not None:
             break
-    else:
+    path.factorisations = problem.factorisations
+    if standing is None:
         return path
     _keep(path, structure, problem, standing, at_rest, 0.0)
     path.status = UNFINISHED
@@ -119,24 +122,26 @@ def _follow(
     """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
     origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
     reached = last = 0.0
-    calm = 0
+    pace, calm = growth, 0
     while calm < 2 and reached < FURTHEST:
         for share, folds in ATTEMPTS:
-            further = reached * growth * share if reached else first * share
+            further = reached * pace * share if reached else first * share
             ahead = (further - reached) / last if last else 0.0
             found = None
             if further > reached:
                 found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
-            if stop() or (found is not None and problem.residual(found, state) < ACCEPTED):
+            if found is not None and problem.residual(found, state) >= ACCEPTED:
+                found = None
+            if found is not None or stop():
                 break
-            found = None
         if found is None:
             return
         grown = abs(found.load - state.load) / max(abs(found.load), 1e-12)
         calm += 0 if not reached else 2 if grown < CALM * plateau else 1 if grown < plateau else -calm
+        pace = SLOWER if grown < NEAR else growth
         _keep(path, structure, problem, found, state, further)
         state, reached, last = found, further, further - reached
-        progress(path.load, reached)
+        progress(path.loads[-1], reached)
     if calm >= 2:
         path.status = OK
 
@@ -171,18 +176,21 @@ def _compliance(problem: Elastic, state: State) -> float:
 def _keep(
     path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float
 ) -> None:
-    """The state into the path, in SI units."""
-    path.load = state.load * problem.live_scale
+    """One more increment; its state in SI units, where the load is the highest so far."""
+    moved = problem.displacements(state.displacements)
+    load = state.load * problem.live_scale
+    path.loads.append(load)
+    path.reached.append(reached)
+    path.live_displacements.append(float(structure.live @ moved))
+    if path.load is not None and load < path.load:
+        return  # softer than before: the structure fails where the load was highest
+    path.load, path.highest = load, len(path.loads) - 1
     path.residual = problem.residual(state, before)
     path.normal, path.shear = state.normal * problem.weight, state.shear[:, None] * problem.weight
     gaps = problem.bn @ state.displacements
     closed = state.normal > problem.kn * (gaps + state.normal / problem.kn)
     path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit
-    columns = problem.columns * problem.unit
-    path.displacements = structure.on_blocks(state.displacements * columns)
-    motion = (state.displacements - before.displacements) * columns
+    path.displacements = structure.on_blocks(moved)
+    motion = moved - problem.displacements(before.displacements)
     power = float(structure.live @ motion)
     path.mechanism = structure.on_blocks(motion / power) if power > 0.0 else structure.on_blocks(0.0 * motion)
-    path.loads.append(path.load)
-    path.reached.append(reached)
-    path.live_displacements.append(float(structure.live @ (state.displacements * columns)))

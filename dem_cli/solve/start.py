@@ -106,7 +106,8 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
         return None
     if path.status != OK:
         report["note"] = "the path ended before the load stopped growing; the load is raised from there"
-    work = _work(path.loads, path.live_displacements)
+    upto = path.highest + 1
+    work = _work(path.loads[:upto], path.live_displacements[:upto])
     return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work,
                  path.status == OK)  # fmt: skip
 
