@@ -10,7 +10,7 @@ from dem_cli.api import load_case
 from dem_cli.model.assemble import assembly
 
 REFERENCED = [path for path in FILES if "reference" in read(path)]
-NO_REFERENCE = {"wedged_block", "overhang_falls", "leaning_column", "settlement_portal"}
+NO_REFERENCE = {"wedged_block", "overhang_falls", "leaning_column", "settlement_portal", "uneven_courses_mu050"}
 WALLS = ("wall_",)  # between the loads without and with friction in the head joints
 
 each_file = pytest.mark.parametrize("path", FILES, ids=case_id)
@@ -51,7 +51,10 @@ def test_reference_is_what_the_oracle_says(path):
     associated = scene(path).limit()
     assert associated.residual < 1e-8
     assert associated.gap < 1e-8
-    if path.stem.startswith(WALLS):
+    if reference["source"].startswith(("zero-dilation path", "closed form b/H of one pile")):  # test_against_limit.py
+        assert reference["failure_load"] <= associated.multiplier
+        assert reference["tolerance"] <= 0.011 * reference["failure_load"]
+    elif path.stem.startswith(WALLS):
         lower = scene(path).limit(heads=False).multiplier
         half_a_digit = 6e-4  # references printed with three digits
         assert (
