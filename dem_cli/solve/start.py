@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
 SMALL = 100  # blocks, up to which raising the load from gravity is as fast
+FLAT = 0.5  # of the resolution: growth of the load along the path that counts as none
 LARGE = 1000  # blocks, beyond which the path takes too many factorisations
 
 
@@ -97,7 +98,7 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
     from dem_cli.limit.path import OK, trace
 
     path = trace(
-        structure, friction,
+        structure, friction, FLAT * job.case.analysis.resolution,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
     )  # fmt: skip
     report |= path.summary()
