@@ -19,7 +19,7 @@ from dem_cli.limit.interior import Increment
 from dem_cli.limit.matrices import Structure
 
 OK = "ok"
-FALLS = "does not stand under its dead loads"
+FALLS = "not converged: no state under dead loads was found"  # no proof that there is none
 UNFINISHED = "not converged: the load still grows with displacement"
 # Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
 # increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
 SMALL = 100  # blocks, up to which raising the load from gravity is as fast
 FLAT = 0.5  # of the resolution: growth of the load along the path that counts as none
+DROP = 0.98  # of the highest load, that a path may end at: below it nothing says that the highest was a failure
+AT_THE_END = 4  # last increments, among which the highest load is a plateau and not a peak
 LARGE = 1000  # blocks, beyond which the path takes too many factorisations
 
 
@@ -107,10 +109,13 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
         return None
     if path.status != OK:
         report["note"] = "the path ended before the load stopped growing; the load is raised from there"
+    if path.loads[-1] < DROP * path.load:
+        report["note"] = "the load drops along the path, maybe into another mechanism; it is raised from gravity"
+        return None
     upto = path.highest + 1
     work = _work(path.loads[:upto], path.live_displacements[:upto])
-    return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work,
-                 path.status == OK)  # fmt: skip
+    at_the_end = path.status == OK and path.highest >= len(path.loads) - AT_THE_END
+    return Start(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work, at_the_end)
 
 
 def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: dict[str, Any]) -> Start | None:
