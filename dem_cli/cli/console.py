@@ -185,6 +185,9 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
         rows.append(("associated", f"{_load(limits['associated'])}  ({how})"))
     if limits.get("non_associated") is not None:
         how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
+        final = limits.get("non_associated_final_load")
+        if final is not None and final < 0.98 * limits["non_associated"]:
+            how = f"highest load of a path that drops to {_load(final)} then, {how}"
         rows.append(("non-associated", f"{_load(limits['non_associated'])}  ({how})"))
     if limits.get("non_associated_at_least") is not None:
         how = f"{limits['non_associated_status']}, {seconds(limits['non_associated_seconds'])}"

@@ -60,6 +60,7 @@ class Path:
             "status": self.status,
             "residual": self.residual if np.isfinite(self.residual) else None,
             "displacement": self.reached[self.highest] if self.reached else None,
+            "final_load": self.loads[-1] if self.loads else None,
             "factorisations": self.factorisations,
         }
 

@@ -51,6 +51,8 @@ def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]
     kind = automatic if wanted == "auto" else wanted
     if sim.kinematics != "fixed":
         kind = GRAVITY  # gaps that may close, or soft joints: the geometry of the start is not that of failure
+    if not (sim.loads.dead[sim.free].any() and sim.loads.live[sim.free].any()):
+        kind = GRAVITY  # nothing to start from
     report: dict[str, Any] = {"kind": kind, "chosen": "by size" if wanted == "auto" else "by the case"}
     if kind == GRAVITY:
         return None, report

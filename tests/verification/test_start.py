@@ -93,3 +93,16 @@ def test_limit_analysis_beside_the_failure_load():
 def test_a_failure_load_above_the_bound_is_not_trusted(monkeypatch):
     monkeypatch.setattr(pushover, "ABOVE", -0.1)
     assert any("do not trust this run" in text for text in run("wall_21", "analysis.limit=true")["warnings"])
+
+
+def test_a_path_whose_load_drops_is_no_start():
+    """It may have gone into another mechanism: the load is raised from gravity, where the wall holds more."""
+    summary = run("uneven_courses_mu050", 'analysis.start="path"')
+    assert summary["start"]["kind"] == "gravity"
+    assert "drops along the path" in summary["start"]["note"]
+    assert summary["failure_load"] > 1.05 * summary["start"]["load"]
+
+
+def test_without_weight_there_is_nothing_to_start_from():
+    summary = run("wall_21", 'analysis.start="path"', "gravity=0.0")
+    assert summary["start"]["kind"] == "gravity"
