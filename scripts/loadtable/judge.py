@@ -9,10 +9,10 @@ ABOVE = 0.005  # of the associated load, by which any other may lie above it
 
 
 def reference(row: Row) -> float | None:
-    """Load of joints that do not dilate: the highest of the fine path, else that of `dem limit`; None without any."""
-    if row.fine is not None and row.fine.load is not None:
-        return row.fine.high
-    return row.path.load if row.path is not None else None
+    """Load of joints that do not dilate: that of `dem limit`, else the highest of the fine path; None without any."""
+    if row.path is not None and row.path.load is not None:
+        return row.path.load
+    return row.fine.high if row.fine is not None and row.fine.load is not None else None
 
 
 def error(row: Row, way: Way | None) -> float | None:

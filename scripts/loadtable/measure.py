@@ -95,12 +95,12 @@ def by_path(structure: Structure, friction: np.ndarray, plateau: float = paths.P
 @contextmanager
 def fine_increments() -> Iterator[None]:
     """The path with FINE_WAYS and FINE_ATTEMPTS for a while."""
-    usual = paths.WAYS, paths.ATTEMPTS
-    paths.WAYS, paths.ATTEMPTS = FINE_WAYS, FINE_ATTEMPTS
+    usual = paths.WAYS, paths.ATTEMPTS, paths.SLOWER
+    paths.WAYS, paths.ATTEMPTS, paths.SLOWER = FINE_WAYS, FINE_ATTEMPTS, FINE_WAYS[0][1]
     try:
         yield
     finally:
-        paths.WAYS, paths.ATTEMPTS = usual
+        paths.WAYS, paths.ATTEMPTS, paths.SLOWER = usual
 
 
 def loaded(file: Path, overrides: Sequence[str]) -> tuple[Case, Model]:

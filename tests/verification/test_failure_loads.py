@@ -12,7 +12,6 @@ from casefiles import CASES, FILES, case_id, read, scene
 LARGE = {"top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11"}  # 360 blocks: solved for docs/loads.json
 REFERENCED = [path for path in FILES if "reference" in read(path) and path.stem not in LARGE]
 SLOW = {"wall_3", "wall_2", "wall_with_door", "top_load_b1", "top_load_b2", "uneven_courses_tall", "heavy_beam"}
-WRONG = {"uneven_courses_tall": "started beyond the peak of the path, 10 % below what the wall holds from gravity"}
 MODES = {
     "wall_21_mu050": "sliding",
     "wall_21": "sliding",
@@ -35,9 +34,7 @@ def run(path, folder, *options, code=0) -> dict:
 
 
 def marked(path):
-    marks = [pytest.mark.slow] if path.stem in SLOW else []
-    marks += [pytest.mark.xfail(strict=True, reason=WRONG[path.stem])] if path.stem in WRONG else []
-    return pytest.param(path, id=case_id(path), marks=marks)
+    return pytest.param(path, id=case_id(path), marks=[pytest.mark.slow] if path.stem in SLOW else [])
 
 
 @pytest.mark.parametrize("path", [marked(path) for path in REFERENCED])
