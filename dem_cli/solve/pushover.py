@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 INTERRUPTED = "interrupted"
+OVERSHOOT = 0.02  # of the failure load, that the curve of the collapse may peak above it without a word
 ABOVE = 0.005  # of the associated load, that a failure load may lie above it
 LOWERED = 0.005  # of the load on stiff joints, that soft ones may change it by without a word
 SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
@@ -55,6 +56,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             sims.append(falling)
             found["displacement_at_failure"] = peak["displacement"]
             found["peak_of_curve"] = peak["load"] and peak["load"] * sim.live_scale
+            job.warnings += _too_fast(found["peak_of_curve"], search.high)
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
@@ -98,6 +100,16 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         job.warnings.clear()
         rigid = search.low if search.found else None
         search, sim = Search(), job.simulation("large")
+
+
+def _too_fast(peak: float | None, high: float | None) -> list[str]:
+    """A word where the curve of the collapse is above what the structure carries at rest."""
+    if peak is None or high is None or peak <= (1.0 + OVERSHOOT) * high:
+        return []
+    share = f"{100 * (peak / high - 1):.2g} %"
+    return [
+        f"the collapse was followed so fast that its curve peaks {share} above the failure load: only its shape counts"
+    ]
 
 
 def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
