@@ -45,6 +45,7 @@ SOFTENED = 0.95  # of the highest load: a creep past its peak
 PROBE = 0.02  # internal multiplier of the first load
 LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
+LEAST = 1e-3  # internal multiplier that the resolution is relative to, at least
 JUMP = 5.0  # resolutions; a failure after a larger step is tried again from close by
 GROWTH = 1.5  # of the step from load to load after these
 BELOW = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
@@ -233,8 +234,8 @@ def _raise_load(
     """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
     high, failed, jumped = None, None, False
     first_step = step
-    while high is None or jumped or high - low > resolution * max(abs(low), 1e-3):
-        if high is not None and high - low <= resolution * max(abs(low), 1e-3):
+    while high is None or jumped or high - low > resolution * max(abs(low), LEAST):
+        if high is not None and high - low <= resolution * max(abs(low), LEAST):
             load = high  # failed after a jump, which may break what a gentler step does not: once more from close by
         elif high is not None:
             load = 0.5 * (low + high)
@@ -253,7 +254,7 @@ def _raise_load(
                 search.status = "no failure"
                 return
         else:
-            jumped = load - low > JUMP * resolution * load
+            jumped = load - low > JUMP * resolution * max(abs(low), LEAST)
             high, failed = load, (verdict, sim.save())
             search.high, search.failing = high * sim.live_scale, verdict
     if search.crept is not None and low < search.crept < high:
