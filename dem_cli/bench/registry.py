@@ -16,6 +16,7 @@ GROUPS = {  # name -> title, in the order of the page
     "kernels": "Cost of a step",
     "precision": "Work against precision",
     "growth": "Growth with size",
+    "threads": "Growth with threads",
     "features": "Cost of features",
     "others": "Beside pymunk and Box2D",
     "startup": "From shell to shell",
