@@ -1,4 +1,7 @@
-"""The failure load: a creep that says where it is, then loads raised from gravity, each with its proof.
+"""The failure load: a start next to it or a creep that says where it is, then loads raised, each with its proof.
+
+Where a static solver left a state next to failure (solve/start.py), it is held a little below its load, and the
+load is raised from there. Else, and where that does not hold, it is raised from gravity:
 
 Equilibrium exists at every prescribed displacement, so nothing has to be guessed for the estimate: the
 live load is replaced by a prescribed rate of its own displacement q·u, and its multiplier is found as a
