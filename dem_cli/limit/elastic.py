@@ -68,8 +68,9 @@ class Elastic:
         self.factorisations = 0
         self.order = np.arange(len(self.columns))
         self.permutation = "MMD_AT_PLUS_A"
-        self._pattern(relative_motion(joints, d), structure, n_dof)
-        self._reorder(relative_motion(joints, d), structure, n_dof)
+        rows = relative_motion(joints, d)
+        self._pattern(rows, structure, n_dof)
+        self._reorder(rows, structure, n_dof)
 
     def _reorder(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
         """Degrees of freedom in an order that keeps the factors sparse, found once for all factorisations."""

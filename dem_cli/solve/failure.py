@@ -33,9 +33,10 @@ from dem_cli.solve.equilibrium import (
     relax,
     settle_or_fail,
 )
-from dem_cli.solve.start import place
+from dem_cli.solve.start import GRAVITY, place
 
 if TYPE_CHECKING:
+    from dem_cli.limit.analysis import LimitLoads
     from dem_cli.solve.simulation import Simulation
     from dem_cli.solve.start import Start
     from dem_cli.solve.track import Track
@@ -86,6 +87,7 @@ class Search:
     limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[Pass] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
+    limits: LimitLoads | None = None  # limit analysis that the start needed
 
 
 def compliance(sim: Simulation) -> tuple[float, float]:
@@ -132,9 +134,9 @@ def find_failure(
         raise SolverError("the live load moves nothing: no free block has a live load")
     if start is not None and _holds(sim, search, start, resolution, limit, budget, track):
         low = search.low / sim.live_scale
-        if start.impossible is not None:
-            above = (1.0 + BEYOND) * start.impossible / sim.live_scale
-            if above - low <= max(resolution, COARSE) * low:
+        if start.limits is not None:
+            above = (1.0 + BEYOND) * start.limits.associated.upper / sim.live_scale
+            if above <= min(limit, (1.0 + max(resolution, COARSE)) * low):
                 _fail_above(sim, search, above, budget, track)
                 return
         step = ONE_STEP * resolution * low
@@ -162,6 +164,7 @@ def _holds(
     search.passes.append(Pass("start", sim.steps - before, load * sim.live_scale, verdict.state))
     if verdict.state != "equilibrium":
         sim.restore(search.held)
+        search.start |= {"kind": GRAVITY, "note": "the start did not hold; the load is raised from gravity"}
         return False
     _keep(sim, search, load, track)
     return True

@@ -77,6 +77,7 @@ def _search(job: Job) -> tuple[Search, Simulation]:
         try:
             if settle(sim, track, job.budget).state == "equilibrium":
                 start, search.start = find_start(job, sim)
+                search.limits = start.limits if start is not None else None
                 find_failure(sim, analysis.resolution, analysis.max_load, job.budget, track, search, start)
             else:
                 search.status = FALLS
@@ -118,9 +119,10 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
 
     case, model = job.case, job.model
     by_path = search.start.get("kind") == PATH  # known already
-    quick = by_path or search.start.get("kind") == LIMIT  # the path would take longer than all the rest
     try:
-        loads = limit_loads(model, joint_properties(case, model), law_of(case), associated_only=quick)
+        loads = search.limits or limit_loads(
+            model, joint_properties(case, model), law_of(case), associated_only=by_path
+        )
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return {}

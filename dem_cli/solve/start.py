@@ -17,6 +17,7 @@ from dem_cli.errors import UsageError
 from dem_cli.kernels import records as slot
 
 if TYPE_CHECKING:
+    from dem_cli.limit.analysis import LimitLoads
     from dem_cli.limit.matrices import Structure
     from dem_cli.solve.run import Job
     from dem_cli.solve.simulation import Simulation
@@ -40,7 +41,7 @@ class Start(NamedTuple):
     displacements: np.ndarray  # since before gravity, (n_blocks, n_dof)
     work: float  # of the live loads on the way [J]
     plateau: bool = False  # the load grows no more with displacement
-    impossible: float | None = None  # multiplier above which limit analysis proved that there is no equilibrium
+    limits: LimitLoads | None = None  # limit analysis, where it was done: nothing is in equilibrium above its bound
 
 
 def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]:
@@ -66,7 +67,10 @@ def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]
 
 
 def place(sim: Simulation, start: Start) -> None:
-    """Puts the simulation into the state of `start`; what the work on the way did not store counts as friction."""
+    """Puts the simulation into the state of `start`; what the work on the way did not store counts as friction.
+
+    Where the forces come without a way (limit analysis), what they store was put in from outside.
+    """
     sim.set_load(start.load / sim.live_scale)
     share = sim.control[slot.DEAD_FACTOR]  # a tilted table has less of all loads
     contacts, bodies = sim.contacts, sim.bodies
@@ -77,11 +81,12 @@ def place(sim: Simulation, start: Start) -> None:
     bodies.positions[:] = sim.reference_positions + start.displacements[:, :d]
     bodies.orientations[:] = start.displacements[:, d:]
     bodies.velocities[:] = 0.0
+    elastic = sim.elastic_energy()
+    friction = max(float((sim.loads.dead * start.displacements).sum()) + start.work - elastic, 0.0)
     sim.ledger[:] = 0.0
-    by_dead = float((sim.loads.dead * start.displacements).sum())
-    sim.ledger[slot.EXTERNAL] = by_dead + start.work
+    sim.ledger[slot.FRICTION] = friction
+    sim.ledger[slot.EXTERNAL] = friction + elastic
     sim.ledger[slot.CONTACT] = -sim.ledger[slot.EXTERNAL]
-    sim.ledger[slot.FRICTION] = sim.ledger[slot.EXTERNAL] - sim.elastic_energy()
 
 
 def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Start | None:
@@ -122,19 +127,22 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
 
 def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: dict[str, Any]) -> Start | None:
     """Forces in equilibrium without friction in head joints, whose wedging no real joint can be trusted with."""
+    from dem_cli.limit.analysis import LimitLoads
     from dem_cli.limit.associated import OK, limit_load
     from dem_cli.limit.cone import friction_of
 
     job.clock.progress("limit analysis", 0.0, 0.0, None)
     safe = limit_load(structure, friction_of(sim.joints, sim.law, heads_frictionless=True))
-    most = limit_load(structure, friction_of(sim.joints, sim.law))
+    begun, friction = time.perf_counter(), friction_of(sim.joints, sim.law)
+    most = limit_load(structure, friction)
+    limits = LimitLoads(structure, friction, most, None, time.perf_counter() - begun, None)
     report |= {"load": safe.multiplier, "status": safe.status, "residual": safe.residual, "associated": most.multiplier}
     if safe.status != OK or most.status != OK:
         report["note"] = f"limit analysis: {safe.status}; the load is raised from gravity"
         return None
     still = np.zeros((structure.model.n_blocks, structure.n_dof))
     return Start(
-        LIMIT, safe.multiplier, safe.normal, safe.shear, np.zeros(len(safe.normal)), still, 0.0, False, most.upper
+        LIMIT, safe.multiplier, safe.normal, safe.shear, np.zeros(len(safe.normal)), still, 0.0, False, limits
     )  # fmt: skip
 
 

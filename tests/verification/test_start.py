@@ -58,7 +58,9 @@ def test_forces_out_of_the_air_are_not_believed(monkeypatch):
         return found._replace(normal=np.zeros_like(found.normal), shear=np.zeros_like(found.shear)), report
 
     monkeypatch.setattr(pushover, "find_start", wrong)
-    assert run("wall_21", 'analysis.start="path"')["failure_load"] == pytest.approx(0.6, rel=4e-3)
+    summary = run("wall_21", 'analysis.start="path"')
+    assert summary["failure_load"] == pytest.approx(0.6, rel=4e-3)
+    assert summary["start"]["kind"] == "gravity" or summary["search"][0]["state"] == "equilibrium"
 
 
 def test_a_start_from_limit_analysis_says_so():
@@ -72,10 +74,15 @@ def test_a_start_from_limit_analysis_says_so():
 
 
 def test_beyond_the_associated_load_nothing_has_to_be_waited_for():
-    summary = run("wall_2", 'analysis.start="limit"', "analysis.resolution=0.05")
+    summary, records = solve(
+        CASES / "wall_2.toml", QUICK, 'analysis.start="limit"', "analysis.resolution=0.05", "analysis.limit=true"
+    )
     last = summary["search"][-1]
     assert (last["kind"], last["state"]) == ("impossible", "failure")
     assert summary["proof_of_failure"]["released_share_of_work"] > 0.0
+    assert summary["limit_analysis"]["associated"] == summary["start"]["associated"]
+    assert all(row.energy.friction >= 0.0 for row in records.rows)
+    assert abs(summary["energy_closure"]) < 1e-3
 
 
 def test_geometry_that_moves_is_raised_from_gravity():
