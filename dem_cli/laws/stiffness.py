@@ -1,18 +1,40 @@
-"""Joint stiffness, common to all laws that have an elastic part."""
+"""What the joints of all laws have in common: stiffness, and where their contact points are."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel
+from dem_cli.case.base import CaseModel, KeyProblem
+from dem_cli.laws.profile import Profile
 
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
 class StiffJoint(CaseModel):
-    """Normal and shear stiffness of a joint per unit area."""
+    """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
+
+    plane_points: ClassVar[int] = 2  # contact points of a plane joint that says nothing else
 
     kn: Stiffness = Field(default="auto", description="normal stiffness [Pa/m], or 'auto': stiff enough to drop out")
     ks: Stiffness = Field(default="auto", description="shear stiffness [Pa/m], or 'auto': equal to kn")
+    profile: Profile | None = Field(
+        default=None, description="shape of contact surfaces that are not plane; default: plane"
+    )
+    points: Annotated[int, Field(ge=2, le=9)] | None = Field(
+        default=None,
+        description="contact points of a plane joint, at Gauss-Lobatto places; "
+        "default: 2, or 3 where the joint carries tension",
+    )
+
+    @model_validator(mode="after")
+    def _points_of_plane_joints(self) -> StiffJoint:
+        if self.profile is not None and self.points is not None:
+            raise KeyProblem("not allowed with 'profile': its vertices are the contact points", "points")
+        return self
+
+    @property
+    def contact_points(self) -> int:
+        """Number of contact points of a plane joint."""
+        return self.plane_points if self.points is None else self.points

@@ -1,0 +1,73 @@
+"""Where the contact points of a joint are: vertices of its profile, or the places of a rule of integration."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import Legendre
+
+from dem_cli.geometry import profile
+
+Range = tuple[float, float]  # lowest and highest value; the same twice: always this one
+
+# A profile pressed onto one side is as stiff as a plane joint with points at both ends.
+VERTEX_SHARE = 0.5
+
+
+class Layout(NamedTuple):
+    """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them."""
+
+    points: int = 2
+    sides: tuple[int, int] | None = None
+    aperture: Range = (0.0, 0.0)  # [m]
+    lengths: tuple[Range, ...] = ()  # of the sides [m] or as proportions; one: the same range for each; none: equal
+    central: Range | None = None  # share of the middle side; then only odd numbers of sides are drawn
+    keep: Literal["aperture", "angle"] = "aperture"  # where the joint is not as long as the lengths add up to
+    only: Literal["bed", "head", "all"] = "all"  # joints flatter or steeper than 45°: which have the profile
+    seed: int = 0
+
+
+def draw(layout: Layout, key: tuple[int, ...], length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Contact points of a joint of this length [m]: places [m], initial gaps [m], shares of the area [-].
+
+    places: along the joint, increasing from 0 to its length; gaps: 0 at the two ends of the side in contact;
+    shares: of the points of a plane joint they add up to 1, of a profile each two neighbours do.
+    key: what tells this joint from others of its kind (numbers ≥ 0): the same key draws the same profile,
+    whatever was drawn before.
+    """
+    if layout.sides is None:
+        places, shares = lobatto(layout.points)
+        return places * length, np.zeros(layout.points), shares
+    random = np.random.default_rng([layout.seed, *key])
+    low, high = layout.sides
+    odd = 1 if layout.central is None else 2
+    sides = low + odd * int(random.integers(0, (high - low) // odd, endpoint=True))
+    aperture = random.uniform(*layout.aperture)
+    if layout.lengths:
+        ranges = layout.lengths * sides if len(layout.lengths) == 1 else layout.lengths
+        lengths = np.array([random.uniform(*each) for each in ranges])
+    else:
+        lengths = profile.regular(sides, None if layout.central is None else random.uniform(*layout.central))
+    scale = length / lengths.sum()
+    if layout.keep == "angle":
+        aperture *= scale
+    places, rises = profile.polygon(lengths * scale, aperture)
+    places[-1] = length
+    return places, rises, np.full(sides + 1, VERTEX_SHARE)
+
+
+def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places from 0 to 1 and weights of the Gauss–Lobatto rule with n ≥ 2 points, each (n,); the weights add up to 1.
+
+    Exact for polynomials up to degree 2n − 3: from three points on, a joint under bending has the section modulus
+    and the moment of inertia of a rectangle. Source: Abramowitz and Stegun 25.4.32.
+    """
+    if n < 2:
+        raise ValueError("the rule has at least two points")
+    last = Legendre.basis(n - 1)
+    inner = np.sort(last.deriv().roots().real) if n > 2 else np.empty(0)
+    inner = 0.5 * (inner - inner[::-1])  # symmetric to the last digit
+    x = np.concatenate([[-1.0], inner, [1.0]])
+    weights = 1.0 / (n * (n - 1) * last(x) ** 2)
+    return 0.5 * (x + 1.0), weights / weights.sum()
