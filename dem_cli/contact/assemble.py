@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.contact.detect import Faces
+from dem_cli.contact.layout import Layout, draw
 from dem_cli.kernels.planar_geometry import BLEND, measure
+from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
 LIKE = {2: (0.0, 0.0), 3: (0.0, 0.0, 0.0)}
 LIKE_ROTATION = {2: (0.0,), 3: (0.0, 0.0, 0.0)}
+STEEP = np.cos(np.pi / 4) - 1e-9  # a head joint has its normal within 45° of the horizontal
+END_TO_END = 1e-3  # of the edge of b: a shorter overlap at the start is none
 
 
 class JointProperties(NamedTuple):
@@ -23,6 +28,18 @@ class JointProperties(NamedTuple):
     kn: np.ndarray  # [Pa/m], (n_named,)
     ks: np.ndarray  # [Pa/m], (n_named,)
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
+    intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
+    layouts: tuple[Layout | None, ...]  # where the contact points are; None: at the two ends of the joint
+
+    @property
+    def profiled(self) -> bool:
+        """Whether any joint has points elsewhere than at its two ends."""
+        return any(layout is not None for layout in self.layouts)
+
+    def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """The named joint of each pair of blocks (n, 2), (n,) int64."""
+        materials = model.block_material[blocks]
+        return self.by_material[materials[:, 0], materials[:, 1]]
 
 
 def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:
@@ -39,18 +56,27 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
 
 def overlap_lengths(edges: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Length of the overlap of two edges along the first [m], (n,); negative: they miss each other."""
+    low, high = _overlap_ends(edges, corners)
+    return high - low
+
+
+def _overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the overlap of two edges begins and ends, along the first edge from its start [m], (n,) each."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     along = a1 - a0
     length = np.sqrt((along**2).sum(axis=1))
     along /= length[:, None]
     low, high = ((b1 - a0) * along).sum(axis=1), ((b0 - a0) * along).sum(axis=1)
-    return np.minimum(high, length) - np.maximum(low, 0.0)
+    return np.maximum(low, 0.0), np.minimum(high, length)
 
 
 def build_joints(
-    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int
+    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int, old: Joints | None = None
 ) -> tuple[Joints, Contacts]:
-    """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing."""
+    """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing.
+
+    Only the joints of the start have a profile or more than two points; `old`: joints of before, whose points stay.
+    """
     d, n = model.dimension, len(faces.parts)
     blocks = model.part_blocks[faces.parts]
     ends = bodies.corners[faces.edges]
@@ -58,31 +84,81 @@ def build_joints(
     shortest = lengths.min(axis=1, initial=np.inf)
     overlap = np.clip(overlap_lengths(faces.edges, bodies.corners), 0.1 * shortest, shortest)
     area = overlap * model.thickness[blocks].min(axis=1, initial=np.inf)
-    named = properties.by_material[model.block_material[blocks[:, 0]], model.block_material[blocks[:, 1]]]
+    named = properties.between(model, blocks)
+    starts, profile, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
+    if properties.profiled:
+        starts, profile, shares = _chains(faces, bodies, properties.layouts, named, old)
+    owner, n_points = np.repeat(np.arange(n), np.diff(starts)), int(starts[-1])
     joints = Joints(
         blocks=blocks,
-        starts=np.arange(0, 2 * n + 1, 2),
-        frames=np.zeros((2 * n, d * d)),
-        levers=np.zeros((2 * n, 2 * d * model.inertias.shape[1])),
-        points=np.zeros((2 * n, d)),
+        starts=starts,
+        frames=np.zeros((n_points, d * d)),
+        levers=np.zeros((n_points, 2 * d * model.inertias.shape[1])),
+        points=np.zeros((n_points, d)),
         edges=faces.edges,
+        profile=profile,
         scales=np.ascontiguousarray(np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)])),
-        kn=np.repeat(properties.kn[named] * area / 2, 2),
-        ks=np.repeat(properties.ks[named] * area / 2, 2),
+        kn=(properties.kn[named] * area)[owner] * shares,
+        ks=(properties.ks[named] * area)[owner] * shares,
         law=np.ascontiguousarray(properties.law[named]),
     )
-    contacts = empty_contacts(n, 2 * n, d, n_memory)
-    measure(joints, contacts, bodies)
+    contacts = empty_contacts(n, n_points, d, n_memory)
+    measure_points(joints, contacts, bodies)
     contacts.stale[-1] = 0  # faces that are the wrong ones already need not ask: the right ones are in the list
     return joints, contacts
 
 
+def measure_points(joints: Joints, contacts: Contacts, bodies: Bodies) -> None:
+    """Gaps of all contacts, frames, levers and points of all joints, where the blocks are now."""
+    (measure_profiles if len(joints.profile) else measure)(joints, contacts, bodies)
+
+
+def _chains(
+    faces: Faces, bodies: Bodies, layouts: Sequence[Layout | None], named: np.ndarray, old: Joints | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """First point of each joint, the profile of all points (Joints.profile), and the share of the area of each."""
+    corners, n = bodies.corners, len(named)
+    low, high = _overlap_ends(faces.edges, corners)
+    a0, a1, b0, b1 = (corners[faces.edges[:, i]] for i in range(4))
+    along = (a1 - a0) / np.sqrt(((a1 - a0) ** 2).sum(axis=1))[:, None]
+    from_b1 = ((b1 - a0) * along).sum(axis=1)  # where the edge of b starts, along that of a
+    whole = np.sqrt(((b1 - b0) ** 2).sum(axis=1))
+    known = np.full(n, -1) if old is None else same_joints(old.edges, faces.edges)
+    rows, shares = [], []
+    for i in range(n):
+        if known[i] >= 0:
+            points = slice(old.starts[known[i]], old.starts[known[i] + 1])
+            rows.append(old.profile[points])
+            shares.append(np.full(len(rows[-1]), 1.0 / len(rows[-1])))  # stiffness is carried over (carry_memory)
+            continue
+        layout = layouts[named[i]]
+        if old is None and layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
+            places, rises, share = draw(layout, (int(faces.edges[i, 0]), int(faces.edges[i, 2])), high[i] - low[i])
+            # Listed from left to right, or from the top down: from a1 to a0; kept from b1 on, which is near a0.
+            rows.append(np.column_stack([high[i] - from_b1[i] - places, rises])[::-1])
+            shares.append(share[::-1])
+        else:
+            rows.append(np.array([[0.0, 0.0], [whole[i], 0.0]]))
+            shares.append(np.full(2, 0.5))
+    starts = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
+    if not rows:
+        return starts, np.zeros((0, 2)), np.zeros(0)
+    return starts, np.ascontiguousarray(np.concatenate(rows)), np.concatenate(shares)
+
+
+def _has(layout: Layout, overlap: float, whole: float, along: np.ndarray) -> bool:
+    """Whether a joint with this overlap, along a unit vector, has the layout; joints end to end have none."""
+    kind = "bed" if abs(along[0]) >= STEEP else "head"
+    return overlap > END_TO_END * whole and layout.only in ("all", kind)
+
+
 def share_frames(joints: Joints, source: np.ndarray, positions: np.ndarray) -> None:
-    """Gives both points of joint j the frame of point source[j]; 2D."""
-    joints.frames[:] = joints.frames[source].repeat(2, axis=0)
+    """Gives all points of joint j the frame of point source[j]; 2D."""
+    counts = np.diff(joints.starts)
+    joints.frames[:] = joints.frames[source].repeat(counts, axis=0)
     normals = joints.frames[:, :2]
     for side in (0, 1):
-        arms = joints.points - positions[joints.blocks[:, side]].repeat(2, axis=0)
+        arms = joints.points - positions[joints.blocks[:, side]].repeat(counts, axis=0)
         joints.levers[:, 2 * side] = arms[:, 0] * normals[:, 1] - arms[:, 1] * normals[:, 0]
         joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
 
@@ -90,32 +166,45 @@ def share_frames(joints: Joints, source: np.ndarray, positions: np.ndarray) -> N
 def carry_memory(old: Joints, memory: Contacts, new: Joints, contacts: Contacts) -> None:
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
-    A point is the same when its joint has the same two edges and it is the same end. Where a corner
-    turned over to its other edge, the point of the same two blocks that is nearest takes over.
+    A point is the same when its joint has the same two edges and it has the same place among its points. Where a
+    corner turned over to its other edge, the point of the same two blocks that is nearest takes over.
     """
-    key_old, key_new = _row_keys(old.edges[:, [0, 2]]), _row_keys(new.edges[:, [0, 2]])
-    order = np.argsort(key_old, kind="stable")
-    match = np.full(len(key_new), -1)
-    if len(order):
-        place = np.minimum(np.searchsorted(key_old[order], key_new), len(order) - 1)
-        match = np.where(key_old[order][place] == key_new, order[place], -1)
+    match = same_joints(old.edges, new.edges)
     known = np.flatnonzero(match >= 0)
-    target = np.concatenate([2 * known, 2 * known + 1])
-    source = np.concatenate([2 * match[known], 2 * match[known] + 1])
+    target, source = points_of(new.starts, known), points_of(old.starts, match[known])
     _copy(contacts, memory, target, source)
     new.kn[target], new.ks[target] = old.kn[source], old.ks[source]
-    orphans = np.setdiff1d(np.flatnonzero(_loaded(memory)), match[known])
+    orphans = np.setdiff1d(np.flatnonzero(_loaded(old, memory)), match[known])
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):
         _adopt(old, memory, new, contacts, orphans, newborn)
+
+
+def same_joints(old: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """Which of the old joints has the same two edges, −1: none, (n_new,); edges as Joints.edges."""
+    key_old, key_new = _row_keys(old[:, [0, 2]]), _row_keys(new[:, [0, 2]])
+    if not len(key_old):
+        return np.full(len(key_new), -1)
+    order = np.argsort(key_old, kind="stable")
+    place = np.minimum(np.searchsorted(key_old[order], key_new), len(order) - 1)
+    return np.where(key_old[order][place] == key_new, order[place], -1)
+
+
+def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
+    """All points of these joints, joint by joint."""
+    counts = starts[joints + 1] - starts[joints]
+    before = np.concatenate([[0], np.cumsum(counts)])[:-1]
+    return np.repeat(starts[joints] - before, counts) + np.arange(counts.sum())
 
 
 def _row_keys(pairs: np.ndarray) -> np.ndarray:
     return pairs[:, 0] * (1 << 31) + pairs[:, 1]
 
 
-def _loaded(contacts: Contacts) -> np.ndarray:
-    return contacts.normal.reshape(-1, 2).max(axis=1, initial=0.0) > 0.0
+def _loaded(joints: Joints, contacts: Contacts) -> np.ndarray:
+    if not len(joints.blocks):
+        return np.zeros(0, bool)
+    return np.maximum.reduceat(np.abs(contacts.normal), joints.starts[:-1]) > 0.0
 
 
 def _copy(contacts: Contacts, memory: Contacts, target: np.ndarray, source: np.ndarray) -> None:
@@ -133,12 +222,12 @@ def _adopt(
 ) -> None:
     """Memory of loaded joints whose edges changed goes to the nearest point of a new joint of the same blocks."""
     for i in orphans:
-        heirs = [j for j in newborn if (new.blocks[j] == old.blocks[i]).all()]
-        if not heirs:
+        heirs = np.array([j for j in newborn if (new.blocks[j] == old.blocks[i]).all()], int)
+        if not len(heirs):
             continue
-        candidates = np.array([2 * j + k for j in heirs for k in (0, 1)])
-        for source in (2 * i, 2 * i + 1):
-            if memory.normal[source] > 0.0:
+        candidates = points_of(new.starts, heirs)
+        for source in range(old.starts[i], old.starts[i + 1]):
+            if memory.normal[source] != 0.0:
                 distance = ((new.points[candidates] - old.points[source]) ** 2).sum(axis=1)
                 heir = candidates[[distance.argmin()]]
                 _copy(contacts, memory, heir, np.array([source]))

@@ -30,21 +30,31 @@ def close_touching(contacts: Contacts, smallest: float) -> None:
     contacts.gaps[np.abs(contacts.gaps) <= TOUCH * smallest] = 0.0
 
 
+def bond_touching(model: Model, joints: Joints, contacts: Contacts, properties: JointProperties) -> None:
+    """Points without a gap start intact: they remember what their law says of a young joint."""
+    count = properties.intact.shape[1]
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    touching = contacts.gaps <= 0.0
+    named = properties.between(model, joints.blocks)[owner]
+    contacts.memory[touching, :count] = properties.intact[named[touching]]
+
+
 def joints_of_start(
     model: Model, bodies: Bodies, properties: JointProperties, smallest: float, n_memory: int = 0
 ) -> tuple[Joints, Contacts]:
     """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
 
     smallest: shortest edge of a block [m] (model.scales). Faces that meet corner to corner are left out: to
-    first order they cannot carry force. Both points of a joint share one frame, that of its closer end.
+    first order they cannot carry force. All points of a joint share one frame, that of its closer end.
     """
     faces = find_joints(model, bodies.corners, TOUCH * smallest)
     keep = overlap_lengths(faces.edges, bodies.corners) > TOUCH * smallest
     keep &= ~corner_to_corner(faces.edges, bodies.corners, TOUCH * smallest)
     joints, contacts = build_joints(model, Faces(*(field[keep] for field in faces)), bodies, properties, n_memory)
     close_touching(contacts, smallest)
-    closer = 2 * np.arange(len(joints.blocks)) + (contacts.gaps[1::2] < contacts.gaps[0::2])
-    share_frames(joints, closer, bodies.positions)
+    bond_touching(model, joints, contacts, properties)
+    first, last = joints.starts[:-1], joints.starts[1:] - 1
+    share_frames(joints, np.where(contacts.gaps[last] < contacts.gaps[first], last, first), bodies.positions)
     return joints, contacts
 
 

@@ -29,14 +29,21 @@ from dem_cli.kernels.vec import (
 )
 
 
-def make_press(law: Callable) -> Callable:
-    """What happens at one point that touches or did: law and friction work, as a function for the loops."""
+def make_press(law: Callable, bonded: bool = False) -> Callable:
+    """What happens at one point that touches or did: law and lost work, as a function for the loops.
+
+    bonded: the law carries tension or deforms for good across the joint, so that normal springs lose work too.
+    """
 
     @always_inline
     def press(
-        gap, frame, levers_a, levers_b, relative, spin_a, spin_b, dt, old, kn, ks, parameters, joint, memory, point
+        gap, opened, pressed, frame, levers_a, levers_b, relative, spin_a, spin_b, dt, old, kn, ks,
+        parameters, joint, memory, point,
     ):  # fmt: skip
-        """One point: (normal, shear force, slip path, friction work) [N, N, m, J]."""
+        """One point: (normal, shear force, slip path, work lost) [N, N, m, J].
+
+        opened: by how much the gap grew in this step [m]; pressed, old: normal and shear force before it [N].
+        """
         slid_a, slid_b = turn(levers_a, spin_a)[1], turn(levers_b, spin_b)[1]
         slide = scale(dt, axpy(1.0, components(frame, relative)[1], axpy(-1.0, slid_a, slid_b)))
         normal, shear, slipped = law(gap, slide, old, kn, ks, parameters, joint, memory, point)
@@ -45,14 +52,18 @@ def make_press(law: Callable) -> Callable:
         # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
         plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
         path = norm(plastic) if normal > 0.0 else 0.0
-        return normal, shear, path, -0.5 * (dot(old, plastic) + dot(shear, plastic))
+        lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
+        if bonded and not (pressed > 0.0 and normal == 0.0):
+            # The same across the joint: work done on the spring, less what it stores; to come apart costs nothing.
+            lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
+        return normal, shear, path, lost
 
     return press
 
 
-def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
+def make_contact_forces(law: Callable, integrates_gap: bool, bonded: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
-    press = make_press(law)
+    press = make_press(law, bonded)
 
     @inline
     def contact_forces(joints, contacts, velocities, forces, dt, like, like_rotation):
@@ -73,8 +84,8 @@ def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
             loaded = False
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
-                gap = gaps[point]
-                if not integrates_gap and gap >= 0.0 and normals[point] == 0.0:
+                gap = before = gaps[point]
+                if not bonded and not integrates_gap and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame = load_frame(frames, point, like)
                 levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
@@ -82,11 +93,11 @@ def make_contact_forces(law: Callable, integrates_gap: bool) -> Callable:
                     spun_a, spun_b = dot(levers_a[0], spin_a), dot(levers_b[0], spin_b)
                     gap += dt * (dot(frame[0], relative) + spun_b - spun_a)
                     gaps[point] = gap
-                    if gap >= 0.0 and normals[point] == 0.0:
+                    if not bonded and gap >= 0.0 and normals[point] == 0.0:
                         continue
                 loaded = True
                 normal, shear, path, work = press(
-                    gap, frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    gap, gap - before, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
                 )  # fmt: skip
                 if path > 0.0:

@@ -17,9 +17,9 @@ from dem_cli.kernels.planar_geometry import overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
-def make_planar_forces(law: Callable) -> Callable:
+def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
-    press = make_press(law)
+    press = make_press(law, bonded)
 
     @inline
     def planar_forces(joints, contacts, bodies, dt, like, like_rotation):
@@ -48,9 +48,11 @@ def make_planar_forces(law: Callable) -> Callable:
                     stale[-1] = 1
                 gap_low = max(gap_low, 0.0)
                 gap_high = max(gap_high, 0.0)
+            opened_low, opened_high = gap_low - gaps[first], gap_high - gaps[second]
             gaps[first] = gap_low
             gaps[second] = gap_high
-            on_low, on_high = gap_low < 0.0 or normals[first] != 0.0, gap_high < 0.0 or normals[second] != 0.0
+            on_low = bonded or gap_low < 0.0 or normals[first] != 0.0
+            on_high = bonded or gap_high < 0.0 or normals[second] != 0.0
             if not (on_low or on_high):
                 continue
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -62,7 +64,7 @@ def make_planar_forces(law: Callable) -> Callable:
             if on_low:
                 frame, levers_a, levers_b, _ = place_end(xa, xb, share_low, ta, tb, a0, b1)
                 normal, shear, path, work = press(
-                    gap_low, frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    gap_low, opened_low, normals[first], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, first, 0, like[1:]), kns[first], kss[first], parameters, joint, memory, first,
                 )  # fmt: skip
                 if path > 0.0:
@@ -76,7 +78,7 @@ def make_planar_forces(law: Callable) -> Callable:
             if on_high:
                 frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, ta, tb, a1, b0)
                 normal, shear, path, work = press(
-                    gap_high, frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    gap_high, opened_high, normals[second], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, second, 0, like[1:]), kns[second], kss[second], parameters, joint, memory, second,
                 )  # fmt: skip
                 if path > 0.0:

@@ -60,7 +60,7 @@ COULOMB = Law(
     name="coulomb",
     parameters=CoulombJoint,
     function=coulomb,
-    columns=lambda table: (table.coefficient,),
-    shear_limit=lambda parameters, normal: parameters[:, 0] * normal,
+    columns=lambda table, kn: (table.coefficient,),
+    shear_limit=lambda parameters, normal, memory, kn: parameters[:, 0] * normal,
     source="Cundall 1971; thesis 4.3",
 )

@@ -8,10 +8,11 @@ gap         opening of the point [m], positive open
 slide       tangential displacement of b against a in this step [m], d − 1 components
 shear       shear force on b before the step [N], d − 1 components
 kn, ks      stiffness of the point [N/m]
-parameters  the law's numbers, parameters[joint, :]
-memory      what the law remembers, memory[point, :]
+parameters  the law's numbers, parameters[joint, :]; stresses become forces by the area of the point, kn over the
+            kn of the joint [Pa/m], which a law that needs it keeps as a column
+memory      what the law remembers, memory[point, :]: its scalars, then its vectors along the tangents
 normal      normal force [N], compression positive
-slipped     True where the shear spring was cut back (its work goes to friction)
+slipped     True where something was lost: the shear spring was cut back, a bond gave way, stone was crushed
 
 A new law: one file with such a function and a `Law` record, one line in the registry.
 """
@@ -33,7 +34,23 @@ class Law:
     name: str  # `law` in the case file
     parameters: type[CaseModel]  # the [joints.*] table
     function: Callable  # the scalar law, see the module docstring
-    columns: Callable[[CaseModel], tuple[float, ...]]  # table -> row of `parameters`
-    shear_limit: Callable[[np.ndarray, np.ndarray], np.ndarray]  # (parameters, normal forces) -> largest shear forces
-    n_memory: int = 0  # columns of `memory`
+    columns: Callable[[CaseModel, float], tuple[float, ...]]  # (table, kn [Pa/m]) -> row of `parameters`
+    # (parameters, normal forces, memory, kn of the points) -> largest shear forces, all (n_points, ...)
+    shear_limit: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    scalars: int = 0  # numbers that a point remembers
+    vectors: int = 0  # vectors along the tangents that it remembers beside them
+    intact: tuple[float, ...] = ()  # first scalars of points that touch at the start; all others start from zero
+    # Carries tension, or deforms for good across the joint: called for open points too, and the work that its
+    # normal springs lose is booked as well.
+    bonded: bool = False
+    rates: tuple[int, ...] = ()  # columns that are velocities [m/s]: handed to the law as displacement per step
+    variant: Callable[[CaseModel], Law | None] = lambda table: None  # another law that this table asks for
     source: str = ""  # where the law is published
+
+    def n_memory(self, dimension: int) -> int:
+        """Columns of `memory`."""
+        return self.scalars + self.vectors * (dimension - 1)
+
+    def of(self, table: CaseModel) -> Law:
+        """The law itself, or the variant of it that the table asks for."""
+        return self.variant(table) or self

@@ -84,6 +84,7 @@ def limit_loads(
 
 
 def start_structure(model: Model, properties: JointProperties) -> Structure:
-    """The structure with the joints of its first place."""
+    """The structure with the joints of its first place, all of them plane: points at their ends are enough."""
+    properties = properties._replace(layouts=(None,) * len(properties.layouts))
     joints, _ = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
     return structure_of(model, joints)

@@ -58,14 +58,18 @@ def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> n
     heads_frictionless: joints steeper than 45° to the horizontal carry no friction (thesis Table 5-3); 2D.
     Raises UsageError where the largest shear force of the law does not grow in proportion to the normal force.
     """
-    parameters = joints.law
-    one, two, none = (law.shear_limit(parameters, np.full(len(parameters), n)) for n in (1.0, 2.0, 0.0))
-    if (np.abs(two - 2.0 * one) > SAME * np.abs(one)).any() or (none != 0.0).any():
+    owner, n_points = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts)), len(joints.kn)
+    memory = np.zeros((n_points, law.n_memory(2)))
+    one, two, none = (
+        law.shear_limit(joints.law[owner], np.full(n_points, n), memory, joints.kn) for n in (1.0, 2.0, 0.0)
+    )
+    in_proportion = (np.abs(two - 2.0 * one) <= SAME * np.abs(one)).all() and (none == 0.0).all()
+    if law.bonded or law.n_memory(2) or not in_proportion:
         raise UsageError(
             f"limit analysis needs joints whose largest shear force is friction × normal force; "
             f"law '{law.name}' is not of that kind"
         )
-    friction = np.repeat(one, np.diff(joints.starts))
+    friction = one.copy()
     if heads_frictionless:
         friction[np.abs(joints.frames[:, 1]) < STEEP] = 0.0
     return friction

@@ -48,6 +48,9 @@ class PushoverAnalysis(AnalysisBase):
         default="mass", description="mass: λ × weight of each block; live: λ × live loads; tilt: table turned by atan λ"
     )
     resolution: float = Field(default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load")
+    step: float | None = Field(
+        default=None, gt=0.0, description="largest step of the multiplier on the way from gravity; default: they grow"
+    )
     follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
     max_load: float | None = Field(
         default=None,

@@ -47,6 +47,7 @@ LOOKS = 20  # how often the load is looked at in the first phase
 HOLD_STEPS = 3000
 SOFTENED = 0.95  # of the highest load: a creep past its peak
 PROBE = 0.02  # internal multiplier of the first load
+PROBE_IN_PLAY = 2e-4  # the same where joints have a profile: microrotations begin early
 LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
 LEAST = 1e-3  # internal multiplier that the resolution is relative to, at least
@@ -96,7 +97,7 @@ def compliance(sim: Simulation) -> tuple[float, float]:
     Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
     """
     before, places, saved = sim.live_displacement(), sim.save_places(), sim.save()
-    load, value, largest = PROBE, 0.0, 0.0
+    load, value, largest = PROBE_IN_PLAY if sim.play.moved.any() else PROBE, 0.0, 0.0
     for _ in range(4):
         verdict = relax(sim, load, TOLERANCE, 20_000)
         value = (sim.live_displacement() - before) / load
@@ -116,12 +117,14 @@ def find_failure(
     track: Track,
     search: Search,
     start: Start | None = None,
+    longest: float | None = None,
 ) -> None:
     """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
 
     max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
     LOCKED times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
-    where it does not hold, these are the way after all. What is found goes to `search` as it is found, so that
+    where it does not hold, these are the way after all. longest: step of the load, as users know it, that is never
+    exceeded; then nothing is estimated first. What is found goes to `search` as it is found, so that
     it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
     search.low, search.held = 0.0, sim.save()
@@ -141,6 +144,10 @@ def find_failure(
                 return
         step = ONE_STEP * resolution * low
         _raise_load(sim, search, low, [], step, resolution, limit, budget, track, start.plateau)
+        return
+    if longest is not None:
+        step = longest / sim.live_scale
+        _raise_load(sim, search, 0.0, [], step, resolution, limit, budget, track, longest=step)
         return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)
@@ -236,6 +243,7 @@ def _raise_load(
     budget: Budget,
     track: Track,
     plateau: bool = False,
+    longest: float = np.inf,
 ) -> None:
     """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
     high, failed, jumped = None, None, False
@@ -248,7 +256,7 @@ def _raise_load(
         elif levels:
             load = levels.pop(0)
         else:
-            load, step = low + step, GROWTH * step
+            load, step = low + step, min(GROWTH * step, longest)
         load = min(load, limit)
         verdict = _settle(sim, search, load, budget, track, plateau)
         if verdict.state == "equilibrium":

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dem_cli.contact.assemble import JointProperties
-from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.contact.layout import Layout
 from dem_cli.laws.law import Law
+from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
+from dem_cli.laws.stiffness import StiffJoint
 from dem_cli.model.assemble import joint_table
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
@@ -20,21 +23,53 @@ if TYPE_CHECKING:
 FIXED_RATIO = 1e6  # kn·h/W of "auto" joints where the stiffness drops out
 
 
+def laws_of(case: Case) -> list[Law]:
+    """The laws of all joints, each once, in the order of the case."""
+    return list({law.name: law for law in map(_law, case.joints.values())}.values())
+
+
 def law_of(case: Case) -> Law:
-    """The one law of all joints. Raises CaseError where the case mixes laws."""
-    laws = {table.law for table in case.joints.values()}
-    if len(laws) > 1:
-        name = list(case.joints)[1]
-        raise CaseError([CaseProblem(("joints", name, "law"), "different laws in one case are not available yet")])
-    return LAWS[laws.pop()]
+    """The law of all joints; where the case mixes laws, one that finds the law of each."""
+    return mixed(tuple(laws_of(case)))
 
 
-def joint_properties(case: Case, model: Model, ratio: float = FIXED_RATIO) -> JointProperties:
-    """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn."""
+def joint_properties(case: Case, model: Model, ratio: float = FIXED_RATIO, step: float = math.inf) -> JointProperties:
+    """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
+
+    step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
+    """
     names, by_material = joint_table(case)
     auto = ratio * stiffness_scale(model)
-    law = law_of(case)
-    kn = np.array([auto if case.joints[n].kn == "auto" else case.joints[n].kn for n in names])
-    ks = np.array([k if case.joints[n].ks == "auto" else case.joints[n].ks for n, k in zip(names, kn, strict=True)])
-    columns = np.array([law.columns(case.joints[name]) for name in names], float)
-    return JointProperties(names, by_material, kn, ks, columns)
+    laws = laws_of(case)
+    tables = [case.joints[name] for name in names]
+    kn = np.array([auto if table.kn == "auto" else table.kn for table in tables])
+    ks = np.array([k if table.ks == "auto" else table.ks for table, k in zip(tables, kn, strict=True)])
+    rows = [_columns(table, k, step) for table, k in zip(tables, kn, strict=True)]
+    width = max(map(len, rows))
+    intact = np.zeros((len(names), max(law.scalars for law in laws)))
+    for i, table in enumerate(tables):
+        values = _law(table).intact
+        intact[i, : len(values)] = values
+    columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
+    layouts = tuple(_layout(table, case.seed) for table in tables)
+    return JointProperties(names, by_material, kn, ks, columns, intact, layouts)
+
+
+def _law(table: StiffJoint) -> Law:
+    return LAWS[table.law].of(table)
+
+
+def _layout(table: StiffJoint, seed: int) -> Layout | None:
+    """Where the contact points of a joint are; None: at its two ends."""
+    if table.profile is not None:
+        return Layout(seed=seed, **table.profile.ranges)
+    return None if table.contact_points == 2 else Layout(table.contact_points)
+
+
+def _columns(table: StiffJoint, kn: float, step: float) -> list[float]:
+    """Parameters of a joint; velocities as displacement per step."""
+    law = _law(table)
+    values = list(law.columns(table, kn))
+    for column in law.rates:
+        values[column] *= step
+    return values

@@ -35,9 +35,9 @@ def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
     mode = "sliding" if translates or share > SLIDING else "rocking" if share < ROCKING else "mixed"
     moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
     found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
-    if joints.edges.shape == sim.joints.edges.shape and (joints.edges == sim.joints.edges).all():
-        slip = (sim.contacts.slip - contacts.slip).reshape(-1, 2).max(axis=1)
-        opening = (sim.contacts.gaps - contacts.gaps).reshape(-1, 2).max(axis=1)
+    if len(joints.edges) and joints.edges.shape == sim.joints.edges.shape and (joints.edges == sim.joints.edges).all():
+        slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
+        opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
             found["mechanism"][key] = _pairs(sim, np.flatnonzero(values > TAKES_PART * motion.max(initial=0.0)))
     return found

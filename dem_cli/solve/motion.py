@@ -47,6 +47,7 @@ class Motion:
         self.far = (FAR if plateau else max(FAR, FAR_PER_DEPTH * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
+        self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
         self.energies = [sim.energy_sums()]
 
@@ -58,12 +59,13 @@ class Motion:
         if len(self.moved) < 9:
             return None
         own = moved <= 0.5 * falls(self.sim) * (self.sim.steps - self.begun) ** 2
-        block = int(np.where(own, moved, 0.0).argmax())
+        beyond = moved - self.play  # what microrotations cannot explain
+        block = int(np.where(own, beyond, -np.inf).argmax())
         last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
-        if last[-1] <= self.far or not own[block] or min(last) <= 0.0:
+        if beyond[block] <= self.far or not own[block] or min(last) <= 0.0:
             return None
         accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > ACCELERATED
-        steady = last[-1] > STEADY**4 * last[0] and last[-1] > STEADILY * self.far
+        steady = last[-1] > STEADY**4 * last[0] and beyond[block] > STEADILY * self.far
         if not (accelerated or steady):
             return None
         for since in (self.energies[-3], self.energies[0]):
@@ -110,6 +112,7 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
     motion = np.abs(sim.save_places() - since)
     d = sim.model.dimension
     moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
-    gross = (moved > GROSS * sim.widths) | (turned > TURNED * sim.shape.radii)
+    gross = moved > GROSS * sim.widths + sim.play.moved
+    gross |= turned > (TURNED + sim.play.turned) * sim.shape.radii
     gross &= (np.maximum(moved, turned) > NOT_ELASTIC * scale) & ~sim.model.fixed
     return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None

@@ -78,7 +78,9 @@ def _search(job: Job) -> tuple[Search, Simulation]:
             if settle(sim, track, job.budget).state == "equilibrium":
                 start, search.start = find_start(job, sim)
                 search.limits = start.limits if start is not None else None
-                find_failure(sim, analysis.resolution, analysis.max_load, job.budget, track, search, start)
+                find_failure(
+                    sim, analysis.resolution, analysis.max_load, job.budget, track, search, start, analysis.step
+                )
             else:
                 search.status = FALLS
         except SolverError as error:

@@ -12,6 +12,7 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.start import TOUCH
+from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -124,13 +125,19 @@ class Job:
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
         wanted = self.case.analysis.kinematics
-        gaps = open_joints(self.model) if wanted == "auto" else 0
-        if gaps:
+        profiles = [name for name, joint in self.case.joints.items() if joint.profile is not None]
+        if profiles and wanted == "fixed":
+            message = f"'fixed' is not allowed: microrotations at the profile of joint '{profiles[0]}' move the blocks"
+            raise CaseError([CaseProblem(("analysis", "kinematics"), message)])
+        gaps = open_joints(self.model) if wanted == "auto" and not profiles else 0
+        if profiles:
+            self.skipped.append(f"fixed geometry: microrotations at the profile of joint '{profiles[0]}' move the blocks")
+        elif gaps:
             self.skipped.append(f"fixed geometry: {gaps} joints have gaps that may close")
         elif wanted != "large":
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
-        return self.simulation("large" if gaps or wanted == "large" else "fixed")
+        return self.simulation("large" if profiles or gaps or wanted == "large" else "fixed")
 
     def track(self, sim: Simulation) -> Track:
         """Rows and frames of a simulation."""

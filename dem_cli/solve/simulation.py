@@ -13,15 +13,16 @@ from dem_cli.contact.assemble import (
     JointProperties,
     build_joints,
     carry_memory,
+    measure_points,
 )
 from dem_cli.contact.detect import block_shape, find_joints, inner_edges
-from dem_cli.contact.start import bodies_at_rest, close_touching, joints_of_start
+from dem_cli.contact.start import bodies_at_rest, bond_touching, close_touching, joints_of_start
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
 from dem_cli.kernels.drift import drift_centroids, drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.kernels.planar_geometry import measure
+from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
@@ -29,6 +30,7 @@ from dem_cli.model.scales import origin_of, own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.motion import depth, widths
+from dem_cli.solve.play import play
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
@@ -37,11 +39,13 @@ ALPHA = 0.4  # local damping near failure
 
 
 @cache
-def compiled_advance(kinematics: str, law: Law):
-    """The stepping loop for one kinematics and one law; compiled at its first call."""
+def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
+    """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
     if kinematics == "fixed":
-        return make_advance(of_bodies(make_contact_forces(law.function, integrates_gap=True)), drift_centroids)
-    return make_advance(make_planar_forces(law.function), drift_corners)
+        forces = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
+        return make_advance(of_bodies(forces), drift_centroids)
+    make = make_profiled_forces if profiled else make_planar_forces
+    return make_advance(make(law.function, law.bonded), drift_corners)
 
 
 class EnergySums(NamedTuple):
@@ -104,12 +108,12 @@ class Simulation:
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
+        self.play = play(model, self.joints, self.bodies.positions)
 
     # -- detection ---------------------------------------------------------------------------------
 
     def _detect_first(self) -> None:
-        model = self.model
-        n_memory = self.law.n_memory
+        model, n_memory = self.model, self.law.n_memory(self.model.dimension)
         if self.kinematics == "fixed":
             self.joints, self.contacts = joints_of_start(
                 model, self.bodies, self.properties, self.smallest, n_memory
@@ -118,6 +122,7 @@ class Simulation:
             faces = find_joints(model, self.bodies.corners, SKIN * self.smallest, self.inner)
             self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory)
             close_touching(self.contacts, self.smallest)
+            bond_touching(model, self.joints, self.contacts, self.properties)
         self._after_detection()
 
     def detect(self) -> None:
@@ -125,7 +130,8 @@ class Simulation:
         old, memory = self.joints, self.contacts
         self.measured()  # the points of the old joints, for those that move on
         faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest, self.inner)
-        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.law.n_memory)
+        n_memory = self.law.n_memory(self.model.dimension)
+        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, n_memory, old)
         carry_memory(old, memory, joints, contacts)
         if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
             # Still the same faces though nothing moved: do not ask again at every step.
@@ -145,7 +151,7 @@ class Simulation:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
         contacts = Contacts(*(a.copy() for a in self.contacts))
         if self.kinematics == "large":
-            measure(self.joints, contacts, self.bodies)
+            measure_points(self.joints, contacts, self.bodies)
         return contacts
 
     def set_masses(self) -> None:
@@ -159,7 +165,7 @@ class Simulation:
 
     def advance(self, n_steps: int, mode: int) -> None:
         """n_steps steps of one mode (kernels.records), with detection when it is due."""
-        run = compiled_advance(self.kinematics, self.law)
+        run = compiled_advance(self.kinematics, self.law, self.properties.profiled)
         left, load = n_steps, 0.0
         while left > 0:
             done = run(
@@ -176,7 +182,7 @@ class Simulation:
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
         control = self.control.copy()
-        compiled_advance(self.kinematics, self.law)(
+        compiled_advance(self.kinematics, self.law, self.properties.profiled)(
             0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
             self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
@@ -324,8 +330,8 @@ class Simulation:
         joints, contacts = self.joints, self.measured()
         owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
         friction = np.sqrt((contacts.shear**2).sum(axis=1))
-        limit = self.law.shear_limit(joints.law[owner], contacts.normal)
-        state = np.where(contacts.normal <= 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
+        limit = self.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
+        state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
         return ContactRecord(
             joint=owner,
             blocks=joints.blocks[owner],

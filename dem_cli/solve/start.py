@@ -50,10 +50,12 @@ def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]
     blocks = len(sim.free)
     automatic = GRAVITY if blocks <= SMALL else PATH if blocks <= LARGE else LIMIT
     kind = automatic if wanted == "auto" else wanted
-    if sim.kinematics != "fixed":
+    if sim.kinematics != "fixed" or sim.properties.profiled:
         kind = GRAVITY  # gaps that may close, or soft joints: the geometry of the start is not that of failure
     if not (sim.loads.dead[sim.free].any() and sim.loads.live[sim.free].any()):
         kind = GRAVITY  # nothing to start from
+    if job.case.analysis.step is not None:
+        kind = GRAVITY  # every step is asked for
     report: dict[str, Any] = {"kind": kind, "chosen": "by size" if wanted == "auto" else "by the case"}
     if kind == GRAVITY:
         return None, report

@@ -1,0 +1,178 @@
+"""The loop over contact points of joints with more than two points, 2D: joints with a profile, bonded joints.
+
+Block b carries a convex chain of vertices on its side of the joint, block a is flat: the non-coplanar joint
+of thesis 7.2.3 as geometry. The ends of the joint are corners of b on the edge of a, or corners of a on a side
+of the chain, as in planar_geometry.py; between them lie the vertices. A chain without rise is a planar joint.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from dem_cli.kernels.contact_forces import make_press
+from dem_cli.kernels.jit import always_inline, inline, kernel
+from dem_cli.kernels.planar_geometry import place_end
+from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
+
+
+@always_inline
+def _vertex(b1, tb, place, rise):
+    """Vertex of the chain, `place` [m] from corner b1 along the edge of b, `rise` [m] above it (into b)."""
+    return b1[0] - place * tb[0] - rise * tb[1], b1[1] - place * tb[1] + rise * tb[0]
+
+
+@always_inline
+def _side(tb, slope):
+    """Direction of a side of the chain, as tb is that of the edge of b."""
+    unit = 1.0 / math.sqrt(1.0 + slope * slope)
+    return unit * (tb[0] + slope * tb[1]), unit * (tb[1] - slope * tb[0])
+
+
+@always_inline
+def _outside(point, on_line, t):
+    """Distance of a point to a line with direction t, positive on its outer side [m]."""
+    return (point[0] - on_line[0]) * t[1] - (point[1] - on_line[1]) * t[0]
+
+
+@always_inline
+def _end(inside, blend, corner_a, corner_b, ta, ts, on_side):
+    """Gap at an end of the joint, and its share: 1 is a corner of b on the edge of a, 0 one of a on a side of b."""
+    share = min(max(0.5 + inside * blend, 0.0), 1.0)
+    gap = share * _outside(corner_b, corner_a, ta) + (1.0 - share) * _outside(corner_a, on_side, ts)
+    return gap, share
+
+
+def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = False) -> Callable:
+    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+
+    places: instead of forces, the loop keeps gaps, frames, levers and points up to date, for detection and records.
+    """
+    press = make_press(law, bonded)
+
+    @inline
+    def profiled_forces(joints, contacts, bodies, dt, like, like_rotation):
+        """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
+        blocks, starts, edges, scales, profile = (
+            joints.blocks, joints.starts, joints.edges, joints.scales, joints.profile
+        )  # fmt: skip
+        frames, levers, places_out = joints.frames, joints.levers, joints.points
+        kns, kss, parameters = joints.kn, joints.ks, joints.law
+        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
+        slips, memory, stale = contacts.slip, contacts.memory, contacts.stale
+        velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
+        d = len(like)
+        lost = 0.0
+        for number in range(blocks.shape[0]):
+            joint = np.uint64(number)
+            a0 = load(corners, np.uint64(edges[joint, 0]), 0, like)
+            a1 = load(corners, np.uint64(edges[joint, 1]), 0, like)
+            b0 = load(corners, np.uint64(edges[joint, 2]), 0, like)
+            b1 = load(corners, np.uint64(edges[joint, 3]), 0, like)
+            length_a, per_a, per_b, blend = (
+                scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
+            )  # fmt: skip
+            length_b = 1.0 / per_b
+            ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
+            tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
+            first, last = starts[joint], starts[number + 1] - 1
+            # The outer sides go on to the corners of b.
+            u0, g0, un, gn = profile[first, 0], profile[first, 1], profile[last, 0], profile[last, 1]
+            slope_first = (profile[first + 1, 1] - g0) / (profile[first + 1, 0] - u0)
+            slope_last = (gn - profile[last - 1, 1]) / (un - profile[last - 1, 0])
+            corner_low = _vertex(b1, tb, 0.0, g0 - slope_first * u0)
+            corner_high = _vertex(b1, tb, length_b, gn + slope_last * (length_b - un))
+            low = (corner_low[0] - a0[0]) * ta[0] + (corner_low[1] - a0[1]) * ta[1]
+            high = length_a - ((corner_high[0] - a0[0]) * ta[0] + (corner_high[1] - a0[1]) * ta[1])
+            overlap = length_a - max(low, 0.0) - max(high, 0.0)
+            # Sides on which the corners of a lie.
+            k, m = first, last - 1
+            while k + 1 < last and profile[k + 1, 0] <= -low:
+                k += 1
+            while m > first and profile[m, 0] > length_b + high:
+                m -= 1
+            side_low = _side(tb, (profile[k + 1, 1] - profile[k, 1]) / (profile[k + 1, 0] - profile[k, 0]))
+            side_high = _side(tb, (profile[m + 1, 1] - profile[m, 1]) / (profile[m + 1, 0] - profile[m, 0]))
+            on_low = _vertex(b1, tb, profile[k, 0], profile[k, 1])
+            on_high = _vertex(b1, tb, profile[m, 0], profile[m, 1])
+            gap_low, share_low = _end(low, blend, a0, corner_low, ta, side_low, on_low)
+            gap_high, share_high = _end(high, blend, a1, corner_high, ta, side_high, on_high)
+            apart = overlap <= 0.0 or min(gap_low, gap_high) <= -overlap
+            if apart:
+                loaded = False
+                for p in range(first, last + 1):
+                    loaded = loaded or normals[p] != 0.0
+                if stale[joint] == 0 and (overlap > 0.0 or loaded):
+                    stale[joint] = 1
+                    stale[-1] = 1
+            a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+            spin_a = load(velocities, a, d, like_rotation)
+            spin_b = load(velocities, b, d, like_rotation)
+            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
+            force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
+            loaded = False
+            for p in range(first, last + 1):
+                point = np.uint64(p)
+                share, side, corner_a, corner_b = 1.0, tb, a0, b1
+                if p == first:
+                    gap, share, side, corner_b = gap_low, share_low, side_low, corner_low
+                elif p == last:
+                    gap, share, side, corner_a, corner_b = gap_high, share_high, side_high, a1, corner_high
+                else:
+                    corner_b = _vertex(b1, tb, profile[point, 0], profile[point, 1])
+                    gap = _outside(corner_b, a0, ta)
+                    along = (corner_b[0] - a0[0]) * ta[0] + (corner_b[1] - a0[1]) * ta[1]
+                    if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
+                        gap = max(gap, 0.0)
+                if apart:
+                    gap = max(gap, 0.0)
+                before = gaps[point]
+                gaps[point] = gap
+                if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
+                    continue
+                frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, side, corner_a, corner_b)
+                if places:
+                    frames[point, 0], frames[point, 1] = frame[0]
+                    places_out[point, 0], places_out[point, 1] = place
+                    levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
+                    continue
+                loaded = True
+                normal, shear, path, work = press(
+                    gap, gap - before, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
+                )  # fmt: skip
+                if path > 0.0:
+                    slips[point] += path
+                lost += work
+                normals[point] = normal
+                store(shears, point, 0, shear)
+                force = compose(frame, normal, shear, force)
+                torque_a = add_torques(levers_a, normal, shear, torque_a)
+                torque_b = add_torques(levers_b, normal, shear, torque_b)
+            if loaded:
+                add_at(forces, a, 0, force, -1.0)
+                add_at(forces, b, 0, force, 1.0)
+                add_at(forces, a, d, torque_a, -1.0)
+                add_at(forces, b, d, torque_b, 1.0)
+        return lost
+
+    return profiled_forces
+
+
+@inline
+def _no_law(gap, slide, shear, kn, ks, parameters, joint, memory, point):
+    """Never called: points are placed, not pressed."""
+    return 0.0, shear, False
+
+
+_place_points = make_profiled_forces(_no_law, places=True)
+
+
+@kernel
+def measure_profiles(joints, contacts, bodies):
+    """Frames, levers, places and gaps of all points from the corners of the blocks, for detection and records."""
+    _place_points(joints, contacts, bodies, 0.0, (0.0, 0.0), (0.0,))

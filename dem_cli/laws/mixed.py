@@ -1,0 +1,62 @@
+"""Different laws in one scene: each joint finds its own by a number in its last column."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+
+import numpy as np
+
+from dem_cli.case.base import CaseModel
+from dem_cli.kernels.jit import inline
+from dem_cli.laws.law import Law
+
+
+@cache
+def mixed(laws: tuple[Law, ...]) -> Law:
+    """One law for joints of several: the parameters of each, filled up with zeros, then the number of its law.
+
+    The columns of a joint are made by `row`, not by the record.
+    """
+    if len(laws) == 1:
+        return laws[0]
+    function = laws[-1].function
+    for number in range(len(laws) - 2, -1, -1):
+        function = _either(number, laws[number].function, function)
+
+    def shear_limit(parameters, normal, memory, kn):
+        limit = np.zeros(len(normal))
+        for number, law in enumerate(laws):
+            own = parameters[:, -1] == number
+            limit[own] = law.shear_limit(parameters[own], normal[own], memory[own], kn[own])
+        return limit
+
+    return Law(
+        name=" + ".join(law.name for law in laws),
+        parameters=CaseModel,
+        function=function,
+        columns=lambda table, kn: (),
+        shear_limit=shear_limit,
+        scalars=max(law.scalars for law in laws),
+        vectors=max(law.vectors for law in laws),
+        bonded=any(law.bonded for law in laws),
+    )
+
+
+def row(laws: Sequence[Law], law: Law, columns: Sequence[float], width: int) -> np.ndarray:
+    """The parameters of a joint with this law, `width` columns wide and, where laws are mixed, its number last."""
+    if len(laws) == 1:
+        return np.array(columns, float)
+    return np.array([*columns, *[0.0] * (width - len(columns)), float(laws.index(law))])
+
+
+def _either(number: int, this: Callable, others: Callable) -> Callable:
+    """A law that is `this` where the last column is `number`, and else one of the others."""
+
+    @inline
+    def either(gap, slide, shear, kn, ks, parameters, joint, memory, point):
+        if parameters[joint, parameters.shape[1] - 1] == number:
+            return this(gap, slide, shear, kn, ks, parameters, joint, memory, point)
+        return others(gap, slide, shear, kn, ks, parameters, joint, memory, point)
+
+    return either

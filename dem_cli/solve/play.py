@@ -1,0 +1,59 @@
+"""How far microrotations at joints with a profile can take each block: motion that is neither elastic nor failure."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.kernels.records import Joints
+from dem_cli.model.model import Model
+
+
+class Play(NamedTuple):
+    """Largest motion by microrotations alone, zero where all joints are plane."""
+
+    moved: np.ndarray  # of the centroid [m], (n_blocks,)
+    turned: np.ndarray  # [rad], (n_blocks,)
+
+
+def joint_angles(joints: Joints) -> np.ndarray:
+    """Largest microrotation of each joint from the side that it rests on at the start [rad], (n_joints,)."""
+    angles = np.zeros(len(joints.blocks))
+    if not len(joints.profile):
+        return angles
+    sides = np.diff(joints.profile, axis=0)
+    inner = np.ones(len(sides), bool)
+    inner[joints.starts[1:-1] - 1] = False  # from the last point of a joint to the first of the next
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))[:-1]
+    np.maximum.at(angles, owner[inner], np.abs(sides[inner, 1] / sides[inner, 0]))
+    return angles
+
+
+def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
+    """Of every block on the way from the supports on which it can move least; joints: those of the start, 2D.
+
+    A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
+    """
+    found = Play(np.where(model.fixed, 0.0, np.inf), np.where(model.fixed, 0.0, np.inf))
+    angles = joint_angles(joints)
+    if not angles.any():
+        return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
+    places = np.add.reduceat(joints.points, joints.starts[:-1], axis=0) / np.diff(joints.starts)[:, None]
+    near = model.fixed.copy()
+    while True:
+        reached = near[joints.blocks]
+        new = near.copy()
+        for i in np.flatnonzero(reached[:, 0] != reached[:, 1]):
+            a, b = joints.blocks[i] if reached[i, 0] else joints.blocks[i, ::-1]
+            far = np.hypot(*(positions[b] - positions[a]))
+            moved = found.moved[a] + found.turned[a] * far + angles[i] * np.hypot(*(positions[b] - places[i]))
+            if moved < found.moved[b]:
+                found.moved[b], found.turned[b] = moved, found.turned[a] + angles[i]
+            new[b] = True
+        if (new == near).all():
+            break
+        near = new
+    loose = ~near  # touches nothing: nothing holds it, and nothing is known
+    found.moved[loose], found.turned[loose] = 0.0, 0.0
+    return found
