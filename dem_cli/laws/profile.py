@@ -14,8 +14,8 @@ Sides = Annotated[int, Field(ge=2, le=MOST_SIDES)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
-class Profile(CaseModel):
-    """[joints.NAME.profile]: a convex polygon on a flat surface; a value, or [lowest, highest] drawn per joint."""
+class Shape(CaseModel):
+    """A convex polygon on a flat surface but for its size: every number is a value, or [lowest, highest] to draw from."""
 
     sides: Sides | tuple[Sides, Sides] | None = Field(
         default=None, description="number of sides, or [lowest, highest]; default: as many as lengths"
@@ -28,9 +28,6 @@ class Profile(CaseModel):
     central: Share | tuple[Share, Share] | None = Field(
         default=None, description="instead of lengths: share of the middle side; the others are equal"
     )
-    aperture: Positive | tuple[NonNegative, Positive] = Field(
-        description="distance from the line through the ends of the polygon to its lowest point [m]"
-    )
     keep: Literal["aperture", "angle"] = Field(
         default="aperture", description="what stays where a joint is not as long as the lengths add up to"
     )
@@ -39,21 +36,17 @@ class Profile(CaseModel):
     )
 
     @model_validator(mode="after")
-    def _ranges(self) -> Profile:
-        for key in ("sides", "aperture", "central"):
-            _in_order(getattr(self, key), key)
-        for i, length in enumerate(self.lengths or ()):
-            _in_order(length, "lengths", i)
-        return self
-
-    @model_validator(mode="after")
-    def _sides_and_lengths(self) -> Profile:
+    def _sides_and_lengths(self) -> Shape:
         given = 0 if self.lengths is None else len(self.lengths)
         if self.lengths is not None and self.central is not None:
             raise ValueError("'lengths' and 'central' are given; a profile has one of them")
         if self.sides is None and given < 2:
             raise ValueError("missing 'sides'")
-        low, high = self._sides
+        for key in ("sides", "central"):
+            _in_order(getattr(self, key), key)
+        for i, length in enumerate(self.lengths or ()):
+            _in_order(length, "lengths", i)
+        low, high = self.number
         if given > 1 and (low, high) != (given, given):
             several = f"{low} sides" if low == high else f"{low} to {high} sides"
             raise KeyProblem(f"{given} lengths for {several}; give one per side, or one for all", "lengths")
@@ -65,14 +58,28 @@ class Profile(CaseModel):
         return self
 
     @property
-    def _sides(self) -> tuple[int, int]:
+    def number(self) -> tuple[int, int]:
+        """Lowest and highest number of sides."""
         return pair(len(self.lengths or ()) if self.sides is None else self.sides)
+
+
+class Profile(Shape):
+    """[joints.NAME.profile]: contact surfaces that are not plane."""
+
+    aperture: Positive | tuple[NonNegative, Positive] = Field(
+        description="distance from the line through the ends of the polygon to its lowest point [m]"
+    )
+
+    @model_validator(mode="after")
+    def _apertures(self) -> Profile:
+        _in_order(self.aperture, "aperture")
+        return self
 
     @property
     def ranges(self) -> dict[str, Any]:
         """All of it as plain numbers, every value a pair (lowest, highest), by the names of contact.layout.Layout."""
         return {
-            "sides": self._sides,
+            "sides": self.number,
             "aperture": pair(self.aperture),
             "lengths": tuple(map(pair, self.lengths or ())),
             "central": None if self.central is None else pair(self.central),
