@@ -10,36 +10,22 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, scale
+from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
-from dem_cli.laws.stiffness import StiffJoint
+from dem_cli.laws.softening import FRICTION_SOFTENING, Softening
 
 
-class CoulombJoint(StiffJoint):
+class CoulombJoint(FrictionJoint):
     """[joints.*] with law = "coulomb"."""
 
     law: Literal["coulomb"] = "coulomb"
-    friction: float | None = Field(default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]")
-    friction_angle_deg: float | None = Field(
-        default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction"
+    softening: Softening | None = Field(
+        default=None, description="friction that falls with the slip: { residual, slip_start, slip_length }"
     )
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> CoulombJoint:
-        if (self.friction is None) == (self.friction_angle_deg is None):
-            given = "both are given" if self.friction is not None else "none is given"
-            raise ValueError(f"give either 'friction' or 'friction_angle_deg' ({given})")
-        return self
-
-    @property
-    def coefficient(self) -> float:
-        """Friction coefficient tan(φ) [-]."""
-        if self.friction is not None:
-            return self.friction
-        return math.tan(math.radians(self.friction_angle_deg))
 
 
 @inline
@@ -62,5 +48,6 @@ COULOMB = Law(
     function=coulomb,
     columns=lambda table, kn: (table.coefficient,),
     shear_limit=lambda parameters, normal, memory, kn: parameters[:, 0] * normal,
+    variant=lambda table: FRICTION_SOFTENING if table.softening else None,
     source="Cundall 1971; thesis 4.3",
 )

@@ -2,5 +2,6 @@
 
 from dem_cli.laws.coulomb import COULOMB
 from dem_cli.laws.law import Law
+from dem_cli.laws.mohr_coulomb import MOHR_COULOMB
 
-LAWS: dict[str, Law] = {law.name: law for law in (COULOMB,)}
+LAWS: dict[str, Law] = {law.name: law for law in (COULOMB, MOHR_COULOMB)}

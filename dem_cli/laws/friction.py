@@ -1,0 +1,33 @@
+"""Friction of a joint, as a coefficient or as an angle; common to all laws that have one."""
+
+from __future__ import annotations
+
+import math
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from dem_cli.laws.stiffness import StiffJoint
+
+
+class FrictionJoint(StiffJoint):
+    """Stiffness and friction of a joint."""
+
+    friction: float | None = Field(default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]")
+    friction_angle_deg: float | None = Field(
+        default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if (self.friction is None) == (self.friction_angle_deg is None):
+            given = "both are given" if self.friction is not None else "none is given"
+            raise ValueError(f"give either 'friction' or 'friction_angle_deg' ({given})")
+        return self
+
+    @property
+    def coefficient(self) -> float:
+        """Friction coefficient tan(φ) [-]."""
+        if self.friction is not None:
+            return self.friction
+        return math.tan(math.radians(self.friction_angle_deg))

@@ -1,0 +1,166 @@
+"""Mohr-Coulomb joint: cohesion, tension cut-off, friction, dilation up to a limiting slip (papers 001 and 002).
+
+    N = −kn (gap − d),   N ≥ −ft A,   |s| ≤ c A + μ N,   d = tan ψ min(|u|, zdil)
+
+u is the plastic slip as a vector, so that the opening d goes back when the joint slips back. Intact until it fails in
+tension or in shear; then cohesion, tension and friction are the residual ones at once. Points that meet later were
+never bonded: friction only, the residual one. Only slip under compression opens the joint.
+
+With a residual tension the joint opens like a slack tie: it carries that much, and after unloading nothing until it is
+as far open as it was.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import KeyProblem, NonNegative
+from dem_cli.kernels.jit import inline
+from dem_cli.kernels.vec import axpy, dot, load, norm, scale, store
+from dem_cli.laws.friction import FrictionJoint
+from dem_cli.laws.law import Law
+
+INTACT, NEVER, BROKEN = 1.0, 0.0, -1.0  # state of the bond, memory[point, 0]
+STATE, DILATION, PULLED, SLIP = 0, 1, 2, 3  # memory: state, opening by dilation [m], plastic opening [m], slip [m]
+
+
+class MohrCoulombJoint(FrictionJoint):
+    """[joints.*] with law = "mohr-coulomb"."""
+
+    plane_points: ClassVar[int] = 3
+
+    law: Literal["mohr-coulomb"] = "mohr-coulomb"
+    cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]")
+    tension: NonNegative = Field(
+        default=0.0, description="tensile strength ft [Pa], at most cohesion / friction: there the shear strength ends"
+    )
+    dilation_deg: float = Field(
+        default=0.0, ge=0.0, lt=90.0, description="dilation angle ψ [deg], at most the friction angle"
+    )
+    dilation_slip: NonNegative | None = Field(
+        default=None, description="slip zdil up to which the joint dilates [m]; default: without end"
+    )
+    cohesion_residual: NonNegative = Field(default=0.0, description="cohesion after failure [Pa]")
+    tension_residual: NonNegative = Field(default=0.0, description="tensile strength after failure [Pa]")
+    friction_residual: NonNegative | None = Field(
+        default=None, description="friction coefficient after failure [-]; default: as before"
+    )
+
+    @property
+    def residual(self) -> float:
+        """Friction coefficient after failure [-]."""
+        return self.coefficient if self.friction_residual is None else self.friction_residual
+
+    @model_validator(mode="after")
+    def _residual_is_less(self) -> Self:
+        for key in ("cohesion", "tension"):
+            left, whole = getattr(self, f"{key}_residual"), getattr(self, key)
+            if left > whole:
+                raise KeyProblem(f"{left:g} is more than '{key}' = {whole:g}", f"{key}_residual")
+        if self.residual > self.coefficient:
+            raise KeyProblem(f"{self.residual:g} is more than friction = {self.coefficient:g}", "friction_residual")
+        return self
+
+    @model_validator(mode="after")
+    def _tension_within_the_cone(self) -> Self:
+        for key, friction in (("", self.coefficient), ("_residual", self.residual)):
+            tension, cohesion = getattr(self, f"tension{key}"), getattr(self, f"cohesion{key}")
+            if tension * friction > cohesion * (1.0 + 1e-9):
+                raise KeyProblem(
+                    f"{tension:g} Pa is beyond the tip of the cone; "
+                    f"must be at most cohesion / friction = {cohesion / friction:g} Pa",
+                    f"tension{key}",
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _dilates_less_than_it_rubs(self) -> Self:
+        angle = math.degrees(math.atan(self.residual))
+        if self.dilation_deg > angle * (1.0 + 1e-9):
+            raise KeyProblem(
+                f"{self.dilation_deg:g} is more than the friction angle, {angle:g} degrees: sliding would make energy",
+                "dilation_deg",
+            )
+        return self
+
+
+@inline
+def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
+    """Normal force and shear force of a bonded, frictional, dilating contact point."""
+    area = kn / parameters[joint, 0]
+    state, dilation, pulled = memory[point, STATE], memory[point, DILATION], memory[point, PULLED]
+    trial = axpy(-ks, slide, shear)
+    size = norm(trial)
+    opening = gap - dilation
+    if state == INTACT:
+        cohesion, tension, friction = parameters[joint, 1], parameters[joint, 2], parameters[joint, 3]
+        normal = -kn * opening
+        if normal >= -tension * area and size <= max(cohesion * area + friction * normal, 0.0):
+            return normal, trial, False
+        state = BROKEN
+        memory[point, STATE] = state
+    # What is left of the bond. In tension nothing is carried until the joint is as far open as it was.
+    cohesion, tension, friction = 0.0, 0.0, parameters[joint, 6]
+    if state == BROKEN:
+        cohesion, tension = parameters[joint, 4] * area, parameters[joint, 5] * area
+    normal, yields = -kn * opening, False
+    if opening > 0.0:
+        normal = min(-kn * (opening - pulled), 0.0)
+        if normal < -tension:
+            normal, yields = -tension, True
+            memory[point, PULLED] = opening - tension / kn
+        if normal == 0.0:
+            return 0.0, scale(0.0, shear), True
+    limit = max(cohesion + friction * normal, 0.0)
+    if size <= limit:
+        return normal, trial, yields
+    if opening < 0.0 and parameters[joint, 7] > 0.0:
+        # The normal force grows as the joint dilates in this very step: foretell the slip from the present direction.
+        tangent, reach = parameters[joint, 7], parameters[joint, 8]
+        slip = load(memory, point, SLIP, shear)
+        gone = norm(slip)
+        outward = 1.0 if gone == 0.0 else max(-dot(slip, trial) / (gone * size), 0.0)
+        rise = tangent * outward if gone < reach else 0.0
+        ahead = axpy(-(size - limit) / (ks + friction * kn * rise) / size, trial, slip)
+        dilation = tangent * min(norm(ahead), reach)
+        memory[point, DILATION] = dilation
+        normal = max(kn * (dilation - gap), 0.0)
+        limit = min(cohesion + friction * normal, size)
+        store(memory, point, SLIP, axpy(-(size - limit) / ks / size, trial, slip))
+    return normal, scale(limit / size, trial), True
+
+
+def shear_limit(parameters, normal, memory, kn):
+    """c A + μ N of the bond as it is [N]; points that were never bonded have no c."""
+    area = kn / parameters[:, 0]
+    intact, broken = memory[:, STATE] == INTACT, memory[:, STATE] == BROKEN
+    cohesion = np.where(intact, parameters[:, 1], np.where(broken, parameters[:, 4], 0.0))
+    friction = np.where(intact, parameters[:, 3], parameters[:, 6])
+    return np.maximum(cohesion * area + friction * normal, 0.0)
+
+
+def columns(table, kn):
+    """kn, then c, ft, μ intact, the same after failure, tan ψ, zdil."""
+    return (
+        kn, table.cohesion, table.tension, table.coefficient,
+        table.cohesion_residual, table.tension_residual, table.residual,
+        math.tan(math.radians(table.dilation_deg)), math.inf if table.dilation_slip is None else table.dilation_slip,
+    )  # fmt: skip
+
+
+MOHR_COULOMB = Law(
+    name="mohr-coulomb",
+    parameters=MohrCoulombJoint,
+    function=mohr_coulomb,
+    columns=columns,
+    shear_limit=shear_limit,
+    scalars=3,
+    vectors=1,
+    intact=(INTACT,),
+    bonded=True,
+    source="papers 001 (brittle bond) and 002 (dilation up to a limiting slip)",
+)
