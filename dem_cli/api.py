@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 @cache
 def make_case_model() -> type[Case]:
-    """The class of case files with every registered structure, law and analysis."""
+    """The class of case files with every registered structure, law and analysis, and all other tables."""
+    from dem_cli.calibrate.table import Calibration
     from dem_cli.laws.registry import LAWS
     from dem_cli.solve.registry import ANALYSES
     from dem_cli.structures.registry import GENERATORS
@@ -26,6 +27,7 @@ def make_case_model() -> type[Case]:
         {kind: generator.parameters for kind, generator in GENERATORS.items()},
         {name: law.parameters for name, law in LAWS.items()},
         {kind: analysis.parameters for kind, analysis in ANALYSES.items()},
+        Calibration,
     )
 
 

@@ -148,6 +148,7 @@ class Case(CaseModel):
     output: Output = Field(default=Output(), description="what is kept")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
     reference: Reference | None = Field(default=None, description="what the answer is compared with")
+    calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: dict[str, Any] | None = Field(
         default=None, description="values to be combined; `dem run` ignores it"
     )
@@ -168,8 +169,12 @@ def case_model(
     structures: Mapping[str, type[StructureBase]],
     laws: Mapping[str, type[CaseModel]],
     analyses: Mapping[str, type[CaseModel]],
+    calibration: type[CaseModel] | None = None,
 ) -> type[Case]:
-    """The class of case files in which these kinds exist: kind -> class of its parameters."""
+    """The class of case files in which these kinds exist: kind -> class of its parameters.
+
+    calibration: class of the [calibration] table; None: there is no such table.
+    """
     structure = one_of(structures, "kind")
     joint = one_of(laws, "law", default="coulomb")
     analysis = one_of(analyses, "kind", default="pushover")
@@ -181,6 +186,7 @@ def case_model(
             analysis,
             Field(default_factory=dict, validate_default=True, description=fields["analysis"].description),
         ),
+        "calibration": (calibration and calibration | None, fields["calibration"]),
     }
     return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
 

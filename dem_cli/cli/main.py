@@ -20,6 +20,7 @@ from dem_cli.errors import DemError
 COMMANDS = {  # name -> the line that `dem --help` shows
     "run": "Solve a case and write its results.",
     "check": "Validate a case and print its model; solve nothing.",
+    "calibrate": "Find the joint profile that comes closest to a test.",
     "limit": "Failure load by rigid-block limit analysis.",
     "build": "Write the geometry of a case to a file.",
     "new": "Print a commented case file to start from.",

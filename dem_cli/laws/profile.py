@@ -15,7 +15,7 @@ Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
 class Shape(CaseModel):
-    """A convex polygon on a flat surface but for its size: every number is a value, or [lowest, highest] to draw from."""
+    """A convex polygon on a flat surface, but for its size: each number is a value or a range to draw from."""
 
     sides: Sides | tuple[Sides, Sides] | None = Field(
         default=None, description="number of sides, or [lowest, highest]; default: as many as lengths"

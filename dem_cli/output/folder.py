@@ -30,6 +30,9 @@ OWN_NAMES = frozenset(
         "capacity.png",
         "collapse.png",
         "energy.png",
+        "calibration.csv",
+        "calibration.png",
+        "calibrated.toml",
         "pvd",
     )
 )

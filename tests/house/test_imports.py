@@ -13,11 +13,12 @@ ANYTHING = None
 ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
     "bench": {"api", "case", "contact", "kernels", "laws", "limit", "model", "output", "post", "solve"},
-    "api": {"case", "model", "structures", "laws", "solve", "output.record"},
+    "api": {"case", "model", "structures", "laws", "solve", "output.record", "calibrate.table"},
     "case": {"case"},
     "post": {"output", "model"},
     "output": {"model"},
     "solve": {"limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema"},
+    "calibrate": {"laws", "case.base", "case.schema"},
     "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
     "contact": {"model", "geometry", "kernels"},
     "model": {"structures", "geometry", "contact", "case"},

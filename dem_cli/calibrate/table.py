@@ -1,0 +1,55 @@
+"""[calibration]: what was measured on a structure, and the profiles of its joints to try (thesis 7.4.1)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
+from dem_cli.laws.profile import Shape, pair
+
+
+class NamedShape(Shape):
+    """[[calibration.shapes]]: a polygon but for its aperture."""
+
+    name: Annotated[str, Field(min_length=1)] = Field(description="as the table and the picture call it")
+
+    @property
+    def share_in_the_middle(self) -> tuple[float, float] | None:
+        """Lowest and highest share of the middle side; None where sides vary so that there is no telling."""
+        low, high = self.number
+        if self.central is not None:
+            return pair(self.central)
+        if low != high or low % 2 == 0:
+            return None
+        if self.lengths is None or len(self.lengths) == 1:
+            return None if self.lengths and isinstance(self.lengths[0], tuple) else (1.0 / low, 1.0 / low)
+        if any(isinstance(length, tuple) for length in self.lengths):
+            return None
+        share = self.lengths[low // 2] / sum(self.lengths)
+        return share, share
+
+
+class Calibration(CaseModel):
+    """[calibration]"""
+
+    joint: str = Field(default="", description="a name in [joints]: its profile is sought; default: the first one")
+    failure_load: Positive = Field(description="measured load multiplier at failure")
+    displacement: Positive = Field(description="measured displacement before failure [m], whatever its sign")
+    block: str | None = Field(default=None, description="id of the block whose centroid was watched")
+    point: Pair | None = Field(default=None, description="instead of block: a point of the undeformed structure [m]")
+    component: Literal["x", "y"] | None = Field(default=None, description="default: the length of the vector")
+    apertures: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(description="tried with each shape [m]")
+    shapes: Annotated[tuple[NamedShape, ...], Field(min_length=1)] = Field(description="tried with each aperture")
+
+    @model_validator(mode="after")
+    def _one_place_and_different_names(self) -> Calibration:
+        if (self.block is None) == (self.point is None):
+            found = "'block' and 'point' are" if self.block else "neither 'block' nor 'point' is"
+            raise ValueError(f"{found} given; the displacement is that of one of them")
+        names = [shape.name for shape in self.shapes]
+        for i, name in enumerate(names):
+            if name in names[:i]:
+                raise KeyProblem(f"'{name}' is used twice, first at shapes.{names.index(name)}", "shapes", i, "name")
+        return self

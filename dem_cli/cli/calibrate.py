@@ -1,0 +1,266 @@
+"""`dem calibrate`: the joint profile whose failure load and displacement come closest to measured ones."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from dem_cli import __version__
+from dem_cli.calibrate.answer import OK, Found
+from dem_cli.cli import console
+from dem_cli.cli.interrupt import Interrupts
+from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.workers import side_by_side, usable_cores
+from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.calibrate.trials import Trial
+    from dem_cli.case.reader import LoadedCase
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.record import Frame, HistoryRow
+
+CASE, TABLE, PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
+
+
+@click.command("calibrate", short_help="Find the joint profile that comes closest to a test.")
+@case_argument
+@overrides_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME-calibration."
+)
+@click.option("-j", "--jobs", type=click.IntRange(min=1), metavar="N", help="Runs side by side; default: all cores.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
+@click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
+def command(
+    case: str, overrides: Sequence[str], output: Path | None, jobs: int | None, as_json: bool, quiet: bool, force: bool
+) -> int:
+    """Try the profiles in [calibration] of CASE; the closest to the measured values is written as a case.
+
+    Every shape with every aperture is one run up to failure.
+    """
+    from dem_cli import api
+    from dem_cli.calibrate.trials import trials
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.summary import to_json
+
+    started = time.perf_counter()
+    loaded = api.load_case(case, overrides)
+    check(loaded)
+    plan = trials(loaded.case)
+    check_place(loaded, plan[0])
+    if not quiet:
+        warn(loaded)
+    with (
+        Interrupts(),
+        OutputFolder(output or Path("results") / f"{loaded.path.stem}-calibration", force=force) as folder,
+    ):
+        found = solve_all(plan, min(jobs or usable_cores(), len(plan)), quiet)
+        summary = summarised(loaded, plan, found) | {"wall_seconds": time.perf_counter() - started}
+        write(folder, summary, plan, quiet)
+        place = folder.commit()
+    console.show(to_json(summary).rstrip() if as_json else answer(summary, place))
+    return 0
+
+
+def check(loaded: LoadedCase) -> None:
+    """Raises UsageError for a case without calibration or without failure load, CaseError for an unknown joint."""
+    case = loaded.case
+    if case.calibration is None:
+        raise UsageError(f"{loaded.path}: has no [calibration]: what was measured, and the profiles to try")
+    if case.analysis.kind != "pushover":
+        raise UsageError(
+            f"a calibration compares failure loads, and analysis.kind = '{case.analysis.kind}' has none; "
+            "add --set analysis.kind=pushover (and its pattern)"
+        )
+    joint = case.calibration.joint
+    if joint and joint not in case.joints:
+        from dem_cli.case.words import unknown_name
+
+        problem = CaseProblem(("calibration", "joint"), unknown_name("joint", joint, list(case.joints)))
+        raise CaseError([problem], loaded.render)
+
+
+def check_place(loaded: LoadedCase, plane: Trial) -> None:
+    """Builds the model once: mistakes in it, and in the place that was watched, are said before anything is solved."""
+    from dem_cli import api
+    from dem_cli.case.reader import LoadedCase as Loaded
+
+    watched = ("monitor", len(loaded.case.monitor))
+    built = Loaded(plane.case, loaded)
+    try:
+        api.build_model(built)
+    except CaseError as error:
+        problems = [
+            CaseProblem(("calibration", *p.path[2:]), p.message, p.at_key) if p.path[:2] == watched else p
+            for p in error.problems
+        ]
+        raise CaseError(problems, loaded.render) from None
+    loaded.warnings += [line for line in built.warnings if line not in loaded.warnings]
+
+
+def solve_all(plan: Sequence[Trial], jobs: int, quiet: bool) -> list[Found]:
+    """All trials. Raises CaseError's message as UsageError where a profile does not suit the joints."""
+    from dem_cli.case.writer import case_text
+
+    found: dict[int, Found] = {}
+    texts = [case_text(trial.case) for trial in plan]
+    with console.Progress(quiet) as bar:
+        bar.update(f"{len(plan)} runs, {jobs} side by side", 0.0, 0.0, 0.0)
+        for i, one in side_by_side(solved, texts, jobs):
+            if one.wrong_case:
+                raise UsageError(f"{plan[i].name}: {one.status}")
+            found[i] = one
+            bar.update(plan[i].name, one.failure_load or 0.0, one.displacement or 0.0, len(found) / len(plan))
+    return [found[i] for i in range(len(plan))]
+
+
+class Last:
+    """An observer that keeps the rows only."""
+
+    def __init__(self) -> None:
+        self.rows: list[HistoryRow] = []
+
+    def row(self, row: HistoryRow) -> None:
+        self.rows.append(row)
+
+    def frame(self, frame: Frame) -> None:
+        pass
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        pass
+
+
+def solved(text: str) -> Found:
+    """One trial, up to failure: its case as text, so that it can go to another process."""
+    from dem_cli import api
+    from dem_cli.case.reader import LoadedCase, Source, parse_toml, validate
+    from dem_cli.solve.run import run
+
+    source = Source(Path(CASE), text)
+    loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
+    case = loaded.case
+    only_failure = case.analysis.model_copy(update={"follow": 0.0, "limit": False})
+    observer = Last()
+    try:
+        model = api.build_model(loaded)
+        summary = run(case.model_copy(update={"analysis": only_failure}), model, observer).summary
+    except CaseError as error:
+        return Found("; ".join(problem.message for problem in error.problems), wrong_case=True)
+    except SolverError as error:
+        return Found(f"not converged: {error}")
+    load = summary.get("failure_load")
+    held = [row for row in observer.rows if row.stage == "loading" and row.load == load]
+    return Found(
+        summary["status"],
+        load,
+        tuple(summary.get("failure_load_bracket") or (None, None)),
+        abs(held[-1].monitors[-1]) if held else None,
+        summary["solve_seconds"],
+        tuple(summary["warnings"]),
+    )
+
+
+def summarised(loaded: LoadedCase, plan: Sequence[Trial], found: Sequence[Found]) -> dict[str, Any]:
+    """What summary.json holds. Raises SolverError where no profile has a failure load."""
+    from dem_cli.calibrate.answer import closest, rows
+    from dem_cli.output.summary import ordered
+
+    case, measured = loaded.case, loaded.case.calibration
+    table = rows(measured, plan, found)
+    best = closest(table)
+    if best is None:
+        raise SolverError(f"no profile has a failure load; {plan[1].name}: {found[1].status}")
+    unanswered = [f"{trial.name}: {one.status}" for trial, one in zip(plan, found) if one.status != OK]
+    return ordered(
+        {
+            "title": case.title or loaded.path.stem,
+            "kind": "calibration",
+            "version": __version__,
+            "status": OK,
+            "joint": measured.joint or case.default_joint,
+            "measured": {
+                "failure_load": measured.failure_load,
+                "displacement": measured.displacement,
+                "of": measured.block or list(measured.point),
+                "component": measured.component,
+            },
+            "closest": table[best],
+            "trials": table,
+            "solve_seconds": sum(one.seconds for one in found),
+            "warnings": [*loaded.warnings, *unanswered],
+        }
+    )
+
+
+def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Trial], quiet: bool) -> None:
+    """Summary, table, the case with the closest profile, and the picture."""
+    from dem_cli.calibrate.answer import as_csv
+    from dem_cli.case.writer import case_text
+    from dem_cli.output.folder import write_error
+    from dem_cli.output.summary import write_summary
+
+    best = summary["trials"].index(summary["closest"])
+    try:
+        (folder.path / TABLE).write_text(as_csv(summary["trials"]), encoding="utf-8", newline="\n")
+        (folder.path / CASE).write_text(case_text(plan[best].case), encoding="utf-8", newline="\n")
+        write_summary(folder.path, summary)
+    except OSError as error:
+        raise write_error(error, folder.final) from None
+    try:
+        from dem_cli.post.calibration import draw_calibration
+
+        draw_calibration(summary, folder.path / PICTURE)
+    except (DemError, OSError) as error:
+        if isinstance(error, OutputError):
+            raise
+        console.note(f"no picture: {error}", quiet)
+
+
+def answer(summary: dict[str, Any], folder: Path) -> str:
+    """The table of the thesis (Table 7-2): a line per profile, the closest one marked."""
+    from dem_cli.cli.run import file_names, shown
+
+    head = ("shape", "sides", "middle side", "aperture [mm]", "load", "of plane", "displacement [mm]", "distance", "")
+    lines = [head, *(line(row, row == summary["closest"]) for row in summary["trials"])]
+    measured = summary["measured"]
+    plane = summary["trials"][0]["failure_load"]
+    share = measured["failure_load"] / plane if plane else None
+    lines.append(
+        ("measured", "", "", "", number(measured["failure_load"], ".4f"), number(share, ".3f"),
+         number(1e3 * measured["displacement"], ".4g"), "", "")
+    )  # fmt: skip
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    text = ["  " + "  ".join(word.ljust(w) for word, w in zip(words, widths)).rstrip() for words in lines]
+    text = [f"{summary['title']}: profiles of joint '{summary['joint']}'", *text]
+    text += [f"  warning: {warning}" for warning in summary["warnings"]]
+    return "\n".join([*text, f"  written to {shown(folder)} ({', '.join(file_names(folder))})"])
+
+
+def line(row: dict[str, Any], closest: bool) -> tuple[str, ...]:
+    """One trial as words."""
+    middle = row["central"]
+    if isinstance(middle, list):
+        percent = "–".join(f"{100 * value:.3g}" for value in middle) + " %"
+    else:
+        percent = "" if middle is None else f"{100 * middle:.3g} %"
+    sides = row["sides"]
+    return (
+        row["shape"] or "plane",
+        "–".join(map(str, sides)) if isinstance(sides, list) else str(sides or ""),
+        percent,
+        number(row["aperture"] and 1e3 * row["aperture"], ".4g") if row["aperture"] else "",
+        number(row["failure_load"], ".4f"),
+        number(row["share_of_plane"], ".3f"),
+        number(row["displacement"] and 1e3 * row["displacement"], ".4g"),
+        number(row["distance"], ".3f") if row["shape"] else "",
+        row["status"] if row["status"] != OK else "closest" if closest else "",
+    )
+
+
+def number(value: float | None, form: str) -> str:
+    return "–" if value is None else format(value, form)
