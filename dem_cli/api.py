@@ -51,5 +51,6 @@ def build_model(loaded: LoadedCase) -> Model:
     found = validate.problems(loaded.case, made.model, made.blocks)
     if found:
         raise CaseError(found, loaded.render)
-    loaded.warnings += [line for line in validate.warnings(made.model) if line not in loaded.warnings]
+    found_odd = [*map(loaded.render, made.doubts), *validate.warnings(made.model)]
+    loaded.warnings += [line for line in found_odd if line not in loaded.warnings]
     return made.model

@@ -36,7 +36,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
-    found = list(unknown_materials(data)) + list(unknown_in_interfaces(data))
+    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -94,6 +94,14 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
             yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
 
 
+def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    ids = [table["id"] for _, table in entries(data, "structure") if isinstance(table.get("id"), str)]
+    for path, table in entries(data, "imperfection"):
+        name = table.get("structure")
+        if isinstance(name, str) and name not in ids:
+            yield CaseProblem((*path, "structure"), unknown_name("structure", name, ids))
+
+
 def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
     """The tables of an array of tables with their key paths; what is no table is left to the validator."""
     tables = data.get(key)
@@ -109,14 +117,14 @@ def names(data: dict[str, Any], key: str) -> list[str]:
 def check_names(
     case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None
 ) -> list[CaseProblem]:
-    """Problems of loads, settlements and monitors on blocks that do not exist; of settlements of free blocks.
+    """Tables about blocks that do not exist, and settlements of free blocks.
 
     blocks  number of the block by its id and its aliases, known only after the structures are built
     fixed   for each block, whether it is a support
     """
     found = [
         CaseProblem((key, i, "block"), unknown_name("block", table.block, list(blocks)))
-        for key in ("load", "settlement", "monitor")
+        for key in ("imperfection", "load", "settlement", "monitor")
         for i, table in enumerate(getattr(case, key))
         if table.block is not None and table.block not in blocks
     ]

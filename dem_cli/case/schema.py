@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive, StructureBase
+from dem_cli.case.imperfection import Imperfection
 
 Name = Annotated[str, Field(min_length=1)]
 Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
@@ -142,6 +143,7 @@ class Case(CaseModel):
     interface: tuple[Interface, ...] = Field(default=(), description="other joints between two materials")
     structure: tuple[Any, ...] = Field(default=(), description="generated blocks")
     block: tuple[BlockTable, ...] = Field(default=(), description="blocks drawn by hand")
+    imperfection: tuple[Imperfection, ...] = Field(default=(), description="errors of blocks and structures")
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     analysis: Any = Field(description="what is computed")

@@ -12,6 +12,7 @@ from dem_cli.case.names import check_names
 from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
+from dem_cli.model.imperfect import imperfect
 from dem_cli.model.model import Model
 from dem_cli.structures.place import aliases, place
 from dem_cli.structures.registry import GENERATORS
@@ -26,6 +27,7 @@ class Assembly(NamedTuple):
     model: Model
     blocks: tuple[Block, ...]  # in the order of the model
     block_map: dict[str, int]  # id or alias ("top-right") -> number of the block
+    doubts: tuple[CaseProblem, ...] = ()  # what is allowed, but looks like a slip
 
 
 class PointLoad(NamedTuple):
@@ -51,8 +53,12 @@ def assembly(case: Case) -> Assembly:
     if problems:
         raise CaseError(problems)
     body = _bodies(case, blocks)
+    doubts: list[CaseProblem] = []
+    if case.imperfection:  # names and numbers are those of the blocks as drawn
+        blocks, doubts = imperfect(case, body, blocks, block_map)
+        body = _bodies(case, blocks)
     loads = _point_loads(case, block_map, body.centroids)
-    return Assembly(_with_loads(case, body, loads), tuple(blocks), block_map)
+    return Assembly(_with_loads(case, body, loads), tuple(blocks), block_map, tuple(doubts))
 
 
 def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:

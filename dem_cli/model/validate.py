@@ -41,7 +41,8 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
     if found:
         return found
     near = _neighbours(model)
-    found = overlap_problems(model, blocks, near) + compound_problems(model, blocks, near)
+    note = " (with the errors of [[imperfection]])" if case.imperfection else ""
+    found = overlap_problems(model, blocks, near, note) + compound_problems(model, blocks, near)
     found += monitor_problems(case, model)
     if not model.fixed.any():
         path = ("structure", 0) if case.structure else ("block", 0)
@@ -130,8 +131,10 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     return found
 
 
-def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
-    """Two blocks in the same place, the deepest first; two fixed ones may."""
+def overlap_problems(
+    model: Model, blocks: Sequence[Block], near: Neighbours, note: str = ""
+) -> list[CaseProblem]:
+    """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
     a, b = near.blocks.T
     wrong = (near.separation < -OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
     found, seen = [], set()
@@ -144,7 +147,7 @@ def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
         seen.add(pair)
         first, second = (blocks[i] for i in pair)
         depth = -near.separation[k]
-        found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth:.3g} m"))
+        found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth:.3g} m{note}"))
     return _first_few(found)
 
 

@@ -1,0 +1,85 @@
+"""[[imperfection]]: how far blocks are from what was drawn."""
+
+from __future__ import annotations
+
+from hashlib import blake2b
+from statistics import NormalDist
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
+from dem_cli.case.words import show
+
+ERRORS = ("height", "length", "wedge", "shift", "lean")  # the keys that change something
+
+
+class Normal(CaseModel):
+    """{ mean = 0.0, deviation = 0.001 }: drawn from the normal distribution."""
+
+    mean: float = Field(default=0.0, description="mean")
+    deviation: Positive = Field(description="standard deviation")
+
+
+Error = float | Pair | Normal  # for all the same | [least, most], drawn uniformly | drawn normally
+
+
+class Imperfection(CaseModel):
+    """[[imperfection]]: errors of one block, of the free blocks of one structure, or of all free blocks.
+
+    Errors are in the axes of the structure before it is turned. A number is the same for every block; [least, most]
+    is drawn uniformly and { mean, deviation } normally, for each block from `seed`, the number of the table and
+    the name of the block, so that it does not depend on what other blocks there are. Errors of several tables add
+    up; the blocks are laid again with all errors of tables with `restack`, those of the others come on top.
+    """
+
+    block: str | None = Field(default=None, description="id of a block; default: all free blocks")
+    structure: str | None = Field(default=None, description="id of a structure: its free blocks")
+    height: Error = Field(default=0.0, description="added to the height, at the top [m]")
+    length: Error = Field(default=0.0, description="added to the length, half of it at each end [m]")
+    wedge: Error = Field(
+        default=0.0, description="added to the height at the right end, less towards the left, where it is 0 [m]"
+    )
+    shift: tuple[Error, Error] = Field(default=(0.0, 0.0), description="moved by [x, y] [m]")
+    lean: Error = Field(
+        default=0.0,
+        description="out of plumb: shift to the right per height above the foot, course by course; drawn per structure",
+    )
+    restack: bool = Field(
+        default=True,
+        description="lay the blocks again: pushed to the right off their neighbours, then set down from the lowest up",
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Imperfection:
+        if self.block is not None and self.structure is not None:
+            raise KeyProblem("'block' and 'structure' are given; an imperfection has one of them, or none", "block")
+        if not self.model_fields_set.intersection(ERRORS):
+            raise ValueError("no error is given: height, length, wedge, shift or lean")
+        for key in ("height", "length", "wedge", "lean"):
+            _check_range(getattr(self, key), key)
+        for axis, error in enumerate(self.shift):
+            _check_range(error, "shift", axis)
+        if self.block is not None and self.lean != 0.0:
+            raise KeyProblem("not allowed beside 'block': a structure leans, a block is shifted", "lean")
+        if self.restack and self.shift[1] != 0.0:
+            message = f"{show(self.shift[1])} is not allowed beside restack = true, which sets the blocks down again"
+            raise KeyProblem(message, "shift", 1)
+        return self
+
+
+def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
+    """The value of a key for the block or structure `name`; where it is drawn, from nothing but the other four."""
+    if isinstance(error, float):
+        return error
+    digest = blake2b(f"{seed} {table} {key} {name}".encode(), digest_size=8).digest()
+    chance = ((int.from_bytes(digest, "big") >> 12) + 0.5) / 2.0**52  # between 0 and 1, neither of them
+    if isinstance(error, tuple):
+        return error[0] + chance * (error[1] - error[0])
+    return NormalDist(error.mean, error.deviation).inv_cdf(chance)
+
+
+def _check_range(error: Any, *keys: str | int) -> None:
+    """Raises KeyProblem where a range ends below its beginning."""
+    if isinstance(error, tuple) and error[0] > error[1]:
+        raise KeyProblem(f"{show(error)} is not allowed; a range is [least, most]", *keys)
