@@ -39,14 +39,19 @@ class GravityAnalysis(AnalysisBase):
     kind: Literal["gravity"] = "gravity"
 
 
-class PushoverAnalysis(AnalysisBase):
-    """[analysis] with kind = "pushover": the load multiplier at which the structure fails."""
+class LiveAnalysis(AnalysisBase):
+    """What analyses with a live load accept: what the multiplier acts on."""
 
-    kind: Literal["pushover"] = "pushover"
     direction: tuple[float, float] = Field(default=(1.0, 0.0), description="direction of the horizontal load")
     pattern: Literal["mass", "live", "tilt"] = Field(
         default="mass", description="mass: λ × weight of each block; live: λ × live loads; tilt: table turned by atan λ"
     )
+
+
+class PushoverAnalysis(LiveAnalysis):
+    """[analysis] with kind = "pushover": the load multiplier at which the structure fails."""
+
+    kind: Literal["pushover"] = "pushover"
     resolution: float = Field(default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load")
     step: float | None = Field(
         default=None, gt=0.0, description="largest step of the multiplier on the way from gravity; default: they grow"
@@ -63,6 +68,14 @@ class PushoverAnalysis(AnalysisBase):
         "that do not dilate; limit: forces of limit analysis; auto: by the number of blocks",
     )
     limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
+
+
+class CycleAnalysis(LiveAnalysis):
+    """[analysis] with kind = "cycle": the load multiplier follows a path of given values, slowly, to and fro."""
+
+    kind: Literal["cycle"] = "cycle"
+    path: tuple[float, ...] = Field(min_length=1, description="load multipliers to go to one after the other, from 0")
+    step: float = Field(gt=0.0, description="largest step of the multiplier; every one is a proven equilibrium")
 
 
 class SettlementAnalysis(AnalysisBase):

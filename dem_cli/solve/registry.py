@@ -1,6 +1,6 @@
 """All analysis kinds. A new one is one file and one line here."""
 
-from dem_cli.solve.analysis import Analysis, GravityAnalysis, PushoverAnalysis, SettlementAnalysis
+from dem_cli.solve.analysis import Analysis, CycleAnalysis, GravityAnalysis, PushoverAnalysis, SettlementAnalysis
 
 
 def _gravity():
@@ -15,6 +15,12 @@ def _pushover():
     return run
 
 
+def _cycle():
+    from dem_cli.solve.cycle import run
+
+    return run
+
+
 def _settlement():
     from dem_cli.solve.settlement import run
 
@@ -25,6 +31,7 @@ ANALYSES: dict[str, Analysis] = {
     analysis.kind: analysis
     for analysis in (
         Analysis("pushover", PushoverAnalysis, _pushover),
+        Analysis("cycle", CycleAnalysis, _cycle),
         Analysis("gravity", GravityAnalysis, _gravity),
         Analysis("settlement", SettlementAnalysis, _settlement),
     )
