@@ -11,6 +11,8 @@ from dem_cli.geometry import profile
 
 Range = tuple[float, float]  # lowest and highest value; the same twice: always this one
 
+SAMPLES = 100  # profiles drawn to see how steep they may be
+
 # A profile pressed onto one side is as stiff as a plane joint with points at both ends.
 VERTEX_SHARE = 0.5
 
@@ -55,6 +57,17 @@ def draw(layout: Layout, key: tuple[int, ...], length: float) -> tuple[np.ndarra
     places, rises = profile.polygon(lengths * scale, aperture)
     places[-1] = length
     return places, rises, np.full(sides + 1, VERTEX_SHARE)
+
+
+def steepest(layout: Layout, length: float) -> float:
+    """Largest slope of a side of a joint of this length [m] against the one that it rests on [-]; 0 where plane.
+
+    Of profiles with ranges: the largest of many that are drawn.
+    """
+    if layout.sides is None:
+        return 0.0
+    drawn = (draw(layout, (i,), length) for i in range(SAMPLES))
+    return max(float(np.abs(profile.slopes(places, gaps)).max()) for places, gaps, _ in drawn)
 
 
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:

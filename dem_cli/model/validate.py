@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.contact.layout import Layout, steepest
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
@@ -22,6 +23,7 @@ TOUCH = 1e-3  # of the smaller block: a wider gap is no support
 SLIVER = 1e-3  # width over length of a block
 SIZE_RATIO = 1e3  # largest over smallest free block
 MASS_RATIO = 1e6  # heaviest over lightest free block
+STEEPEST = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
 REMOTE = 1e8  # distance from the origin over the size of a typical free part
 SHOWN = 5  # mistakes of one sort that are reported one by one
 
@@ -43,7 +45,7 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
     near = _neighbours(model)
     note = " (with the errors of [[imperfection]])" if case.imperfection else ""
     found = overlap_problems(model, blocks, near, note) + compound_problems(model, blocks, near)
-    found += monitor_problems(case, model)
+    found += monitor_problems(case, model) + profile_problems(case, model)
     if not model.fixed.any():
         path = ("structure", 0) if case.structure else ("block", 0)
         message = "no block is fixed, everything would fall; give a structure a base or a block fixed = true"
@@ -62,6 +64,38 @@ def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
         for i, monitor in enumerate(case.monitor)
         if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
     ]
+
+
+def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Profiles that are too steep on the shortest joint that has them."""
+    profiles = {name: table.profile for name, table in case.joints.items() if getattr(table, "profile", None)}
+    if not profiles:
+        return []
+    from dem_cli.contact.assemble import END_TO_END, STEEP, overlap_lengths
+
+    corners = undeformed(model)
+    sides = polygon.sizes(model.vertices, model.part_starts)
+    faces = find_joints(model, corners, TOUCH * float(sides.min()))
+    along = corners[faces.edges[:, 1]] - corners[faces.edges[:, 0]]
+    beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
+    blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(faces.edges, corners)
+    whole = np.hypot(*(corners[faces.edges[:, 3]] - corners[faces.edges[:, 2]]).T)
+    pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
+    named = np.array([case.joint_between(*pair) for pair in pairs])
+    found = []
+    for name, table in profiles.items():
+        has_it = (named == name) & (lengths > END_TO_END * whole)
+        if table.only != "all":
+            has_it &= beds == (table.only == "bed")
+        if has_it.any():
+            k = np.flatnonzero(has_it)[lengths[has_it].argmin()]
+            slope = steepest(Layout(seed=case.seed, **table.ranges), float(lengths[k]))
+            if slope > STEEPEST:
+                a, b = (model.block_ids[i] for i in blocks[k])
+                message = f"too large for the joint of '{a}' and '{b}', {lengths[k]:.3g} m long: "
+                message += f"a side of the profile has a slope of {slope:.2g} there, at most {STEEPEST:g} is allowed"
+                found.append(CaseProblem(("joints", name, "profile", "aperture"), message))
+    return found
 
 
 def warnings(model: Model) -> list[str]:
