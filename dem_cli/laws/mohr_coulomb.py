@@ -119,13 +119,14 @@ def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     if size <= limit:
         return normal, trial, yields
     if opening < 0.0 and parameters[joint, 7] > 0.0:
-        # The normal force grows as the joint dilates in this very step: foretell the slip from the present direction.
+        # The normal force changes as the joint dilates in this very step: foretell the slip by its present direction.
         tangent, reach = parameters[joint, 7], parameters[joint, 8]
         slip = load(memory, point, SLIP, shear)
         gone = norm(slip)
-        outward = 1.0 if gone == 0.0 else max(-dot(slip, trial) / (gone * size), 0.0)
+        outward = 1.0 if gone == 0.0 else -dot(slip, trial) / (gone * size)
         rise = tangent * outward if gone < reach else 0.0
-        ahead = axpy(-(size - limit) / (ks + friction * kn * rise) / size, trial, slip)
+        stiffness = max(ks + friction * kn * rise, 0.25 * ks)  # slipping back the force may fall faster than the spring
+        ahead = axpy(-(size - limit) / stiffness / size, trial, slip)
         dilation = tangent * min(norm(ahead), reach)
         memory[point, DILATION] = dilation
         normal = max(kn * (dilation - gap), 0.0)
