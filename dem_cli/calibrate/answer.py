@@ -23,7 +23,6 @@ class Found(NamedTuple):
     displacement: float | None = None  # of what was measured, at the highest load that was held [m]; ≥ 0
     seconds: float = 0.0
     warnings: tuple[str, ...] = ()
-    wrong_case: bool = False  # status says what is wrong with the case
 
 
 def distance(measured: Calibration, found: Found) -> float | None:

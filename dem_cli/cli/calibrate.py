@@ -52,7 +52,7 @@ def command(
     loaded = api.load_case(case, overrides)
     check(loaded)
     plan = trials(loaded.case)
-    check_place(loaded, plan[0])
+    check_trials(loaded, plan)
     if not quiet:
         warn(loaded)
     with (
@@ -85,26 +85,34 @@ def check(loaded: LoadedCase) -> None:
         raise CaseError([problem], loaded.render)
 
 
-def check_place(loaded: LoadedCase, plane: Trial) -> None:
-    """Builds the model once: mistakes in it, and in the place that was watched, are said before anything is solved."""
+def check_trials(loaded: LoadedCase, plan: Sequence[Trial]) -> None:
+    """Builds all models: mistakes in them, and in the place that was watched, are said before anything is solved."""
     from dem_cli import api
     from dem_cli.case.reader import LoadedCase as Loaded
 
-    watched = ("monitor", len(loaded.case.monitor))
-    built = Loaded(plane.case, loaded)
-    try:
-        api.build_model(built)
-    except CaseError as error:
-        problems = [
-            CaseProblem(("calibration", *p.path[2:]), p.message, p.at_key) if p.path[:2] == watched else p
-            for p in error.problems
-        ]
-        raise CaseError(problems, loaded.render) from None
-    loaded.warnings += [line for line in built.warnings if line not in loaded.warnings]
+    for trial in plan:
+        built = Loaded(trial.case, loaded)
+        try:
+            api.build_model(built)
+        except CaseError as error:
+            problems = [blamed(problem, loaded, trial) for problem in error.problems]
+            raise CaseError(problems, loaded.render) from None
+        loaded.warnings += [line for line in built.warnings if line not in loaded.warnings]
+
+
+def blamed(problem: CaseProblem, loaded: LoadedCase, trial: Trial) -> CaseProblem:
+    """A problem of a trial where it stands in the file."""
+    path, calibration = problem.path, loaded.case.calibration
+    if path[:2] == ("monitor", len(loaded.case.monitor)):
+        return CaseProblem(("calibration", *path[2:]), problem.message)
+    if trial.shape is not None and path[2:] == ("profile", "aperture"):
+        number = calibration.apertures.index(trial.aperture)
+        return CaseProblem(("calibration", "apertures", number), f"with shape '{trial.shape.name}', {problem.message}")
+    return problem
 
 
 def solve_all(plan: Sequence[Trial], jobs: int, quiet: bool) -> list[Found]:
-    """All trials. Raises CaseError's message as UsageError where a profile does not suit the joints."""
+    """All trials."""
     from dem_cli.case.writer import case_text
 
     found: dict[int, Found] = {}
@@ -112,8 +120,6 @@ def solve_all(plan: Sequence[Trial], jobs: int, quiet: bool) -> list[Found]:
     with console.Progress(quiet) as bar:
         bar.update(f"{len(plan)} runs, {jobs} side by side", 0.0, 0.0, 0.0)
         for i, one in side_by_side(solved, texts, jobs):
-            if one.wrong_case:
-                raise UsageError(f"{plan[i].name}: {one.status}")
             found[i] = one
             bar.update(plan[i].name, one.failure_load or 0.0, one.displacement or 0.0, len(found) / len(plan))
     return [found[i] for i in range(len(plan))]
@@ -149,9 +155,7 @@ def solved(text: str) -> Found:
     try:
         model = api.build_model(loaded)
         summary = run(case.model_copy(update={"analysis": only_failure}), model, observer).summary
-    except CaseError as error:
-        return Found("; ".join(problem.message for problem in error.problems), wrong_case=True)
-    except SolverError as error:
+    except DemError as error:  # as text: it may not survive the way between processes
         return Found(f"not converged: {error}")
     load = summary.get("failure_load")
     held = [row for row in observer.rows if row.stage == "loading" and row.load == load]

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from dem_cli.contact.layout import Layout, draw, lobatto
+from dem_cli.contact.layout import Layout, draw, lobatto, steepest
 from dem_cli.geometry.profile import angles
 from dem_cli.laws.coulomb import CoulombJoint
 from dem_cli.laws.profile import Profile
@@ -137,3 +137,12 @@ def test_points_and_profile_exclude_each_other():
         CoulombJoint(friction=0.6, points=3, profile={"sides": 3, "aperture": 1e-4})
     with pytest.raises(ValidationError):
         CoulombJoint(friction=0.6, points=1)
+
+
+def test_how_steep_a_profile_may_be():
+    """Three sides: φ = d / l1; five equal ones: the outer sides turn by 2 φ, d = 3 φ l."""
+    assert steepest(layout(sides=3, central=0.2, aperture=1e-4), 0.04) == pytest.approx(0.00625)
+    assert steepest(layout(sides=5, aperture=0.01), 1.0) == pytest.approx(1 / 30)
+    assert steepest(Layout(points=5), 1.0) == 0.0
+    drawn = steepest(layout(sides=3, aperture=[0.0, 0.01]), 1.0)
+    assert 0.029 < drawn <= 0.03
