@@ -144,8 +144,7 @@ def _lean(site: Site, low: np.ndarray, blocks: np.ndarray, i: int) -> np.ndarray
         heights = low[blocks[some], 1] - _turned(np.array([structure.origin]), -structure.rotation)[0, 1]
         if structure.kind == "wall":  # pieces beside an opening belong to their course
             levels = structure.levels
-            middle = np.append((levels[1:] + levels[:-1]) / 2.0, np.inf)
-            heights = levels[np.searchsorted(middle, heights)]
+            heights = levels[np.searchsorted(levels, heights + 1e-6 * np.diff(levels).min(), "right") - 1]
         shift[some] = heights * drawn(site.case.imperfection[i].lean, site.case.seed, i, "lean", structure.id)
     return shift
 
