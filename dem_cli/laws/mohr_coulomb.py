@@ -25,7 +25,7 @@ from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
 INTACT, NEVER, BROKEN = 1.0, 0.0, -1.0  # state of the bond, memory[point, 0]
-STATE, DILATION, PULLED, SLIP = 0, 1, 2, 3  # memory: state, opening by dilation [m], plastic opening [m], slip [m]
+STATE, PULLED, SLIP = 0, 1, 2  # memory: state, plastic opening [m], slip [m]
 
 
 class MohrCoulombJoint(FrictionJoint):
@@ -89,27 +89,52 @@ class MohrCoulombJoint(FrictionJoint):
 
 
 @inline
+def slip_while_dilating(start, away, reach, force, ks, grip):
+    """How far x the point slips until force − ks x = grip min(|start + x away|, reach); the shortest way.
+
+    start: slip so far; away: unit vector along which it slips on. At x = 0 the left side is larger.
+    """
+    x = 0.0
+    if norm(start) >= reach:
+        x = (force - grip * reach) / ks
+        start, force = axpy(x, away, start), grip * reach
+    square = dot(start, start)
+    if square >= reach * reach:
+        return x
+    # The square of the equation, a x² − 2 b x + c = 0 with c > 0, solved so that nothing cancels.
+    a, b = ks * ks - grip * grip, force * ks + grip * grip * dot(start, away)
+    c = (force - grip * math.sqrt(square)) * (force + grip * math.sqrt(square))
+    root = b * b - a * c
+    if root >= 0.0 and b + math.sqrt(root) > 0.0:
+        further = c / (b + math.sqrt(root))
+        if norm(axpy(further, away, start)) <= reach:
+            return x + further
+    return x + (force - grip * reach) / ks
+
+
+@inline
 def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     """Normal force and shear force of a bonded, frictional, dilating contact point."""
-    area = kn / parameters[joint, 0]
-    state, dilation, pulled = memory[point, STATE], memory[point, DILATION], memory[point, PULLED]
+    area, tangent, reach = kn / parameters[joint, 0], parameters[joint, 7], parameters[joint, 8]
+    state, slip = memory[point, STATE], load(memory, point, SLIP, shear)
     trial = axpy(-ks, slide, shear)
     size = norm(trial)
-    opening = gap - dilation
+    opening = gap
+    if tangent > 0.0:
+        opening -= tangent * min(norm(slip), reach)
+    normal = -kn * opening
     if state == INTACT:
-        cohesion, tension, friction = parameters[joint, 1], parameters[joint, 2], parameters[joint, 3]
-        normal = -kn * opening
-        if normal >= -tension * area and size <= max(cohesion * area + friction * normal, 0.0):
+        limit = max(parameters[joint, 1] * area + parameters[joint, 3] * normal, 0.0)
+        if normal >= -parameters[joint, 2] * area and size <= limit:
             return normal, trial, False
         state = BROKEN
         memory[point, STATE] = state
     # What is left of the bond. In tension nothing is carried until the joint is as far open as it was.
-    cohesion, tension, friction = 0.0, 0.0, parameters[joint, 6]
+    cohesion, tension, friction, yields = 0.0, 0.0, parameters[joint, 6], False
     if state == BROKEN:
         cohesion, tension = parameters[joint, 4] * area, parameters[joint, 5] * area
-    normal, yields = -kn * opening, False
     if opening > 0.0:
-        normal = min(-kn * (opening - pulled), 0.0)
+        normal = min(-kn * (opening - memory[point, PULLED]), 0.0)
         if normal < -tension:
             normal, yields = -tension, True
             memory[point, PULLED] = opening - tension / kn
@@ -118,20 +143,15 @@ def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     limit = max(cohesion + friction * normal, 0.0)
     if size <= limit:
         return normal, trial, yields
-    if opening < 0.0 and parameters[joint, 7] > 0.0:
-        # The normal force changes as the joint dilates in this very step: foretell the slip by its present direction.
-        tangent, reach = parameters[joint, 7], parameters[joint, 8]
-        slip = load(memory, point, SLIP, shear)
-        gone = norm(slip)
-        outward = 1.0 if gone == 0.0 else -dot(slip, trial) / (gone * size)
-        rise = tangent * outward if gone < reach else 0.0
-        stiffness = max(ks + friction * kn * rise, 0.25 * ks)  # slipping back the force may fall faster than the spring
-        ahead = axpy(-(size - limit) / stiffness / size, trial, slip)
-        dilation = tangent * min(norm(ahead), reach)
-        memory[point, DILATION] = dilation
-        normal = max(kn * (dilation - gap), 0.0)
+    if tangent > 0.0 and opening < 0.0:
+        away, grip = scale(-1.0 / size, trial), friction * kn * tangent
+        further = slip_while_dilating(slip, away, reach, size - cohesion + friction * kn * gap, ks, grip)
+        slip = axpy(further, away, slip)
+        normal = kn * (tangent * min(norm(slip), reach) - gap)
+        if normal < 0.0:
+            normal, slip = 0.0, axpy((size - cohesion) / ks - further, away, slip)
         limit = min(cohesion + friction * normal, size)
-        store(memory, point, SLIP, axpy(-(size - limit) / ks / size, trial, slip))
+        store(memory, point, SLIP, slip)
     return normal, scale(limit / size, trial), True
 
 
@@ -159,7 +179,7 @@ MOHR_COULOMB = Law(
     function=mohr_coulomb,
     columns=columns,
     shear_limit=shear_limit,
-    scalars=3,
+    scalars=2,
     vectors=1,
     intact=(INTACT,),
     bonded=True,

@@ -1,0 +1,55 @@
+"""Coulomb joint with a compressive strength: beyond it the stone is crushed, perfectly plastic.
+
+    N = kn ⟨−gap − z⟩ ≤ fc A,   |s| ≤ μ N
+
+z is the closing that has gone into crushing; it stays, so that the joint unloads with kn and opens at gap = −z.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from dem_cli.case.base import Positive
+from dem_cli.kernels.jit import inline
+from dem_cli.kernels.vec import axpy, norm, scale
+from dem_cli.laws.friction import FrictionJoint
+from dem_cli.laws.law import Law
+
+
+class CrushingJoint(FrictionJoint):
+    """[joints.*] with law = "crushing"."""
+
+    law: Literal["crushing"] = "crushing"
+    compression: Positive = Field(description="compressive strength fc [Pa]")
+
+
+@inline
+def crushing(gap, slide, shear, kn, ks, parameters, joint, memory, point):
+    """Coulomb contact point whose normal force is capped; remembers the crushed depth."""
+    closing = -gap - memory[point, 0]
+    if closing <= 0.0:
+        return 0.0, scale(0.0, shear), True
+    normal, crushes = kn * closing, False
+    most = parameters[joint, 2] * kn / parameters[joint, 0]
+    if normal > most:
+        normal, crushes = most, True
+        memory[point, 0] = -gap - most / kn
+    trial = axpy(-ks, slide, shear)
+    size, limit = norm(trial), parameters[joint, 1] * normal
+    if size <= limit:
+        return normal, trial, crushes
+    return normal, scale(limit / size, trial), True
+
+
+CRUSHING = Law(
+    name="crushing",
+    parameters=CrushingJoint,
+    function=crushing,
+    columns=lambda table, kn: (kn, table.coefficient, table.compression),
+    shear_limit=lambda parameters, normal, memory, kn: parameters[:, 1] * normal,
+    scalars=1,
+    bonded=True,
+    source="the cap in compression of interface models, here without hardening (Lourenço and Rots 1997)",
+)

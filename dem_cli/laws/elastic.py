@@ -1,0 +1,46 @@
+"""Elastic joint without any limit: carries tension and shear as they come.
+
+    N = −kn gap,   s = s_old − ks Δu
+
+For joints that are not to fail. Points that meet later were never joined: they press and stick, but come apart.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from dem_cli.kernels.jit import inline
+from dem_cli.kernels.vec import axpy, scale
+from dem_cli.laws.law import Law
+from dem_cli.laws.stiffness import StiffJoint
+
+
+class ElasticJoint(StiffJoint):
+    """[joints.*] with law = "elastic"."""
+
+    plane_points: ClassVar[int] = 3
+
+    law: Literal["elastic"] = "elastic"
+
+
+@inline
+def elastic(gap, slide, shear, kn, ks, parameters, joint, memory, point):
+    """Normal force and shear force of two springs; memory: 1 where they hold the blocks together."""
+    if gap >= 0.0 and memory[point, 0] == 0.0:
+        return 0.0, scale(0.0, shear), True
+    return -kn * gap, axpy(-ks, slide, shear), False
+
+
+ELASTIC = Law(
+    name="elastic",
+    parameters=ElasticJoint,
+    function=elastic,
+    columns=lambda table, kn: (kn,),
+    shear_limit=lambda parameters, normal, memory, kn: np.full(len(normal), np.inf),
+    scalars=1,
+    intact=(1.0,),
+    bonded=True,
+    source="Hooke's law",
+)
