@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from dem_cli.calibrate.table import Calibration
@@ -73,6 +73,50 @@ def as_csv(table: Sequence[dict[str, Any]]) -> str:
     for row in table:
         writer.writerow({key: "-".join(map(str, v)) if isinstance(v, list) else v for key, v in row.items()})
     return text.getvalue()
+
+
+def as_text(summary: Mapping[str, Any]) -> list[str]:
+    """The table of the thesis (Table 7-2): a line per profile, the closest one marked."""
+    lines = [
+        ("shape", "sides", "middle side", "aperture [mm]", "load", "of plane", "displacement [mm]", "distance", "")
+    ]
+    lines += [_line(row, row == summary["closest"]) for row in summary["trials"]]
+    measured, plane = summary["measured"], summary["trials"][0]["failure_load"]
+    load, displacement = measured["failure_load"], measured["displacement"]
+    lines.append(
+        ("measured", "", "", "", _number(load, ".4f"), _number(load / plane if plane else None, ".3f"),
+         _number(1e3 * displacement, ".4g"), "", "")
+    )  # fmt: skip
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return ["  " + "  ".join(word.ljust(w) for word, w in zip(words, widths)).rstrip() for words in lines]
+
+
+def _line(row: Mapping[str, Any], closest: bool) -> tuple[str, ...]:
+    """One trial as words."""
+    shape, displacement = row["shape"], row["displacement"]
+    return (
+        shape or "plane",
+        _range(row["sides"], 1.0, "d"),
+        _range(row["central"], 100.0, ".3g", " %"),
+        _range(row["aperture"], 1e3, ".4g"),
+        _number(row["failure_load"], ".4f"),
+        _number(row["share_of_plane"], ".3f"),
+        _number(None if displacement is None else 1e3 * displacement, ".4g"),
+        _number(row["distance"], ".3f") if shape else "",
+        row["status"] if row["status"] != OK else "closest" if closest else "",
+    )
+
+
+def _number(value: float | None, form: str) -> str:
+    return "–" if value is None else format(value, form)
+
+
+def _range(value: Any, factor: float, form: str, unit: str = "") -> str:
+    """A number or a range as words; nothing for None."""
+    if value is None:
+        return ""
+    ends = value if isinstance(value, list) else [value]
+    return "–".join(format(end if form == "d" else factor * end, form) for end in ends) + unit
 
 
 def _plain(limits: tuple[Any, Any] | None) -> Any:

@@ -18,6 +18,7 @@ from dem_cli.cli.workers import side_by_side, usable_cores
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
 
 if TYPE_CHECKING:
+    from dem_cli.calibrate.table import NamedShape
     from dem_cli.calibrate.trials import Trial
     from dem_cli.case.reader import LoadedCase
     from dem_cli.output.folder import OutputFolder
@@ -157,16 +158,26 @@ def solved(text: str) -> Found:
         summary = run(case.model_copy(update={"analysis": only_failure}), model, observer).summary
     except DemError as error:  # as text: it may not survive the way between processes
         return Found(f"not converged: {error}")
-    load = summary.get("failure_load")
-    held = [row for row in observer.rows if row.stage == "loading" and row.load == load]
     return Found(
         summary["status"],
-        load,
+        summary.get("failure_load"),
         tuple(summary.get("failure_load_bracket") or (None, None)),
-        abs(held[-1].monitors[-1]) if held else None,
+        before_failure(observer.rows, summary, case.analysis.resolution),
         summary["solve_seconds"],
         tuple(summary["warnings"]),
     )
+
+
+def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resolution: float) -> float | None:
+    """Displacement of what was measured at the highest load that was held [m].
+
+    Where the geometry of the start was kept, a mechanism rests wherever it is left: there it is the smallest of all
+    that are at this load within the resolution.
+    """
+    load = summary.get("failure_load")
+    slack = resolution * abs(load or 0.0) if summary.get("kinematics") == "fixed" else 0.0
+    held = [abs(r.monitors[-1]) for r in rows if r.stage == "loading" and load is not None and r.load >= load - slack]
+    return min(held, default=None)
 
 
 def summarised(loaded: LoadedCase, plan: Sequence[Trial], found: Sequence[Found]) -> dict[str, Any]:
@@ -195,10 +206,21 @@ def summarised(loaded: LoadedCase, plan: Sequence[Trial], found: Sequence[Found]
             },
             "closest": table[best],
             "trials": table,
+            "shapes": {shape.name: polygon_of(shape, case.seed) for shape in measured.shapes},
             "solve_seconds": sum(one.seconds for one in found),
             "warnings": [*loaded.warnings, *unanswered],
         }
     )
+
+
+def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
+    """Vertices of a shape, or of one that is drawn: places as shares of the joint, rises as shares of the aperture."""
+    from dem_cli.contact.layout import Layout, draw
+    from dem_cli.laws.profile import Profile
+
+    profile = Profile(**shape.model_dump(exclude={"name"}), aperture=1.0)
+    places, rises, _ = draw(Layout(seed=seed, **profile.ranges)._replace(keep="aperture"), (0,), 1.0)
+    return {"places": places.tolist(), "rises": rises.tolist()}
 
 
 def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Trial], quiet: bool) -> None:
@@ -226,45 +248,10 @@ def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Trial], 
 
 
 def answer(summary: dict[str, Any], folder: Path) -> str:
-    """The table of the thesis (Table 7-2): a line per profile, the closest one marked."""
+    """The table of all profiles, and what was written."""
+    from dem_cli.calibrate.answer import as_text
     from dem_cli.cli.run import file_names, shown
 
-    head = ("shape", "sides", "middle side", "aperture [mm]", "load", "of plane", "displacement [mm]", "distance", "")
-    lines = [head, *(line(row, row == summary["closest"]) for row in summary["trials"])]
-    measured = summary["measured"]
-    plane = summary["trials"][0]["failure_load"]
-    share = measured["failure_load"] / plane if plane else None
-    lines.append(
-        ("measured", "", "", "", number(measured["failure_load"], ".4f"), number(share, ".3f"),
-         number(1e3 * measured["displacement"], ".4g"), "", "")
-    )  # fmt: skip
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    text = ["  " + "  ".join(word.ljust(w) for word, w in zip(words, widths)).rstrip() for words in lines]
-    text = [f"{summary['title']}: profiles of joint '{summary['joint']}'", *text]
-    text += [f"  warning: {warning}" for warning in summary["warnings"]]
-    return "\n".join([*text, f"  written to {shown(folder)} ({', '.join(file_names(folder))})"])
-
-
-def line(row: dict[str, Any], closest: bool) -> tuple[str, ...]:
-    """One trial as words."""
-    middle = row["central"]
-    if isinstance(middle, list):
-        percent = "–".join(f"{100 * value:.3g}" for value in middle) + " %"
-    else:
-        percent = "" if middle is None else f"{100 * middle:.3g} %"
-    sides = row["sides"]
-    return (
-        row["shape"] or "plane",
-        "–".join(map(str, sides)) if isinstance(sides, list) else str(sides or ""),
-        percent,
-        number(row["aperture"] and 1e3 * row["aperture"], ".4g") if row["aperture"] else "",
-        number(row["failure_load"], ".4f"),
-        number(row["share_of_plane"], ".3f"),
-        number(row["displacement"] and 1e3 * row["displacement"], ".4g"),
-        number(row["distance"], ".3f") if row["shape"] else "",
-        row["status"] if row["status"] != OK else "closest" if closest else "",
-    )
-
-
-def number(value: float | None, form: str) -> str:
-    return "–" if value is None else format(value, form)
+    lines = [f"{summary['title']}: profiles of joint '{summary['joint']}'", *as_text(summary)]
+    lines += [f"  warning: {warning}" for warning in summary["warnings"]]
+    return "\n".join([*lines, f"  written to {shown(folder)} ({', '.join(file_names(folder))})"])
