@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.contact.detect import Faces
 from dem_cli.contact.layout import Layout, draw
+from dem_cli.geometry import profile
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import Bodies, Contacts, Joints
@@ -85,9 +86,9 @@ def build_joints(
     overlap = np.clip(overlap_lengths(faces.edges, bodies.corners), 0.1 * shortest, shortest)
     area = overlap * model.thickness[blocks].min(axis=1, initial=np.inf)
     named = properties.between(model, blocks)
-    starts, profile, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
+    starts, chains, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
     if properties.profiled:
-        starts, profile, shares = _chains(faces, bodies, properties.layouts, named, old)
+        starts, chains, shares = _chains(faces, bodies, properties.layouts, named, old)
     owner, n_points = np.repeat(np.arange(n), np.diff(starts)), int(starts[-1])
     joints = Joints(
         blocks=blocks,
@@ -96,7 +97,7 @@ def build_joints(
         levers=np.zeros((n_points, 2 * d * model.inertias.shape[1])),
         points=np.zeros((n_points, d)),
         edges=faces.edges,
-        profile=profile,
+        profile=chains,
         scales=np.ascontiguousarray(np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)])),
         kn=(properties.kn[named] * area)[owner] * shares,
         ks=(properties.ks[named] * area)[owner] * shares,
@@ -133,10 +134,10 @@ def _chains(
             continue
         layout = layouts[named[i]]
         if old is None and layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
-            places, rises, share = draw(layout, (int(faces.edges[i, 0]), int(faces.edges[i, 2])), high[i] - low[i])
-            # Listed from left to right, or from the top down: from a1 to a0; kept from b1 on, which is near a0.
-            rows.append(np.column_stack([high[i] - from_b1[i] - places, rises])[::-1])
-            shares.append(share[::-1])
+            key = (int(faces.edges[i, 2]), int(faces.edges[i, 0]))
+            row, share = _chain(layout, key, low[i] - from_b1[i], high[i] - from_b1[i], whole[i])
+            rows.append(row)
+            shares.append(share)
         else:
             rows.append(np.array([[0.0, 0.0], [whole[i], 0.0]]))
             shares.append(np.full(2, 0.5))
@@ -144,6 +145,22 @@ def _chains(
     if not rows:
         return starts, np.zeros((0, 2)), np.zeros(0)
     return starts, np.ascontiguousarray(np.concatenate(rows)), np.concatenate(shares)
+
+
+def _chain(
+    layout: Layout, key: tuple[int, int], low: float, high: float, whole: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Profile (n, 2) of one joint, as Joints.profile, and the share of its area of each point, (n,).
+
+    key: edges of b and of a; low, high: where the joint is along the edge of b, from its end near a0; whole: its length.
+    """
+    # Polygons are listed from left to right, or from the top down: that is from a1 to a0.
+    if layout.sides is None or layout.over == "joint":
+        places, rises, share = draw(layout, key, high - low)
+        return np.column_stack([high - places, rises])[::-1], share[::-1]
+    places, rises, share = draw(layout, key[:1], whole)
+    places, rises = profile.cut((whole - places)[::-1], rises[::-1], low, high)
+    return np.column_stack([places, rises]), np.full(len(places), share[0])
 
 
 def _has(layout: Layout, overlap: float, whole: float, along: np.ndarray) -> bool:

@@ -25,7 +25,8 @@ class Layout(NamedTuple):
     aperture: Range = (0.0, 0.0)  # [m]
     lengths: tuple[Range, ...] = ()  # of the sides [m] or as proportions; one: the same range for each; none: equal
     central: Range | None = None  # share of the middle side; then only odd numbers of sides are drawn
-    keep: Literal["aperture", "angle"] = "aperture"  # where the joint is not as long as the lengths add up to
+    keep: Literal["aperture", "angle", "lengths"] = "aperture"  # where the lengths do not add up to that of the joint
+    over: Literal["joint", "face"] = "joint"  # what the polygon spans: each joint, or the whole edge of block b
     only: Literal["bed", "head", "all"] = "all"  # joints flatter or steeper than 45°: which have the profile
     seed: int = 0
 
@@ -51,6 +52,10 @@ def draw(layout: Layout, key: tuple[int, ...], length: float) -> tuple[np.ndarra
         lengths = np.array([random.uniform(*each) for each in ranges])
     else:
         lengths = profile.regular(sides, None if layout.central is None else random.uniform(*layout.central))
+    if layout.keep == "lengths":
+        places, rises = profile.polygon(lengths, aperture)
+        places, rises = profile.cut(places + 0.5 * (length - places[-1]), rises, 0.0, length)
+        return places, rises, np.full(len(places), VERTEX_SHARE)
     scale = length / lengths.sum()
     if layout.keep == "angle":
         aperture *= scale

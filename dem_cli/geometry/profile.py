@@ -35,6 +35,20 @@ def polygon(lengths: Sequence[float] | np.ndarray, aperture: float) -> tuple[np.
     return places, np.abs(curvature * (x - x[rest]) * (x - x[rest + 1]))
 
 
+def cut(places: np.ndarray, rises: np.ndarray, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """The part of a chain from place `low` to `high` [m]: the vertices between them and two new ends, (m + 1,) each.
+
+    Its first and last sides go on where the part is longer than the chain.
+    """
+    inner = (places > low) & (places < high)
+    inner[[0, -1]] = False
+    first, *_, last = slopes(places, rises)
+    ends = np.interp([low, high], places, rises)
+    ends += first * min(low - places[0], 0.0) * np.array([1.0, 0.0])
+    ends += last * max(high - places[-1], 0.0) * np.array([0.0, 1.0])
+    return np.concatenate([[low], places[inner], [high]]), np.concatenate([ends[:1], rises[inner], ends[1:]])
+
+
 def slopes(places: np.ndarray, rises: np.ndarray) -> np.ndarray:
     """Slope of each side against the one the joint rests on [-], (n,); it grows from left to right."""
     return np.diff(rises) / np.diff(places)

@@ -28,8 +28,15 @@ class Shape(CaseModel):
     central: Share | tuple[Share, Share] | None = Field(
         default=None, description="instead of lengths: share of the middle side; the others are equal"
     )
-    keep: Literal["aperture", "angle"] = Field(
-        default="aperture", description="what stays where a joint is not as long as the lengths add up to"
+    keep: Literal["aperture", "angle", "lengths"] = Field(
+        default="aperture",
+        description="what stays where a joint is not as long as the lengths add up to; lengths: the polygon keeps its "
+        "size, its middle in the middle of the joint, its outer sides cut off or longer",
+    )
+    over: Literal["joint", "face"] = Field(
+        default="joint",
+        description="what the polygon spans; joint: each joint has its own; face: the whole edge of the upper block, "
+        "of which each joint has a part",
     )
     only: Literal["bed", "head", "all"] = Field(
         default="all", description="bed: joints flatter than 45°; head: steeper ones; the others are plane"
@@ -53,8 +60,8 @@ class Shape(CaseModel):
         if self.central is not None and (low % 2 == 0 or high % 2 == 0):
             found = low if low % 2 == 0 else high
             raise KeyProblem(f"{found} sides have none in the middle; with 'central' the number is odd", "sides")
-        if self.keep == "angle" and self.lengths is None:
-            raise KeyProblem("'angle' is not allowed without 'lengths' [m]: no length to keep it from", "keep")
+        if self.keep != "aperture" and self.lengths is None:
+            raise KeyProblem(f"'{self.keep}' is not allowed without 'lengths' [m]: no length to keep it from", "keep")
         return self
 
     @property
@@ -84,6 +91,7 @@ class Profile(Shape):
             "lengths": tuple(map(pair, self.lengths or ())),
             "central": None if self.central is None else pair(self.central),
             "keep": self.keep,
+            "over": self.over,
             "only": self.only,
         }
 
