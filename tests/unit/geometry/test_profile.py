@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from oracle.rolling_column import fall, foot
 
 from dem_cli.geometry.profile import angles, polygon, regular, slopes
 
@@ -88,6 +89,25 @@ def test_a_mirrored_polygon_rests_on_the_mirrored_side(half, data):
     other = polygon(sides[::-1], 1e-3)
     assert other[0] == pytest.approx(places[-1] - places[::-1], abs=1e-12)
     assert other[1] == pytest.approx(rises[::-1], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sides", "aperture"), [([0.016, 0.008, 0.016], 1e-4), ([0.2] * 5, 0.01), ([0.3, 0.4, 0.3], 1e-3)]
+)
+def test_the_parabola_is_as_good_as_the_circle(sides, aperture):
+    """Against corners on a true circle, found by bisection: the slope squared is what small angles leave out."""
+    places, rises = polygon(sides, aperture)
+    exact = foot(sides, aperture)
+    error = slopes(places, rises).max() ** 2
+    assert places - 0.5 * places[-1] == pytest.approx(exact[:, 0], abs=error * places[-1])
+    assert rises == pytest.approx(exact[:, 1], rel=error, abs=1e-9 * aperture)
+
+
+def test_the_oracle_overturns_a_block_as_the_data_book_says():
+    """Rolling of a square block on five sides of 0.2 m with d = 10 mm, finite rotation: λ3 = 0.95431, u = h tan 2φ."""
+    found = fall(1, 1.0, foot([0.2] * 5, 0.01))
+    assert found.load == pytest.approx(0.95431, abs=5e-6)
+    assert found.top == pytest.approx(0.0333, abs=1.5e-4)
 
 
 def test_central_side():
