@@ -33,6 +33,7 @@ from dem_cli.solve.equilibrium import (
     relax,
     settle_or_fail,
 )
+from dem_cli.solve.motion import NOT_ELASTIC
 from dem_cli.solve.start import GRAVITY, place
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ class Search:
     status: str = "not converged"  # "ok" | "not converged" | "no failure" | "does not stand"
     compliance: float = 0.0  # q·u per unit of internal multiplier while elastic [J]
     elastic: float = 0.0  # largest displacement per unit of internal multiplier while elastic [m]
+    settled: float = 0.0  # largest displacement of a block under the dead loads alone [m]
+    onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: tuple | None = None  # state of the highest equilibrium
     found: bool = False  # the bracket is as narrow as it was asked for
@@ -127,7 +130,7 @@ def find_failure(
     exceeded; then nothing is estimated first. What is found goes to `search` as it is found, so that
     it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
-    search.low, search.held = 0.0, sim.save()
+    search.low, search.held, search.settled = 0.0, sim.save(), sim.largest_displacement()
     limit = LOCKED if max_load is None else max_load / sim.live_scale
     search.limit = limit * sim.live_scale
     search.compliance, search.elastic = compliance(sim)
@@ -298,4 +301,6 @@ def _keep(sim: Simulation, search: Search, load: float, track: Track) -> None:
     """The highest proven equilibrium so far, and its row."""
     search.low, search.held = load * sim.live_scale, sim.save()
     search.peak_displacement = sim.largest_displacement()
+    if search.onset is None and search.peak_displacement > search.settled + NOT_ELASTIC * search.elastic * load:
+        search.onset = search.low
     track.keep("loading")

@@ -168,6 +168,7 @@ def _answer(search: Search, sim: Simulation) -> dict[str, Any]:
         "status": status,
         "failure_load": search.low if search.found else None,
         "failure_load_bracket": [search.low, search.high],
+        "onset_of_displacements": search.onset,
         "kinematics": sim.kinematics,
         "start": search.start,
         "search": [vars(p) for p in search.passes],

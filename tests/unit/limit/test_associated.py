@@ -235,10 +235,13 @@ def test_without_live_loads_there_is_nothing_to_find():
 
 
 def test_a_law_without_a_linear_cone_is_refused():
-    cohesive = dataclasses.replace(COULOMB, name="glue", shear_limit=lambda p, normal: p[:, 0] * normal + 1.0)
     made = scene(wall())
-    with pytest.raises(UsageError, match="law 'glue'"):
-        limit_loads(made.model, joint_properties(made.case, made.model), cohesive)
+    cohesive = {"name": "glue", "shear_limit": lambda p, normal, memory, kn: p[:, 0] * normal + 1.0}
+    for change in (cohesive, {"name": "glue", "scalars": 1}, {"name": "glue", "bonded": True}):
+        with pytest.raises(UsageError, match="law 'glue'"):
+            limit_loads(
+                made.model, joint_properties(made.case, made.model), dataclasses.replace(COULOMB, **change)
+            )
 
 
 def test_head_joints_without_friction():
