@@ -103,6 +103,7 @@ def _new_bar(stream: TextIO) -> Any:
     return Bar(*columns, console=Console(file=stream), transient=True)
 
 
+MOST_TURNS = 6  # of a load path, in one line
 STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
 
 
@@ -131,6 +132,12 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("failure load", f"{_load(load)}{between}"))
     if summary.get("failure_mode"):
         rows.append(("failure mode", str(summary["failure_mode"])))
+    if summary.get("onset_of_displacements") is not None:
+        rows.append(("first motion", f"{_load(summary['onset_of_displacements'])}, more than joints deform"))
+    turns = summary.get("turning_points")
+    if turns:
+        text = ", ".join(f"{metres(turn['displacement'])} at {_load(turn['load'])}" for turn in turns[:MOST_TURNS])
+        rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")
     if reached:
         where = f"load {_load(reached['load'])}, displacement {metres(reached['displacement'])}"

@@ -34,7 +34,7 @@ GONE = 1e-9  # share of the strength below which nothing is left
 class FractureJoint(FrictionJoint):
     """[joints.*] with law = "fracture"."""
 
-    plane_points: ClassVar[int] = 3
+    plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["fracture"] = "fracture"
     tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction")

@@ -31,7 +31,7 @@ STATE, PULLED, SLIP = 0, 1, 2  # memory: state, plastic opening [m], slip [m]
 class MohrCoulombJoint(FrictionJoint):
     """[joints.*] with law = "mohr-coulomb"."""
 
-    plane_points: ClassVar[int] = 3
+    plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
     cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]")
@@ -101,14 +101,12 @@ def slip_while_dilating(start, away, reach, force, ks, grip):
     square = dot(start, start)
     if square >= reach * reach:
         return x
-    # The square of the equation, a x² − 2 b x + c = 0 with c > 0, solved so that nothing cancels.
+    # The square of the equation, a x² − 2 b x + c = 0 with c > 0: its first root, so that nothing cancels.
     a, b = ks * ks - grip * grip, force * ks + grip * grip * dot(start, away)
     c = (force - grip * math.sqrt(square)) * (force + grip * math.sqrt(square))
-    root = b * b - a * c
-    if root >= 0.0 and b + math.sqrt(root) > 0.0:
-        further = c / (b + math.sqrt(root))
-        if norm(axpy(further, away, start)) <= reach:
-            return x + further
+    further = c / (b + math.sqrt(max(b * b - a * c, 0.0)))
+    if norm(axpy(further, away, start)) <= reach:
+        return x + further
     return x + (force - grip * reach) / ks
 
 

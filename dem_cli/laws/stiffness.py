@@ -25,7 +25,7 @@ class StiffJoint(CaseModel):
     points: Annotated[int, Field(ge=2, le=9)] | None = Field(
         default=None,
         description="contact points of a plane joint, at Gauss-Lobatto places; "
-        "default: 2, or 3 where the joint carries tension",
+        "default: 2; 5 where the joint can crack, 3 where it is elastic",
     )
 
     @model_validator(mode="after")

@@ -29,13 +29,17 @@ def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
     lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
     external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
     released = max(external, 0.0) + max(-lifted, 0.0)
+    same = joints.edges.shape == sim.joints.edges.shape and bool((joints.edges == sim.joints.edges).all())
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
+    if sim.law.bonded:  # the ledger holds what bonds lost as well
+        slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
+        friction = float((slipped * np.sqrt((sim.contacts.shear**2).sum(axis=1))).sum())
     share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
     translates = turn.max(initial=0.0) < TURNS * motion.max(initial=0.0)  # up a slope, say: the work lifts blocks
     mode = "sliding" if translates or share > SLIDING else "rocking" if share < ROCKING else "mixed"
     moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
     found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
-    if len(joints.edges) and joints.edges.shape == sim.joints.edges.shape and (joints.edges == sim.joints.edges).all():
+    if same and len(joints.edges):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
