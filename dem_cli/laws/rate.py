@@ -2,7 +2,8 @@
 
     |s| ≤ μ(v) N,   μ(v) = μd + (μs − μd) exp(−v / vc)
 
-v is the speed at which the point slips, so that a joint that sticks has the static friction μs. Where time has no
+A joint that sticks has the static friction μs. While it slips v is the speed at which the blocks move past each other
+at the point, the spring between them included; it sticks again when the spring falls below the limit. Where time has no
 meaning (limit loads, gravity, settlements) all slip is slow: μ = μs.
 """
 
@@ -11,12 +12,12 @@ from __future__ import annotations
 import math
 from typing import Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import KeyProblem, NonNegative, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
-from dem_cli.laws.decay import slip_on_decay
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -41,19 +42,27 @@ class RateJoint(FrictionJoint):
 
 @inline
 def rate_dependent(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Coulomb contact point with the friction of its speed of slip; parameters: μs, μd, vc as slip per step."""
+    """Coulomb contact point with the friction of its speed; remembers it while it slips, 0 while it sticks."""
     if gap >= 0.0:
+        memory[point, 0] = 0.0
         return 0.0, scale(0.0, shear), True
-    normal = -kn * gap
+    normal, static = -kn * gap, parameters[joint, 0]
     trial = axpy(-ks, slide, shear)
     size = norm(trial)
-    if size <= parameters[joint, 0] * normal:
+    if memory[point, 0] == 0.0 and size <= static * normal:
         return normal, trial, False
-    # The slip of this step, and with it the speed, is where the spring meets the curve.
-    floor, drop = parameters[joint, 1] * normal, (parameters[joint, 0] - parameters[joint, 1]) * normal
-    rate = 1.0 / parameters[joint, 2]
-    slip = slip_on_decay(size, ks, floor, drop, rate)
-    return normal, scale((floor + drop * math.exp(-rate * slip)) / size, trial), True
+    # vc is slip per step here, and infinite where time has no meaning.
+    friction = parameters[joint, 1] + (static - parameters[joint, 1]) * math.exp(-norm(slide) / parameters[joint, 2])
+    if size <= friction * normal:
+        memory[point, 0] = 0.0
+        return normal, trial, False
+    memory[point, 0] = friction
+    return normal, scale(friction * normal / size, trial), True
+
+
+def shear_limit(parameters, normal, memory, kn):
+    """Friction of the speed, or the static one where the point sticks, × normal force [N]."""
+    return np.where(memory[:, 0] > 0.0, memory[:, 0], parameters[:, 0]) * normal
 
 
 RATE_DEPENDENT = Law(
@@ -61,7 +70,8 @@ RATE_DEPENDENT = Law(
     parameters=RateJoint,
     function=rate_dependent,
     columns=lambda table, kn: (table.coefficient, table.friction_dynamic, table.velocity),
-    shear_limit=lambda parameters, normal, memory, kn: parameters[:, 0] * normal,
+    shear_limit=shear_limit,
+    scalars=1,
     rates=(2,),
     source="thesis 5.2.2, Figure 5-22: static and dynamic friction; the exponential is ours",
 )

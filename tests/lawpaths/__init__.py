@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from dem_cli.case.base import CaseModel
 from dem_cli.contact.assemble import empty_contacts
 from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.jit import kernel
 from dem_cli.kernels.records import Joints
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
@@ -49,9 +49,9 @@ def joint(law: str, stiffness: dict[str, float] | None = None, **keys: Any) -> J
     return Joint(LAWS[law].of(table), table, **(stiffness or {}))
 
 
-def ramp(*targets: Sequence[float], n: int = 64) -> np.ndarray:
-    """Straight from target to target, n steps each; exact in binary where targets and n are."""
-    corners = [np.zeros(len(targets[0])), *map(np.asarray, targets)]
+def ramp(*targets: Sequence[float], n: int = 64, start: Sequence[float] | None = None) -> np.ndarray:
+    """Straight from target to target, n steps each; exact in binary where targets and n are. From zero by default."""
+    corners = [np.zeros(len(targets[0])) if start is None else np.asarray(start), *map(np.asarray, targets)]
     shares = np.arange(1, n + 1)[:, None] / n
     return np.concatenate([a + (b - a) * shares for a, b in zip(corners, corners[1:])])
 
@@ -72,7 +72,7 @@ class Looped(NamedTuple):
 def contact_loop(laws: tuple[Law, ...], compiled: bool):
     law = mixed(laws)
     plain = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
-    return numba.njit(error_model="numpy")(plain) if compiled else plain
+    return kernel(plain) if compiled else plain
 
 
 def through_loop(
