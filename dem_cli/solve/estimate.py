@@ -12,7 +12,7 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
 from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
-from dem_cli.solve.run import live_scale, open_joints
+from dem_cli.solve.run import live_scale, why_moving
 from dem_cli.solve.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -41,16 +41,13 @@ def describe(case: Case, model: Model) -> Rows:
         )
 
     wanted = case.analysis.kinematics
-    moving = case.analysis.kind == "settlement"
-    sim = simulation("large" if moving or wanted == "large" else "fixed")
-    gaps = open_joints(model) if wanted == "auto" and not moving else 0
-    if gaps:
-        sim = simulation("large")
+    moving = "supports move visibly" if case.analysis.kind == "settlement" else why_moving(case, model)
+    sim = simulation("fixed" if moving is None else "large")
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        ("kinematics", _kinematics(wanted, gaps, moving)),
+        ("kinematics", _kinematics(wanted, moving)),
         ("time step", _time_step(sim)),
         ("cost", _cost(case, sim)),
         ("load", _load(case, model)),
@@ -112,13 +109,11 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
     return rows
 
 
-def _kinematics(wanted: str, gaps: int, moving: bool) -> str:
+def _kinematics(wanted: str, moving: str | None) -> str:
     if moving:
-        return "large: supports move visibly"
+        return f"large: {moving}"
     if wanted != "auto":
         return f"{wanted} (as the case says)"
-    if gaps:
-        return f"large (auto): {gaps:,} joints have gaps that may close"
     return "fixed (auto): all joints are closed, and the geometry of the start is exact for a failure load"
 
 

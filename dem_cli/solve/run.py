@@ -124,20 +124,13 @@ class Job:
 
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
-        wanted = self.case.analysis.kinematics
-        profiles = [name for name, joint in self.case.joints.items() if joint.profile is not None]
-        if profiles and wanted == "fixed":
-            message = f"'fixed' is not allowed: microrotations at the profile of joint '{profiles[0]}' move the blocks"
-            raise CaseError([CaseProblem(("analysis", "kinematics"), message)])
-        gaps = open_joints(self.model) if wanted == "auto" and not profiles else 0
-        if profiles:
-            self.skipped.append(f"fixed geometry: microrotations at the profile of joint '{profiles[0]}' move the blocks")
-        elif gaps:
-            self.skipped.append(f"fixed geometry: {gaps} joints have gaps that may close")
-        elif wanted != "large":
+        moving = why_moving(self.case, self.model)
+        if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
-        return self.simulation("large" if profiles or gaps or wanted == "large" else "fixed")
+        elif moving:
+            self.skipped.append(f"fixed geometry: {moving}")
+        return self.simulation("fixed" if moving is None else "large")
 
     def track(self, sim: Simulation) -> Track:
         """Rows and frames of a simulation."""
@@ -162,6 +155,24 @@ class Job:
             "warnings": self.warnings,
         }
         return Outcome(summary | found)
+
+
+def why_moving(case: Case, model: Model) -> str | None:
+    """Why geometry moves on the way to failure ("": the case says so); None: that of the start is good enough.
+
+    Raises CaseError where the case asks for fixed geometry that its joints do not allow.
+    """
+    wanted = case.analysis.kinematics
+    profiles = [name for name, joint in case.joints.items() if joint.profile is not None]
+    if profiles:
+        reason = f"microrotations at the profile of joint '{profiles[0]}' move the blocks"
+        if wanted == "fixed":
+            raise CaseError([CaseProblem(("analysis", "kinematics"), f"'fixed' is not allowed: {reason}")])
+        return reason
+    if wanted != "auto":
+        return "" if wanted == "large" else None
+    gaps = open_joints(model)
+    return f"{gaps} joints have gaps that may close" if gaps else None
 
 
 def live_scale(model: Model) -> float:
