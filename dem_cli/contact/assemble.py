@@ -152,7 +152,7 @@ def _chain(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Profile (n, 2) of one joint, as Joints.profile, and the share of its area of each point, (n,).
 
-    key: edges of b and of a; low, high: where the joint is along the edge of b, from its end near a0; whole: its length.
+    key: edges of b and of a; low, high: place of the joint along the edge of b, from its end near a0; whole: its length.
     """
     # Polygons are listed from left to right, or from the top down: that is from a1 to a0.
     if layout.sides is None or layout.over == "joint":

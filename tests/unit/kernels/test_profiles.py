@@ -50,7 +50,7 @@ def stored(sim, x: float, y: float, angle: float) -> float:
 
 def vertices(sim) -> np.ndarray:
     """World coordinates of the chain on block b, from its right end to its left, (n, 2)."""
-    a0, a1, b0, b1 = sim.bodies.corners[sim.joints.edges[0]]
+    _, _, b0, b1 = sim.bodies.corners[sim.joints.edges[0]]
     along = (b0 - b1) / np.hypot(*(b0 - b1))
     into_b = np.array([along[1], -along[0]])
     return b1 + sim.joints.profile[:, :1] * along + sim.joints.profile[:, 1:] * into_b
@@ -89,7 +89,8 @@ def test_forces_are_the_gradient_of_the_energy(shift, x, y, angle):
     expected = []
     for k in range(3):
         d = h * np.eye(3)[k]
-        expected.append((stored(sim, x - d[0], y - d[1], angle - d[2]) - stored(sim, x + d[0], y + d[1], angle + d[2])) / 2 / h)
+        below, above = (stored(sim, x + s * d[0], y + s * d[1], angle + s * d[2]) for s in (-1.0, 1.0))
+        expected.append((below - above) / 2 / h)
     scale = sim.joints.kn.max() * 1e-3
     assert force == pytest.approx(expected, rel=1e-5, abs=1e-4 * scale)
 
@@ -105,7 +106,8 @@ def test_a_chain_without_rise_is_a_plane_joint():
     for sim in sims:
         sim.set_load(0.3)
         sim.advance(2000, slot.HOLD_LOAD)
-    assert len(sims[1].joints.profile) == 2 and not len(sims[0].joints.profile)
+    assert len(sims[1].joints.profile) == 2
+    assert not len(sims[0].joints.profile)
     for field in ("positions", "orientations", "velocities"):
         one, other = (getattr(sim.bodies, field) for sim in sims)
         assert one == pytest.approx(other, abs=1e-12)
@@ -132,8 +134,8 @@ def test_points_of_all_joints_are_carried_over():
     sim = simulation(table, "large")
     sim.set_load(0.1)
     sim.advance(3000, slot.HOLD_LOAD)
-    before = {tuple(e): (sim.joints.starts[j], sim.joints.starts[j + 1]) for j, e in enumerate(sim.joints.edges.tolist())}
     old, contacts = sim.joints, sim.contacts
+    before = {tuple(e): (old.starts[j], old.starts[j + 1]) for j, e in enumerate(old.edges.tolist())}
     sim.detect()
     assert sum(end - start > 2 for start, end in before.values()) >= 1
     for j, edges in enumerate(sim.joints.edges.tolist()):
