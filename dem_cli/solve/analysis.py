@@ -57,6 +57,11 @@ class PushoverAnalysis(LiveAnalysis):
         default=None, gt=0.0, description="largest step of the multiplier on the way from gravity; default: they grow"
     )
     follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
+    collapse: Literal["rate", "load"] = Field(
+        default="rate",
+        description="what is prescribed while the collapse is followed; rate: of displacement, the load is found; "
+        "load: that of failure stays",
+    )
     max_load: float | None = Field(
         default=None,
         gt=0.0,

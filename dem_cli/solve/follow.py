@@ -1,7 +1,8 @@
-"""After failure: the collapse at a prescribed rate, with geometry that moves.
+"""After failure: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
 
-The live load keeps prescribing the rate of its own displacement, so that the multiplier is found along
-the whole way, down to nothing where a wall overturns by itself.
+Where the live load keeps prescribing the rate of its own displacement, the multiplier is found along the whole
+way, down to nothing where a wall overturns by itself. Where the load stays, blocks that slide leave the others
+behind, as on a tilting table.
 """
 
 from __future__ import annotations
@@ -9,7 +10,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, GRAVITY_TOLERANCE, Budget, check_finite, relax
+from dem_cli.solve.equilibrium import (
+    CHUNK,
+    COMBINED,
+    COMBINED_SAFETY,
+    GRAVITY_TOLERANCE,
+    TOLERANCE,
+    Budget,
+    check_finite,
+    relax,
+    settle_or_fail,
+)
 from dem_cli.solve.failure import PROBE
 from dem_cli.solve.joints import FIXED_RATIO
 from dem_cli.solve.track import Track
@@ -25,6 +36,8 @@ GROWTH = 1.1  # of the rate from one look to the next, so that nothing is thrown
 ROWS = 250  # history rows
 SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
 FALL = 1e-3  # speed limit of blocks that fall, in smallest edges per step: they land softly
+STEPS_UP = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the load of failure, held before the collapse
+HARDER = 1.005  # growth of a load that holds after all
 NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
 
 
@@ -82,3 +95,38 @@ def follow(
         longest = 100 if stage == "loading" else 20_000
         chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
 
+
+def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
+    """The collapse under a constant load until a block moved by `until` [m]; where it holds after all, a little more.
+
+    failure: internal multiplier that was proved impossible.
+    """
+    relax(sim, 0.0, GRAVITY_TOLERANCE)
+    track.write("gravity")
+    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+    for share in STEPS_UP:
+        settled = settle_or_fail(sim, share * failure, budget, sim.dead_scale())
+        track.write("loading")
+        if settled.state != "equilibrium":
+            break
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    load, calm, next_row, next_frame = failure, 0, 0.0, 0.0
+    sim.set_load(load)
+    while sim.largest_displacement() < until:
+        sim.advance(CHUNK, slot.HOLD_LOAD)
+        budget.spend(CHUNK, "following the collapse")
+        check_finite(sim)
+        calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+        if calm == 2:
+            load, calm = HARDER * load, 0
+            sim.set_load(load)
+        moved = sim.largest_displacement()
+        if moved >= next_row:
+            track.write("collapse")
+            next_row = moved + until / ROWS
+        if moved >= next_frame:
+            track.frame("collapse")
+            next_frame = moved + until / max(frames - 3, 1)
+        track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
+    track.write("collapse")
+    track.frame("collapse")

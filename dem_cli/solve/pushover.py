@@ -10,7 +10,7 @@ from dem_cli.output.record import Observer
 from dem_cli.solve import follow
 from dem_cli.solve.failure import Search, find_failure
 from dem_cli.solve.gravity import FALLS, settle
-from dem_cli.solve.joints import joint_properties, law_of
+from dem_cli.solve.joints import FIXED_RATIO, joint_properties, law_of
 from dem_cli.solve.mechanism import describe
 from dem_cli.solve.run import Job, Outcome
 from dem_cli.solve.simulation import Simulation
@@ -144,12 +144,19 @@ def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[s
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.low / sim.live_scale
-    ratio, softer = follow.softness(job.case, search.elastic, load, sim.smallest, until)
+    by_load = job.case.analysis.collapse == "load"
+    ratio, softer = FIXED_RATIO, 1.0
+    if not by_load:
+        ratio, softer = follow.softness(job.case, search.elastic, load, sim.smallest, until)
     falling = job.simulation("large", ratio)
     falling.steps = sim.steps
     fast = search.compliance * softer / follow.STEPS
     rate = min(fast, search.compliance / search.elastic * until / follow.FEWEST)
     try:
+        if by_load:
+            impossible = search.high / sim.live_scale
+            follow.follow_load(falling, job.track(falling), impossible, until, frames, job.budget)
+            return falling, {"load": None, "displacement": search.peak_displacement}
         return falling, follow.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
     except SolverError as error:
         job.warnings.append(f"the collapse was not followed to its end: {error}")
