@@ -1,0 +1,1 @@
+"""Pages of the joint laws: equation, response along displacement paths, parameters, source."""
