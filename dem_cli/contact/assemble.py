@@ -88,7 +88,10 @@ def build_joints(
     named = properties.between(model, blocks)
     starts, chains, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
     if properties.profiled:
-        starts, chains, shares = _chains(faces, bodies, properties.layouts, named, old)
+        if old is None:
+            starts, chains, shares = _first_chains(faces, bodies, properties.layouts, named)
+        else:
+            starts, chains, shares = _later_chains(faces, bodies.corners, old)
     owner, n_points = np.repeat(np.arange(n), np.diff(starts)), int(starts[-1])
     joints = Joints(
         blocks=blocks,
@@ -114,37 +117,43 @@ def measure_points(joints: Joints, contacts: Contacts, bodies: Bodies) -> None:
     (measure_profiles if len(joints.profile) else measure)(joints, contacts, bodies)
 
 
-def _chains(
-    faces: Faces, bodies: Bodies, layouts: Sequence[Layout | None], named: np.ndarray, old: Joints | None
+def _first_chains(
+    faces: Faces, bodies: Bodies, layouts: Sequence[Layout | None], named: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """First point of each joint, the profile of all points (Joints.profile), and the share of the area of each."""
+    """At the start: first point of each joint, profile of all points (Joints.profile), share of the area of each."""
     corners, n = bodies.corners, len(named)
     low, high = _overlap_ends(faces.edges, corners)
     a0, a1, b0, b1 = (corners[faces.edges[:, i]] for i in range(4))
     along = (a1 - a0) / np.sqrt(((a1 - a0) ** 2).sum(axis=1))[:, None]
     from_b1 = ((b1 - a0) * along).sum(axis=1)  # where the edge of b starts, along that of a
     whole = np.sqrt(((b1 - b0) ** 2).sum(axis=1))
-    known = np.full(n, -1) if old is None else same_joints(old.edges, faces.edges)
-    rows, shares = [], []
+    rows, shares = [np.zeros((0, 2))], [np.zeros(0)]
     for i in range(n):
-        if known[i] >= 0:
-            points = slice(old.starts[known[i]], old.starts[known[i] + 1])
-            rows.append(old.profile[points])
-            shares.append(np.full(len(rows[-1]), 1.0 / len(rows[-1])))  # stiffness is carried over (carry_memory)
-            continue
         layout = layouts[named[i]]
-        if old is None and layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
+        row, share = np.array([[0.0, 0.0], [whole[i], 0.0]]), np.full(2, 0.5)
+        if layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
             key = (int(faces.edges[i, 2]), int(faces.edges[i, 0]))
             row, share = _chain(layout, key, low[i] - from_b1[i], high[i] - from_b1[i], whole[i])
-            rows.append(row)
-            shares.append(share)
-        else:
-            rows.append(np.array([[0.0, 0.0], [whole[i], 0.0]]))
-            shares.append(np.full(2, 0.5))
-    starts = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
-    if not rows:
-        return starts, np.zeros((0, 2)), np.zeros(0)
+        rows.append(row)
+        shares.append(share)
+    starts = np.cumsum([len(row) for row in rows]).astype(np.int64)
     return starts, np.ascontiguousarray(np.concatenate(rows)), np.concatenate(shares)
+
+
+def _later_chains(faces: Faces, corners: np.ndarray, old: Joints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same for joints that were there before and keep their points, and for new ones, which are plane.
+
+    The stiffness of old points is carried over (carry_memory); their shares mean nothing.
+    """
+    known = same_joints(old.edges, faces.edges)
+    stay = np.flatnonzero(known >= 0)
+    counts = np.full(len(known), 2)
+    counts[stay] = np.diff(old.starts)[known[stay]]
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    profile = np.zeros((starts[-1], 2))
+    profile[starts[1:] - 1, 0] = np.sqrt(((corners[faces.edges[:, 3]] - corners[faces.edges[:, 2]]) ** 2).sum(axis=1))
+    profile[points_of(starts, stay)] = old.profile[points_of(old.starts, known[stay])]
+    return starts, profile, np.full(starts[-1], 0.5)
 
 
 def _chain(
@@ -152,7 +161,7 @@ def _chain(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Profile (n, 2) of one joint, as Joints.profile, and the share of its area of each point, (n,).
 
-    key: edges of b and of a; low, high: place of the joint along the edge of b, from its end near a0; whole: its length.
+    key: edges of b and of a; low, high: ends of the joint along the edge of b, from near a0 on; whole: its length.
     """
     # Polygons are listed from left to right, or from the top down: that is from a1 to a0.
     if layout.sides is None or layout.over == "joint":

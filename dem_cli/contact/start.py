@@ -32,11 +32,11 @@ def close_touching(contacts: Contacts, smallest: float) -> None:
 
 def bond_touching(model: Model, joints: Joints, contacts: Contacts, properties: JointProperties) -> None:
     """Points without a gap start intact: they remember what their law says of a young joint."""
-    count = properties.intact.shape[1]
+    count = min(properties.intact.shape[1], contacts.memory.shape[1])  # limit analysis remembers nothing
     owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
     touching = contacts.gaps <= 0.0
     named = properties.between(model, joints.blocks)[owner]
-    contacts.memory[touching, :count] = properties.intact[named[touching]]
+    contacts.memory[touching, :count] = properties.intact[named[touching], :count]
 
 
 def joints_of_start(

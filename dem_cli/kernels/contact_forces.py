@@ -53,8 +53,8 @@ def make_press(law: Callable, bonded: bool = False) -> Callable:
         plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
         path = norm(plastic) if normal > 0.0 else 0.0
         lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
-        if bonded and not (pressed > 0.0 and normal == 0.0):
-            # The same across the joint: work done on the spring, less what it stores; to come apart costs nothing.
+        if bonded and not (pressed >= 0.0 and normal >= 0.0 and pressed * normal == 0.0):
+            # The same across the joint: work done on the spring, less what it stores; to meet or part costs nothing.
             lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
         return normal, shear, path, lost
 

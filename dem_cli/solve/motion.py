@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.geometry import polygon
 from dem_cli.kernels import records as slot
+from dem_cli.solve.play import beyond
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
@@ -48,6 +49,7 @@ class Motion:
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
+        self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
         self.energies = [sim.energy_sums()]
 
@@ -59,13 +61,16 @@ class Motion:
         if len(self.moved) < 9:
             return None
         own = moved <= 0.5 * falls(self.sim) * (self.sim.steps - self.begun) ** 2
-        beyond = moved - self.play  # what microrotations cannot explain
-        block = int(np.where(own, beyond, -np.inf).argmax())
+        unexplained = moved
+        if self.play.any():
+            away = np.abs(self.sim.save_places() - self.sim.first_places).max(axis=1)
+            unexplained = beyond(self.play, moved, self.away, away)
+        block = int(np.where(own, unexplained, -np.inf).argmax())
         last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
-        if beyond[block] <= self.far or not own[block] or min(last) <= 0.0:
+        if unexplained[block] <= self.far or not own[block] or min(last) <= 0.0:
             return None
         accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > ACCELERATED
-        steady = last[-1] > STEADY**4 * last[0] and beyond[block] > STEADILY * self.far
+        steady = last[-1] > STEADY**4 * last[0] and unexplained[block] > STEADILY * self.far
         if not (accelerated or steady):
             return None
         for since in (self.energies[-3], self.energies[0]):
@@ -112,7 +117,11 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
     motion = np.abs(sim.save_places() - since)
     d = sim.model.dimension
     moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
-    gross = moved > GROSS * sim.widths + sim.play.moved
-    gross |= turned > (TURNED + sim.play.turned) * sim.shape.radii
+    if sim.play.moved.any():
+        before, now = np.abs(since - sim.first_places), np.abs(sim.save_places() - sim.first_places)
+        moved = beyond(sim.play.moved, moved, before[:, :d].max(axis=1), now[:, :d].max(axis=1))
+        turning = sim.play.turned * sim.shape.radii
+        turned = beyond(turning, turned, before[:, d:].max(axis=1), now[:, d:].max(axis=1))
+    gross = (moved > GROSS * sim.widths) | (turned > TURNED * sim.shape.radii)
     gross &= (np.maximum(moved, turned) > NOT_ELASTIC * scale) & ~sim.model.fixed
     return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None

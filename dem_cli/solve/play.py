@@ -11,7 +11,7 @@ from dem_cli.model.model import Model
 
 
 class Play(NamedTuple):
-    """Largest motion by microrotations alone, zero where all joints are plane."""
+    """Largest motion by microrotations alone, from the place of the start; zero where all joints are plane."""
 
     moved: np.ndarray  # of the centroid [m], (n_blocks,)
     turned: np.ndarray  # [rad], (n_blocks,)
@@ -57,3 +57,12 @@ def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
     loose = ~near  # touches nothing: nothing holds it, and nothing is known
     found.moved[loose], found.turned[loose] = 0.0, 0.0
     return found
+
+
+def beyond(play: np.ndarray, since: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """How much of the motion of each block microrotations cannot explain [m], (n_blocks,).
+
+    since: motion since a moment; before, now: distance from the place of the start, then and now. Where a block was
+    further away than microrotations take it, it had slid, and may rock from one extreme to the other.
+    """
+    return np.where(before > play, since - 2.0 * play, np.minimum(since, now - play))

@@ -109,6 +109,7 @@ class Simulation:
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = play(model, self.joints, self.bodies.positions)
+        self.first_places = self.save_places()
 
     # -- detection ---------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.planar_geometry import BLEND
 from dem_cli.solve import simulation as engine
 from dem_cli.solve.joints import joint_properties, law_of
-from tests.engine import block, rectangle, scene, simulation, steps, tables
+from engine import block, rectangle, scene, simulation, steps, tables
 
 APERTURE, SIDES = 0.01, 5
 
