@@ -48,7 +48,7 @@ LOOKS = 20  # how often the load is looked at in the first phase
 HOLD_STEPS = 3000
 SOFTENED = 0.95  # of the highest load: a creep past its peak
 PROBE = 0.02  # internal multiplier of the first load
-PROBE_IN_PLAY = 2e-4  # the same where joints have a profile: microrotations begin early
+PROBE_IN_PLAY, FIRST_IN_PLAY = 2e-4, 2e-3  # the same, and the first step, where microrotations may begin early
 LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
 LEAST = 1e-3  # internal multiplier that the resolution is relative to, at least
@@ -127,7 +127,7 @@ def find_failure(
     max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
     LOCKED times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
     where it does not hold, these are the way after all. longest: step of the load, as users know it, that is never
-    exceeded; then nothing is estimated first. What is found goes to `search` as it is found, so that
+    exceeded; then, and where joints have a profile, nothing is estimated first. What is found goes to `search` as it is found, so that
     it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
     search.low, search.held, search.settled = 0.0, sim.save(), sim.largest_displacement()
@@ -148,9 +148,10 @@ def find_failure(
         step = ONE_STEP * resolution * low
         _raise_load(sim, search, low, [], step, resolution, limit, budget, track, start.plateau)
         return
-    if longest is not None:
-        step = longest / sim.live_scale
-        _raise_load(sim, search, 0.0, [], step, resolution, limit, budget, track, longest=step)
+    if longest is not None or sim.play.moved.any():  # a creep would stop at the first microrotation
+        most = np.inf if longest is None else longest / sim.live_scale
+        first = FIRST_IN_PLAY if longest is None else most
+        _raise_load(sim, search, 0.0, [], first, resolution, limit, budget, track, longest=most)
         return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
     estimate = _creep(sim, REACH * search.compliance, budget, search)

@@ -9,6 +9,8 @@ import numpy as np
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 
+MARGIN = 1.25  # for the slip that goes with a microrotation, and finite rotations
+
 
 class Play(NamedTuple):
     """Largest motion by microrotations alone, from the place of the start; zero where all joints are plane."""
@@ -39,17 +41,22 @@ def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
     angles = joint_angles(joints)
     if not angles.any():
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
-    places = np.add.reduceat(joints.points, joints.starts[:-1], axis=0) / np.diff(joints.starts)[:, None]
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    reach = np.zeros(joints.blocks.shape)  # from the centroids of both blocks to the farthest point of the joint
+    for side in (0, 1):
+        arms = joints.points - positions[joints.blocks[owner, side]]
+        np.maximum.at(reach[:, side], owner, np.sqrt((arms**2).sum(axis=1)))
     near = model.fixed.copy()
     while True:
         reached = near[joints.blocks]
         new = near.copy()
         for i in np.flatnonzero(reached[:, 0] != reached[:, 1]):
-            a, b = joints.blocks[i] if reached[i, 0] else joints.blocks[i, ::-1]
+            side = 1 if reached[i, 0] else 0
+            a, b = joints.blocks[i, 1 - side], joints.blocks[i, side]
             far = np.hypot(*(positions[b] - positions[a]))
-            moved = found.moved[a] + found.turned[a] * far + angles[i] * np.hypot(*(positions[b] - places[i]))
+            moved = found.moved[a] + found.turned[a] * far + MARGIN * angles[i] * reach[i, side]
             if moved < found.moved[b]:
-                found.moved[b], found.turned[b] = moved, found.turned[a] + angles[i]
+                found.moved[b], found.turned[b] = moved, found.turned[a] + MARGIN * angles[i]
             new[b] = True
         if (new == near).all():
             break
