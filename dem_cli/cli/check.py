@@ -47,5 +47,12 @@ def rows(case: Case, model: Model) -> list[tuple[str, str]]:
         ("size", size),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
         ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
+        *([("imperfections", _imperfections(case))] if case.imperfection else []),
         ("point loads", ", ".join(loads) if case.load else "none"),
     ]
+
+
+def _imperfections(case: Case) -> str:
+    """How many tables, and what they are drawn from."""
+    count = len(case.imperfection)
+    return f"{count} {'table' if count == 1 else 'tables'}; what is random is drawn from seed {case.seed}"

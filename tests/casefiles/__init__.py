@@ -67,12 +67,21 @@ def blocks_of(tables: dict) -> list[tuple[str, tuple[np.ndarray, ...], str, floa
         parameters = generator.parameters.model_validate(named)
         for block in place(generator.build(parameters), parameters, ("structure", i)):
             blocks.append((block.id, block.parts, block.material, block.thickness, block.fixed))
+    for table in tables.get("imperfection", []):
+        blocks = [lower(block, -table["height"]) if block[0] == table["block"] else block for block in blocks]
     for table in tables.get("block", []):
         parts = table.get("parts") or [table["vertices"]]
         parts = tuple(np.array(part, dtype=float) for part in parts)
         material = table.get("material", only_material)
         blocks.append((table["id"], parts, material, table.get("thickness", 1.0), table.get("fixed", False)))
     return blocks
+
+
+def lower(block: tuple, by: float) -> tuple:
+    """A rectangular block with its top lower [m]; what lies above must rest on others as well and stay."""
+    corners = block[1][0].copy()
+    corners[corners[:, 1] > corners[:, 1].mean(), 1] -= by
+    return (block[0], (corners,), *block[2:])
 
 
 def scene(path: Path) -> Scene:

@@ -12,6 +12,7 @@ from dem_cli.model.assemble import assembly
 REFERENCED = [path for path in FILES if "reference" in read(path) and known_to_the_oracle(path)]
 NO_REFERENCE = {"wedged_block", "overhang_falls", "leaning_column", "settlement_portal", "uneven_courses_mu050"}
 WALLS = ("wall_",)  # between the loads without and with friction in the head joints
+GUESSED = {"wall_21_imperfect_a"}  # which block the thesis means is a guess: near these loads, by the tolerance
 
 each_file = pytest.mark.parametrize("path", FILES, ids=case_id)
 
@@ -56,12 +57,8 @@ def test_reference_is_what_the_oracle_says(path):
         assert reference["tolerance"] <= 0.011 * reference["failure_load"]
     elif path.stem.startswith(WALLS):
         lower = scene(path).limit(heads=False).multiplier
-        half_a_digit = 6e-4  # references printed with three digits
-        assert (
-            lower - half_a_digit
-            <= reference["failure_load"]
-            <= min(associated.multiplier, 0.6461) + half_a_digit
-        )
+        slack = reference["tolerance"] if path.stem in GUESSED else 6e-4  # references printed with three digits
+        assert lower - slack <= reference["failure_load"] <= min(associated.multiplier, 0.6461) + slack
     else:
         assert reference["failure_load"] == pytest.approx(
             associated.multiplier, abs=reference["tolerance"] / 3
