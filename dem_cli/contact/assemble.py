@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,15 @@ LIKE = {2: (0.0, 0.0), 3: (0.0, 0.0, 0.0)}
 LIKE_ROTATION = {2: (0.0,), 3: (0.0, 0.0, 0.0)}
 STEEP = np.cos(np.pi / 4) - 1e-9  # a head joint has its normal within 45° of the horizontal
 END_TO_END = 1e-3  # of the edge of b: a shorter overlap at the start is none
+
+
+class Chains(NamedTuple):
+    """The contact points of the joints of the start, which come back wherever the same two faces meet again."""
+
+    edges: np.ndarray  # as Joints.edges, (n_joints, 4)
+    starts: np.ndarray  # as Joints.starts, (n_joints + 1,)
+    profile: np.ndarray  # as Joints.profile, (n_points, 2)
+    shares: np.ndarray  # of the area of the joint that belong to each point, (n_points,)
 
 
 class JointProperties(NamedTuple):
@@ -72,11 +80,11 @@ def _overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, n
 
 
 def build_joints(
-    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int, old: Joints | None = None
+    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int, chains: Chains | None = None
 ) -> tuple[Joints, Contacts]:
     """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing.
 
-    Only the joints of the start have a profile or more than two points; `old`: joints of before, whose points stay.
+    chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
     """
     d, n = model.dimension, len(faces.parts)
     blocks = model.part_blocks[faces.parts]
@@ -86,12 +94,10 @@ def build_joints(
     overlap = np.clip(overlap_lengths(faces.edges, bodies.corners), 0.1 * shortest, shortest)
     area = overlap * model.thickness[blocks].min(axis=1, initial=np.inf)
     named = properties.between(model, blocks)
-    starts, chains, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
+    starts, profiles, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
     if properties.profiled:
-        if old is None:
-            starts, chains, shares = _first_chains(faces, bodies, properties.layouts, named)
-        else:
-            starts, chains, shares = _later_chains(faces, bodies.corners, old)
+        chains = chains_of_start(model, faces, bodies, properties) if chains is None else chains
+        starts, profiles, shares = _come_back(chains, faces, bodies.corners)
     owner, n_points = np.repeat(np.arange(n), np.diff(starts)), int(starts[-1])
     joints = Joints(
         blocks=blocks,
@@ -100,7 +106,7 @@ def build_joints(
         levers=np.zeros((n_points, 2 * d * model.inertias.shape[1])),
         points=np.zeros((n_points, d)),
         edges=faces.edges,
-        profile=chains,
+        profile=profiles,
         scales=np.ascontiguousarray(np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)])),
         kn=(properties.kn[named] * area)[owner] * shares,
         ks=(properties.ks[named] * area)[owner] * shares,
@@ -117,11 +123,10 @@ def measure_points(joints: Joints, contacts: Contacts, bodies: Bodies) -> None:
     (measure_profiles if len(joints.profile) else measure)(joints, contacts, bodies)
 
 
-def _first_chains(
-    faces: Faces, bodies: Bodies, layouts: Sequence[Layout | None], named: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """At the start: first point of each joint, profile of all points (Joints.profile), share of the area of each."""
-    corners, n = bodies.corners, len(named)
+def chains_of_start(model: Model, faces: Faces, bodies: Bodies, properties: JointProperties) -> Chains:
+    """Contact points of the joints of the start, by the layout of their named joint."""
+    corners, n = bodies.corners, len(faces.parts)
+    named = properties.between(model, model.part_blocks[faces.parts])
     low, high = _overlap_ends(faces.edges, corners)
     a0, a1, b0, b1 = (corners[faces.edges[:, i]] for i in range(4))
     along = (a1 - a0) / np.sqrt(((a1 - a0) ** 2).sum(axis=1))[:, None]
@@ -129,7 +134,7 @@ def _first_chains(
     whole = np.sqrt(((b1 - b0) ** 2).sum(axis=1))
     rows, shares = [np.zeros((0, 2))], [np.zeros(0)]
     for i in range(n):
-        layout = layouts[named[i]]
+        layout = properties.layouts[named[i]]
         row, share = np.array([[0.0, 0.0], [whole[i], 0.0]]), np.full(2, 0.5)
         if layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
             key = (int(faces.edges[i, 2]), int(faces.edges[i, 0]))
@@ -137,23 +142,22 @@ def _first_chains(
         rows.append(row)
         shares.append(share)
     starts = np.cumsum([len(row) for row in rows]).astype(np.int64)
-    return starts, np.ascontiguousarray(np.concatenate(rows)), np.concatenate(shares)
+    return Chains(faces.edges, starts, np.ascontiguousarray(np.concatenate(rows)), np.concatenate(shares))
 
 
-def _later_chains(faces: Faces, corners: np.ndarray, old: Joints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same for joints that were there before and keep their points, and for new ones, which are plane.
-
-    The stiffness of old points is carried over (carry_memory); their shares mean nothing.
-    """
-    known = same_joints(old.edges, faces.edges)
+def _come_back(chains: Chains, faces: Faces, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """First point of each joint, profile and shares of all points: those of the start keep theirs, others are plane."""
+    known = same_joints(chains.edges, faces.edges)
     stay = np.flatnonzero(known >= 0)
     counts = np.full(len(known), 2)
-    counts[stay] = np.diff(old.starts)[known[stay]]
+    counts[stay] = np.diff(chains.starts)[known[stay]]
     starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    profile = np.zeros((starts[-1], 2))
+    profile, shares = np.zeros((starts[-1], 2)), np.full(starts[-1], 0.5)
     profile[starts[1:] - 1, 0] = np.sqrt(((corners[faces.edges[:, 3]] - corners[faces.edges[:, 2]]) ** 2).sum(axis=1))
-    profile[points_of(starts, stay)] = old.profile[points_of(old.starts, known[stay])]
-    return starts, profile, np.full(starts[-1], 0.5)
+    here, there = points_of(starts, stay), points_of(chains.starts, known[stay])
+    profile[here] = chains.profile[there]
+    shares[here] = chains.shares[there]
+    return starts, profile, shares
 
 
 def _chain(

@@ -127,8 +127,8 @@ def find_failure(
     max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
     LOCKED times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
     where it does not hold, these are the way after all. longest: step of the load, as users know it, that is never
-    exceeded; then, and where joints have a profile, nothing is estimated first. What is found goes to `search` as it is found, so that
-    it is not lost where the budget ends; the equilibria are kept as rows in the track.
+    exceeded; then, and where joints have a profile, nothing is estimated first. What is found goes to `search` as it
+    is found, so that it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
     search.low, search.held, search.settled = 0.0, sim.save(), sim.largest_displacement()
     limit = LOCKED if max_load is None else max_load / sim.live_scale

@@ -13,6 +13,7 @@ from dem_cli.contact.assemble import (
     JointProperties,
     build_joints,
     carry_memory,
+    chains_of_start,
     measure_points,
 )
 from dem_cli.contact.detect import block_shape, find_joints, inner_edges
@@ -121,7 +122,10 @@ class Simulation:
             )
         else:
             faces = find_joints(model, self.bodies.corners, SKIN * self.smallest, self.inner)
-            self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory)
+            self.chains = chains_of_start(model, faces, self.bodies, self.properties)
+            self.joints, self.contacts = build_joints(
+                model, faces, self.bodies, self.properties, n_memory, self.chains
+            )
             close_touching(self.contacts, self.smallest)
             bond_touching(model, self.joints, self.contacts, self.properties)
         self._after_detection()
@@ -132,7 +136,7 @@ class Simulation:
         self.measured()  # the points of the old joints, for those that move on
         faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest, self.inner)
         n_memory = self.law.n_memory(self.model.dimension)
-        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, n_memory, old)
+        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, n_memory, self.chains)
         carry_memory(old, memory, joints, contacts)
         if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
             # Still the same faces though nothing moved: do not ask again at every step.
