@@ -59,6 +59,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         normal=np.zeros(n_points),
         slip=np.zeros(n_points),
         memory=np.zeros((n_points, n_memory)),
+        sunk=np.zeros(n_joints),
         stale=np.zeros(n_joints + 1, np.int8),
     )
 
@@ -204,6 +205,8 @@ def carry_memory(old: Joints, memory: Contacts, new: Joints, contacts: Contacts)
     target, source = points_of(new.starts, known), points_of(old.starts, match[known])
     _copy(contacts, memory, target, source)
     new.kn[target], new.ks[target] = old.kn[source], old.ks[source]
+    contacts.sunk[:] = np.inf
+    contacts.sunk[known] = memory.sunk[match[known]]
     orphans = np.setdiff1d(np.flatnonzero(_loaded(old, memory)), match[known])
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):
@@ -260,5 +263,6 @@ def _adopt(
             if memory.normal[source] != 0.0:
                 distance = ((new.points[candidates] - old.points[source]) ** 2).sum(axis=1)
                 heir = candidates[[distance.argmin()]]
+                contacts.sunk[np.searchsorted(new.starts, heir, side="right") - 1] = 0.0
                 _copy(contacts, memory, heir, np.array([source]))
                 new.kn[heir], new.ks[heir] = old.kn[source], old.ks[source]

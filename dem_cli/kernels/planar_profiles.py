@@ -1,7 +1,8 @@
 """The loop over contact points of joints with more than two points, 2D: joints with a profile, bonded joints.
 
 Block b carries a convex chain of vertices on its side of the joint, block a is flat: the non-coplanar joint
-of thesis 7.2.3 as geometry. The ends of the joint are corners of b on the edge of a, or corners of a on a side
+of thesis 7.2.3 as geometry. Edges of b are recessed behind its corners then, so that other faces may find themselves
+inside each other when they come to touch: a joint counts its gaps from there. The ends of the joint are corners of b on the edge of a, or corners of a on a side
 of the chain, as in planar_geometry.py; between them lie the vertices. A chain without rise is a planar joint.
 """
 
@@ -61,7 +62,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
         frames, levers, places_out = joints.frames, joints.levers, joints.points
         kns, kss, parameters = joints.kn, joints.ks, joints.law
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale = contacts.slip, contacts.memory, contacts.stale
+        slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, contacts.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         lost = 0.0
@@ -107,6 +108,11 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
                 if stale[joint] == 0 and (overlap > 0.0 or loaded):
                     stale[joint] = 1
                     stale[-1] = 1
+                sunk[joint] = np.inf
+            offset = 0.0
+            if sunk[joint] > 0.0 and not apart:
+                offset = min(sunk[joint], max(-min(gap_low, gap_high), 0.0))
+                sunk[joint] = offset
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
             spin_a = load(velocities, a, d, like_rotation)
             spin_b = load(velocities, b, d, like_rotation)
@@ -127,6 +133,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
                     along = (corner_b[0] - a0[0]) * ta[0] + (corner_b[1] - a0[1]) * ta[1]
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
                         gap = max(gap, 0.0)
+                gap += offset
                 if apart:
                     gap = max(gap, 0.0)
                 before = gaps[point]

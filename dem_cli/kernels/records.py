@@ -58,6 +58,7 @@ class Contacts(NamedTuple):
     normal: np.ndarray  # normal force, compression positive [N], (n_points,)
     slip: np.ndarray  # accumulated slip path [m], (n_points,)
     memory: np.ndarray  # whatever the law remembers, (n_points, n_memory)
+    sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
 
 
