@@ -7,6 +7,7 @@ motion accelerates while the loads release more energy than friction and joints 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING
@@ -30,9 +31,9 @@ RELAX_SAFETY, CREEP_SAFETY, COMBINED_SAFETY = 0.6, 0.85, 0.75
 GENTLE = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
 FALL = 2e-3  # of the narrowest block: what a block that falls may move in a step, where geometry moves
 SHORTEST, LONGEST, STAIR = 500, 20_000, 20  # steps: of a ramp (a shorter one is none), and between its loads
-# Stairs of a ramp per course where joints remember: a load put on at once swings to nearly twice its size, and cracks or
-# crushes what it would not by itself.
-REMEMBERED = 5
+# The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what it
+# would not by itself. Steps per course, and between loads.
+REMEMBERED, FINE_STAIR = 100, 5
 
 
 @dataclass(frozen=True)
@@ -152,32 +153,37 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
     sim.set_load(load)
     fall = falls(sim)[sim.free]
     slowest = fall[fall > 0.0].min(initial=math.inf)
-    stairs = int(min(math.sqrt(4.0 * scale / (GENTLE * slowest)), LONGEST)) // STAIR
-    stairs = max(stairs if stairs * STAIR >= SHORTEST else 0, _stairs_of_memory(sim))
-    if load == before:
-        return
-    for stair in range(1, stairs + 1):
-        share = stair / stairs
-        sim.set_load(before + (load - before) * share * share * (3.0 - 2.0 * share))
-        sim.advance(STAIR, slot.HOLD_LOAD)
-    budget.spend(stairs * STAIR, doing)
+    steps = int(min(math.sqrt(4.0 * scale / (GENTLE * slowest)), LONGEST))
+    steps = max(steps if steps >= SHORTEST else 0, _steps_of_memory(sim))
+    if load != before:
+        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps)
+        budget.spend(steps, doing)
 
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
     """Dead loads little by little, where joints remember."""
-    stairs = _stairs_of_memory(sim)
+    steps = _steps_of_memory(sim)
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
-    for stair in range(1, stairs):
-        share = stair / stairs
-        sim.control[slot.DEAD_FACTOR] = share * share * (3.0 - 2.0 * share)
-        sim.advance(STAIR, slot.HOLD_LOAD)
+    _limit_falls(sim)
+    _climb(sim, lambda share: sim.control.__setitem__(slot.DEAD_FACTOR, share), steps)
     sim.rest()
-    budget.spend(stairs * STAIR, "putting on the dead loads")
+    budget.spend(steps, "putting on the dead loads")
 
 
-def _stairs_of_memory(sim: Simulation) -> int:
-    return REMEMBERED * sim.depth if sim.law.n_memory(sim.model.dimension) else 0
+def _steps_of_memory(sim: Simulation) -> int:
+    """Length of the ramp of a load on joints that remember; 0 for others."""
+    return max(SHORTEST, REMEMBERED * sim.depth) if sim.law.n_memory(sim.model.dimension) else 0
+
+
+def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:
+    """Steps with loads put on by their share, which grows smoothly to 1."""
+    stair = FINE_STAIR if sim.law.n_memory(sim.model.dimension) else STAIR
+    stairs = steps // stair
+    for number in range(1, stairs + 1):
+        share = number / stairs
+        put(share * share * (3.0 - 2.0 * share))
+        sim.advance(stair, slot.HOLD_LOAD)
 
 
 def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
