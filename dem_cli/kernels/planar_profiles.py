@@ -1,9 +1,10 @@
 """The loop over contact points of joints with more than two points, 2D: joints with a profile, bonded joints.
 
-Block b carries a convex chain of vertices on its side of the joint, block a is flat: the non-coplanar joint
-of thesis 7.2.3 as geometry. Edges of b are recessed behind its corners then, so that other faces may find themselves
-inside each other when they come to touch: a joint counts its gaps from there. The ends of the joint are corners of b on the edge of a, or corners of a on a side
-of the chain, as in planar_geometry.py; between them lie the vertices. A chain without rise is a planar joint.
+Block b carries a convex chain of vertices on its side of the joint, block a is flat: the non-coplanar joint of thesis
+7.2.3 as geometry. The ends of the joint are corners of b on the edge of a, or corners of a on a side of the chain, as
+in planar_geometry.py; between them lie the vertices. A chain without rise is a planar joint. Edges of b are recessed
+behind its corners, so that other faces may find themselves inside each other when they come to touch: a joint counts
+its gaps from there.
 """
 
 from __future__ import annotations

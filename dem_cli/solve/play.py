@@ -1,4 +1,7 @@
-"""How far microrotations at joints with a profile can take each block: motion that is neither elastic nor failure."""
+"""How far blocks can move until gaps of the start have closed: motion that is neither elastic nor failure.
+
+Gaps are those of a profile (microrotations), or of blocks that do not fit.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,27 @@ from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 
 MARGIN = 1.25  # for the slip that goes with a microrotation, and finite rotations
+WIDEST = 0.25  # gaps beyond this share of the smallest edge are meant to stay
+AMPLIFIED = 20.0  # motion of blocks over the gap that it closes
+FARTHEST, STEEPEST = 0.5, 0.3  # width of a block, and angle [rad]: motion beyond is failure, whatever gaps it closes
 
 
 class Play(NamedTuple):
-    """Largest motion by microrotations alone, from the place of the start; zero where all joints are plane."""
+    """Largest motion that closes gaps, from the place of the start; zero where all joints are plane and closed."""
 
     moved: np.ndarray  # of the centroid [m], (n_blocks,)
     turned: np.ndarray  # [rad], (n_blocks,)
+
+
+def gap_play(gaps: np.ndarray, width: float, n_blocks: int) -> Play:
+    """The same while joints close that are open at the start.
+
+    gaps: between faces near each other, positive [m], (n,); width: of a typical block [m]. A block that turns into a
+    gap takes along what stands on it, so that its motion is many times the gap.
+    """
+    widest = float(gaps.max(initial=0.0))
+    moved = min(AMPLIFIED * widest, FARTHEST * width)
+    return Play(np.full(n_blocks, moved), np.full(n_blocks, min(AMPLIFIED * widest / width, STEEPEST)))
 
 
 def joint_angles(joints: Joints) -> np.ndarray:

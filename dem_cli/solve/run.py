@@ -171,6 +171,8 @@ def why_moving(case: Case, model: Model) -> str | None:
         return reason
     if wanted != "auto":
         return "" if wanted == "large" else None
+    if case.imperfection:
+        return "imperfections of blocks leave gaps that may close"
     gaps = open_joints(model)
     return f"{gaps} joints have gaps that may close" if gaps else None
 

@@ -17,7 +17,7 @@ from dem_cli.contact.assemble import (
     measure_points,
 )
 from dem_cli.contact.detect import block_shape, find_joints, inner_edges
-from dem_cli.contact.start import bodies_at_rest, bond_touching, close_touching, joints_of_start
+from dem_cli.contact.start import TOUCH, bodies_at_rest, bond_touching, close_touching, joints_of_start
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
@@ -31,7 +31,7 @@ from dem_cli.model.scales import origin_of, own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.motion import depth, widths
-from dem_cli.solve.play import play
+from dem_cli.solve.play import WIDEST, Play, gap_play, play
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
@@ -109,7 +109,7 @@ class Simulation:
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
-        self.play = play(model, self.joints, self.bodies.positions)
+        self.play = self._play()
         self.first_places = self.save_places()
 
     # -- detection ---------------------------------------------------------------------------------
@@ -129,6 +129,19 @@ class Simulation:
             close_touching(self.contacts, self.smallest)
             bond_touching(model, self.joints, self.contacts, self.properties)
         self._after_detection()
+
+    def _play(self) -> Play:
+        """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
+        found = play(self.model, self.joints, self.bodies.positions)
+        if self.kinematics == "fixed":
+            return found
+        faces = find_joints(self.model, self.bodies.corners, WIDEST * self.smallest, self.inner)
+        gaps = faces.separation[faces.separation > TOUCH * self.smallest]
+        if not len(gaps):
+            return found
+        width = float(np.median(self.widths[self.free])) if len(self.free) else self.smallest
+        more = gap_play(gaps, width, self.model.n_blocks)
+        return Play(found.moved + more.moved, found.turned + more.turned)
 
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""
