@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 NAME = "chapter7"
-SECTIONS = ("block", "shapes", "heights", "softening")
+SECTIONS = ("block", "shapes", "heights", "walls", "softening", "band")
 FINAL = ("ok", "fails on the way", "does not stand", "no failure")  # how the status of an answer begins
 HEAD = """\
 # Thesis chapter 7: joints that are not plane
