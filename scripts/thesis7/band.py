@@ -30,8 +30,12 @@ FALL = (
     "output.frames=40",
 )  # fmt: skip
 TEXT = """\
-The collapse is followed under the load of failure, as the thesis did; the count is taken when the corner of the wall on
-the top right has moved by 40 mm to the side. What "appears opened" in a drawing is a matter of width: three are given.
+The collapse is followed under the load of failure, as the thesis did; the count is taken when the corner of the wall
+on the top right has moved by 40 mm to the side. What "appears opened" in a drawing is a matter of width: three are
+given. *Effective* counts without one: (Σ w)² / Σ w² of the widths w of a layer, which is n where n joints are equally
+wide and all others closed; the mean of the layers. Without a profile the count of the thesis is met. A profile spreads
+small openings over the whole wall, where the thesis counts fewer joints than before; softening draws them together
+again, most of all with β = 0.8, but not as far as from 21 to 12. The failure load hardly changes, as in the thesis.
 """
 
 
@@ -59,27 +63,27 @@ def fall(*overrides: str) -> dict[str, Any]:
         "status": summary["status"],
         "bracket": [float(load) for load in summary["failure_load_bracket"]],
         "moved": round(moved[chosen], 5),
-        "open": {f"{width:g}": _open_joints(model.block_ids, start, placed[chosen], width) for width in OPEN},
+        "widths": widths_of(model.block_ids, start, placed[chosen]),
         "corners": placed[chosen],
         "seconds": round(summary["solve_seconds"], 1),
         "warnings": summary["warnings"],
     }
 
 
-def _open_joints(names: tuple[str, ...], start: list[Any], placed: list[Any], width: float) -> list[int]:
-    """How many vertical joints of the upper LAYERS are wider than that in the mean, from the top."""
+def widths_of(names: tuple[str, ...], start: list[Any], placed: list[Any]) -> list[list[float]]:
+    """Mean widths of the vertical joints of the upper LAYERS [m], from the top, from left to right."""
     place = {name: i for i, name in enumerate(names)}
     courses = max(int(name.split("-")[1]) for name in names if "base" not in name)
-    counts = []
+    found = []
     for layer in range(courses, courses - LAYERS, -1):
-        row, count = 1, 0
+        row, widths = 1, []
         while f"wall-{layer}-{row + 1}" in place:
             left, right = place[f"wall-{layer}-{row}"], place[f"wall-{layer}-{row + 1}"]
             gap = _side(start[right], placed[right], 1.0) - _side(start[left], placed[left], -1.0)
-            count += int(gap > width)
+            widths.append(round(gap, 6))
             row += 1
-        counts.append(count)
-    return counts
+        found.append(widths)
+    return found
 
 
 def _side(start: Any, placed: Any, sign: float) -> float:
@@ -97,8 +101,12 @@ def page(found: dict[str, Any]) -> list[str]:
     for key, (what, _) in CASES.items():
         one, counted = found[key], thesis[f"T77_{key}"]["value"]
         low, high = one["bracket"]
-        rows.append((f"({key}) {what}", f"{low:.4f} to {high:.4f}", *map(_sum, (counted, *one["open"].values()))))
-    head = ("case", "failure load", "thesis, open joints", *(f"dem, > {1e3 * width:g} mm" for width in OPEN))
+        counts = [[sum(w > width for w in layer) for layer in one["widths"]] for width in OPEN]
+        open_ = [np.maximum(layer, 0.0) for layer in one["widths"]]
+        effective = np.mean([w.sum() ** 2 / (w**2).sum() for w in open_])
+        rows.append((f"({key}) {what}", f"{low:.4f} to {high:.4f}", *map(_sum, (counted, *counts)), f"{effective:.2f}"))
+    wider = (f"dem, > {1e3 * width:g} mm" for width in OPEN)
+    head = ("case", "failure load", "thesis, open joints", *wider, "effective")
     return [
         "## The sliding band, Table 7-7", "", TEXT, *lines_of(head, rows), "",
         *commands(*(found[key] for key in CASES)), "![The four collapses](chapter7_band.png)",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from engine import block, rectangle, solve, tables
 
 from dem_cli.errors import CaseError
-from engine import block, rectangle, solve, tables
 
 SLOPE = 0.05  # of the outer sides of the polygon below
 STACK = [block("base", rectangle(-1.0, -1.0, 2.0, 0.0), fixed=True), block("top", rectangle(0.0, 0.0, 1.0, 2.0))]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from engine import block, rectangle, scene, simulation, steps, tables
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -12,7 +13,6 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.planar_geometry import BLEND
 from dem_cli.solve import simulation as engine
 from dem_cli.solve.joints import joint_properties, law_of
-from engine import block, rectangle, scene, simulation, steps, tables
 
 APERTURE, SIDES = 0.01, 5
 
