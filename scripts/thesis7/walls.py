@@ -20,7 +20,7 @@ from thesis7.runs import ROOT, Rows, book, commands, run
 WALLS = {"21": "thesis_21_block_wall", "110": "thesis_110_block", "231": "thesis_231_block"}
 PLANE = "joints.rough={ law = 'coulomb', friction = 0.6 }"
 GROWING = "analysis={ resolution = 0.005 }"  # no step of its own
-FACE = "joints.rough.profile.over=face"
+JOINT, FACE = "joints.rough.profile.over=joint", "joints.rough.profile.over=face"
 DEEP = "joints.rough.profile.aperture=2e-4"
 STAGES = (0.41, 0.43, 0.46, 0.48, 0.53)  # loads of the picture
 VISIBLE = 1e-4  # displacement that a drawing of the thesis may show [m]
@@ -49,10 +49,10 @@ def measure() -> dict[str, Any]:
     cases = {name: f"validation/wall_{name}_profile" for name in WALLS}
     return {
         "walls": {
-            name: {"plane": wall(case, PLANE, GROWING), "joint": wall(case), "face": wall(case, FACE)}
+            name: {"plane": wall(case, PLANE, GROWING), "joint": wall(case, JOINT), "face": wall(case, FACE)}
             for name, case in cases.items()
         },
-        "deep": {"joint": wall(cases["21"], DEEP), "face": wall(cases["21"], FACE, DEEP)},
+        "deep": {"joint": wall(cases["21"], JOINT, DEEP), "face": wall(cases["21"], FACE, DEEP)},
         "stages": stages(),
     }
 
