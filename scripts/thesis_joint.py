@@ -32,7 +32,7 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument("--reading", choices=("scaled", "literal"), default="scaled", help="of the lengths (polygon)")
     parser.add_argument("--pivot", choices=("end", "vertex"), default="end")
     parser.add_argument("--base", choices=("course", "block"), default="course", help="below a wall")
-    parser.add_argument("--share", type=float, default=0.1, help="of the excess moment that flows in one step")
+    parser.add_argument("--share", type=float, default=1.0, help="of the excess moment that flows in one step")
     for name in OF_STRUCTURE:
         parser.add_argument(f"--{name}", type=float, help="default: that of the structure")
     for name, value in Patience()._asdict().items():

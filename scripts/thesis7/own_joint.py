@@ -7,7 +7,8 @@ blocks, so that the joint carries N at v while the block turns; at the angle φ 
 are back and all velocities are 0 (Figure 7-12). A node that opens carries nothing (7-9).
 
 Chosen here:
-- N at v is had by a return of the springs, each with an offset of its own, by a share of the excess in every step.
+- N at v is had by a return of the springs, each with an offset of its own, by a share of the excess in every step: 1
+  is all of it, as the thesis has its moment; with less, joints creep, and loads end undecided.
 - pivot "end" is the thesis's: the other node keeps its place and the loaded one sinks by φ times the length of the
   joint ("around the limiting points of the joint", 7.2.3). "vertex" differs in the offsets alone: the block turns
   about v, as on a polygon, and the other node rises.
