@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from dem_cli.kernels.jit import kernel
+from dem_cli.kernels.jit import kernel, named
 from dem_cli.kernels.records import CONTACT, DAMP, DAMPING, DEAD_FACTOR, EXTERNAL, FRICTION, LIVE_FACTOR, UNBALANCED
 
 
@@ -56,4 +56,5 @@ def make_bare(contact_forces: Callable, drift: Callable, ledger_on: bool) -> Cal
         control[UNBALANCED] = largest
         return n_steps
 
+    named(advance.py_func, contact_forces, drift, "ledger" if ledger_on else "")
     return advance

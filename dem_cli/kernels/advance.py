@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
     CONTACT,
     CREEP,
@@ -228,4 +228,5 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         control[MEAN_LOAD] = mean_load / done
         return done
 
+    named(advance.py_func, contact_forces, drift)
     return advance

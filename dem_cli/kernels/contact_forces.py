@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.jit import always_inline, inline, named
 from dem_cli.kernels.vec import (
     add_at,
     add_torques,
@@ -58,7 +58,7 @@ def make_press(law: Callable, bonded: bool = False) -> Callable:
             lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
         return normal, shear, path, lost
 
-    return press
+    return named(press, law, "bonded" if bonded else "")
 
 
 def make_contact_forces(law: Callable, integrates_gap: bool, bonded: bool = False) -> Callable:
@@ -115,7 +115,7 @@ def make_contact_forces(law: Callable, integrates_gap: bool, bonded: bool = Fals
                 add_at(forces, b, d, torque_b, 1.0)
         return friction_work
 
-    return contact_forces
+    return named(contact_forces, law, "opening" if integrates_gap else "", "bonded" if bonded else "")
 
 
 def of_bodies(loop: Callable) -> Callable:
@@ -125,4 +125,4 @@ def of_bodies(loop: Callable) -> Callable:
     def bodies_forces(joints, contacts, bodies, dt, like, like_rotation):
         return loop(joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation)
 
-    return bodies_forces
+    return named(bodies_forces, loop)

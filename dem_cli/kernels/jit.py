@@ -19,7 +19,7 @@ from pathlib import Path
 import numba
 from numba.extending import overload, register_jitable
 
-__all__ = ["always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "overload"]
+__all__ = ["always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "named", "overload"]
 
 _ROOT = Path(__file__).resolve().parent.parent
 
@@ -80,6 +80,18 @@ def kernel(function: Callable) -> Callable:
 
 
 inline = register_jitable
+
+
+def named(function: Callable, *parts: Callable | str) -> Callable:
+    """The same closure, with a name that says what it was made of.
+
+    Numba tells functions of one name and types apart by a count that starts anew in each process. Of two closures
+    that were compiled in two processes and come from the cache in a third, one may otherwise run for the other.
+    """
+    words = [part if isinstance(part, str) else part.__qualname__.rpartition(".")[2] for part in parts]
+    function.__qualname__ = "_".join([function.__qualname__, *words])
+    return function
+
 
 # For what is called for each point of the contact loop. Hand it numbers and tuples, not arrays: an array
 # that crosses such a call inside a branching loop is counted by reference each time, which doubles the cost.

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_forces import make_press
-from dem_cli.kernels.jit import inline
+from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
@@ -95,4 +95,4 @@ def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
             add_at(forces, b, d, torque_b, 1.0)
         return friction_work
 
-    return planar_forces
+    return named(planar_forces, law, "bonded" if bonded else "")

@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_forces import make_press
-from dem_cli.kernels.jit import always_inline, inline, kernel
+from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
@@ -168,7 +168,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
                 add_at(forces, b, d, torque_b, 1.0)
         return lost
 
-    return profiled_forces
+    return named(profiled_forces, law, "bonded" if bonded else "", "places" if places else "")
 
 
 @inline

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from dem_cli.case.base import CaseModel
-from dem_cli.kernels.jit import inline
+from dem_cli.kernels.jit import inline, named
 from dem_cli.laws.law import Law
 
 
@@ -59,4 +59,4 @@ def _either(number: int, this: Callable, others: Callable) -> Callable:
             return this(gap, slide, shear, kn, ks, parameters, joint, memory, point)
         return others(gap, slide, shear, kn, ks, parameters, joint, memory, point)
 
-    return either
+    return named(either, str(number), this, others)
