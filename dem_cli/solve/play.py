@@ -17,6 +17,8 @@ WIDEST = 0.25  # gaps beyond this share of the smallest edge are meant to stay
 AMPLIFIED = 20.0  # motion of blocks over the gap that it closes
 FARTHEST, STEEPEST = 0.5, 0.3  # width of a block, and angle [rad]: motion beyond is failure, whatever gaps it closes
 
+BARE = 1e-3  # of an edge: faces that overlap by less meet corner to corner
+
 
 class Play(NamedTuple):
     """Largest motion that closes gaps, from the place of the start; zero where all joints are plane and closed."""
@@ -25,11 +27,35 @@ class Play(NamedTuple):
     turned: np.ndarray  # [rad], (n_blocks,)
 
 
+def open_gaps(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Largest gap of each pair of faces that look at each other [m], (n,); 0 where they do not or overlap; 2D.
+
+    corners: world coordinates of all corners [m], (n_vertices, 2); edges: as Faces.edges, (n, 4). A wedge touches at
+    one end of the joint and is open at the other.
+    """
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    along, across = a1 - a0, b0 - b1
+    length = np.hypot(*along.T)
+    along /= length[:, None]
+    start, run, rise = ((b1 - a0) * along).sum(axis=1), (across * along).sum(axis=1), _cross(across, along)
+    facing = (run > 0.0) & (np.abs(rise) < STEEPEST * run)  # rise: of b's face from b1 to b0, away from a
+    run = np.where(facing, run, 1.0)
+    low, high = np.maximum(start, 0.0), np.minimum(start + run, length)
+    first = _cross(b1 - a0, along)
+    gaps = [first + rise * (place - start) / run for place in (low, high)]
+    return np.where(facing & (high - low > BARE * np.minimum(run, length)), np.maximum(*gaps), 0.0).clip(0.0)
+
+
+def _cross(arms: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Distance to the right of directions: outside of a polygon whose corners go counter-clockwise, (n,)."""
+    return arms[:, 0] * along[:, 1] - arms[:, 1] * along[:, 0]
+
+
 def gap_play(gaps: np.ndarray, width: float, n_blocks: int) -> Play:
     """The same while joints close that are open at the start.
 
-    gaps: between faces near each other, positive [m], (n,); width: of a typical block [m]. A block that turns into a
-    gap takes along what stands on it, so that its motion is many times the gap.
+    gaps: between faces near each other [m], (n,); width: of a typical block [m]. A block that turns into a gap takes
+    along what stands on it, so that its motion is many times the gap.
     """
     widest = float(gaps.max(initial=0.0))
     moved = min(AMPLIFIED * widest, FARTHEST * width)

@@ -31,7 +31,7 @@ from dem_cli.model.scales import origin_of, own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.motion import depth, widths
-from dem_cli.solve.play import WIDEST, Play, gap_play, play
+from dem_cli.solve.play import WIDEST, Play, gap_play, open_gaps, play
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
@@ -136,7 +136,8 @@ class Simulation:
         if self.kinematics == "fixed":
             return found
         faces = find_joints(self.model, self.bodies.corners, WIDEST * self.smallest, self.inner)
-        gaps = faces.separation[faces.separation > TOUCH * self.smallest]
+        gaps = open_gaps(self.bodies.corners, faces.edges)
+        gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= WIDEST * self.smallest)]
         if not len(gaps):
             return found
         width = float(np.median(self.widths[self.free])) if len(self.free) else self.smallest
