@@ -1,4 +1,4 @@
-"""Walls on the calibrated joint (thesis 7.5.2 to 7.5.4): 21 blocks run here, the larger ones as docs/chapter7 has them."""
+"""Walls on the calibrated joint (thesis 7.5.2 to 7.5.4): 21 blocks run here, larger ones as docs/chapter7 has them."""
 
 from __future__ import annotations
 
