@@ -14,6 +14,7 @@ from typing import Any
 
 GROUPS = {  # name -> title, in the order of the page
     "kernels": "Cost of a step",
+    "joints": "Cost of joint models",
     "precision": "Work against precision",
     "growth": "Growth with size",
     "threads": "Growth with threads",
