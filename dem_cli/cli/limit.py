@@ -48,7 +48,7 @@ def command(
 ) -> int:
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
     from dem_cli import api
-    from dem_cli.limit.analysis import limit_loads
+    from dem_cli.limit.analysis import limit_loads, taken_as_plane
     from dem_cli.output.summary import exit_code, to_json
     from dem_cli.solve.joints import joint_properties, law_of
 
@@ -57,6 +57,8 @@ def command(
     require_multiplier(loaded)
     model = api.build_model(loaded)
     properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
+    if note := taken_as_plane(properties):
+        loaded.warnings.append(note)
     with console.Progress(quiet) as bar:
         found = limit_loads(
             model, properties, law, heads == "frictionless", associated_only,

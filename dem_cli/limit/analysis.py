@@ -83,6 +83,16 @@ def limit_loads(
     return LimitLoads(structure, friction, associated, path, seconds, time.perf_counter() - begun - seconds)
 
 
+def taken_as_plane(properties: JointProperties) -> str | None:
+    """What is to be said of joints with a profile, which limit analysis does not see; None: there are none."""
+    rough = [
+        f"'{name}'"
+        for name, layout in zip(properties.names, properties.layouts, strict=True)
+        if layout is not None and layout.sides is not None
+    ]
+    return f"limit analysis takes joint {', '.join(rough)} as plane: it knows no profile" if rough else None
+
+
 def start_structure(model: Model, properties: JointProperties) -> Structure:
     """The structure with the joints of its first place, all of them plane: points at their ends are enough."""
     properties = properties._replace(layouts=(None,) * len(properties.layouts))

@@ -117,9 +117,11 @@ def _too_fast(peak: float | None, high: float | None) -> list[str]:
 
 def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
-    from dem_cli.limit.analysis import limit_loads
+    from dem_cli.limit.analysis import limit_loads, taken_as_plane
 
     case, model = job.case, job.model
+    if note := taken_as_plane(joint_properties(case, model)):
+        job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already
     try:
         loads = search.limits or limit_loads(

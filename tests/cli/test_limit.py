@@ -114,3 +114,10 @@ def test_kinds_without_live_loads(name):
 def test_pattern_live_is_the_multiplier_of_the_live_loads():
     summary = json.loads(dem("limit", CASES / "verification" / "arch_point_load.toml", "--json").stdout)
     assert summary["limit_analysis"]["associated"] == pytest.approx(8.48487, rel=1e-5)
+
+
+def test_a_profile_is_ignored_aloud():
+    """Limit analysis knows plane joints, and says so."""
+    case = WALL.parents[1] / "validation" / "wall_21_profile.toml"
+    answer = dem("limit", case, "--associated-only", "--json")
+    assert any("takes joint 'rough' as plane" in line for line in json.loads(answer.stdout)["warnings"])
