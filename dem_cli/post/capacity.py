@@ -32,9 +32,18 @@ def draw_capacity(results: Results, path: Path) -> None:
                 _mark_failure(axis, summary, to_failure)
         axes[0].set_ylabel("load multiplier λ")
         _limit_loads(axes[0], results)
-        handles, labels = axes[-1].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=max(1, len(labels)), columnspacing=1.4)
+        _draw_legend(figure, *axes[-1].get_legend_handles_labels())
         style.headline(figure, summary)
+
+
+def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:
+    """Below the panels, in as few rows as are no wider than the figure."""
+    for rows in range(1, max(1, len(labels)) + 1):
+        columns = -(-max(1, len(labels)) // rows)
+        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, columnspacing=1.4)
+        if rows >= len(labels) or legend.get_window_extent(figure.canvas.get_renderer()).width <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def _failure_displacement(results: Results) -> float | None:
