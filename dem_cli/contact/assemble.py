@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import NamedTuple
+from zlib import crc32
 
 import numpy as np
 
@@ -134,11 +135,12 @@ def chains_of_start(model: Model, faces: Faces, bodies: Bodies, properties: Join
     from_b1 = ((b1 - a0) * along).sum(axis=1)  # where the edge of b starts, along that of a
     whole = np.sqrt(((b1 - b0) ** 2).sum(axis=1))
     rows, shares = [np.zeros((0, 2))], [np.zeros(0)]
+    faces_named = _face_names(model)
     for i in range(n):
         layout = properties.layouts[named[i]]
         row, share = np.array([[0.0, 0.0], [whole[i], 0.0]]), np.full(2, 0.5)
         if layout is not None and _has(layout, high[i] - low[i], whole[i], along[i]):
-            key = (int(faces.edges[i, 2]), int(faces.edges[i, 0]))
+            key = (faces_named[faces.edges[i, 2]], faces_named[faces.edges[i, 0]])
             row, share = _chain(layout, key, low[i] - from_b1[i], high[i] - from_b1[i], whole[i])
         rows.append(row)
         shares.append(share)
@@ -166,7 +168,7 @@ def _chain(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Profile (n, 2) of one joint, as Joints.profile, and the share of its area of each point, (n,).
 
-    key: edges of b and of a; low, high: ends of the joint along the edge of b, from near a0 on; whole: its length.
+    key: of the edges of b and of a; low, high: its ends along the edge of b, from near a0 on; whole: its length.
     """
     # Polygons are listed from left to right, or from the top down: that is from a1 to a0.
     if layout.sides is None or layout.over == "joint":
@@ -175,6 +177,16 @@ def _chain(
     places, rises, share = draw(layout, key[:1], whole)
     places, rises = profile.cut((whole - places)[::-1], rises[::-1], low, high)
     return np.column_stack([places, rises]), np.full(len(places), share[0])
+
+
+def _face_names(model: Model) -> list[int]:
+    """A number for each edge that says whose it is and which: other blocks change nothing, (n_vertices,)."""
+    names = []
+    for part, block in enumerate(model.part_blocks):
+        of_block = part - int(np.searchsorted(model.part_blocks, block))
+        for edge in range(int(model.part_starts[part + 1] - model.part_starts[part])):
+            names.append(crc32(f"{model.block_ids[block]} {of_block} {edge}".encode()))
+    return names
 
 
 def _has(layout: Layout, overlap: float, whole: float, along: np.ndarray) -> bool:
