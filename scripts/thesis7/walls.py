@@ -44,8 +44,9 @@ TEXT = """\
 * **The wall of 110 blocks** fails {most} above the thesis, and nearly so with its own joint written once more. To
   slide at 0.55 on a friction of 0.6 the block on the top right must be inclined by 0.038, six times the angle of a
   microrotation; here it is inclined by two. How the six come about is not explained.
-* With twice the aperture the six blocks of the small wall do not stop: they take the two on top with them at {deep:.3f}
-  (thesis 0.50, where all velocities are set to zero after each microrotation, and the six blocks turn at 0.48 as well).
+* With twice the aperture the six blocks of the small wall do not stop: they take the two on top with them at
+  {deep:.3f} (thesis 0.50, where all velocities are set to zero after each microrotation, and the six blocks turn at
+  0.48 as well).
 """
 
 
