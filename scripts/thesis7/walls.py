@@ -38,9 +38,9 @@ TEXT = """\
   the load at most for 110 blocks and nothing for 21.
 * **Over the face** of each upper block, of which each joint has its part, the wall of 21 blocks does all that the
   thesis describes: first displacements at {onset:.2f} (0.42), the blocks on the right turn at {six:.2f} (0.48), failure
-  by sliding of the block on the top right at {face:.4f} ({face_error} of 0.54). A middle side of 8 mm, as long as on the
-  column, is what makes the first displacements late; on joints of half a block it is 4 mm. In the larger walls this
-  reading leaves less motion.
+  by sliding of the block on the top right at {face:.4f} ({face_error} of 0.54). A middle side of 8 mm, as long as on
+  the column, is what makes the first displacements late; on joints of half a block it is 4 mm. In the larger walls
+  this reading leaves less motion.
 * **The wall of 110 blocks** fails {most} above the thesis, and nearly so with its own joint written once more. To
   slide at 0.55 on a friction of 0.6 the block on the top right must be inclined by 0.038, six times the angle of a
   microrotation; here it is inclined by two. How the six come about is not explained.
