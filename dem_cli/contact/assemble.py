@@ -275,6 +275,9 @@ def _adopt(
             if memory.normal[source] != 0.0:
                 distance = ((new.points[candidates] - old.points[source]) ** 2).sum(axis=1)
                 heir = candidates[[distance.argmin()]]
-                contacts.sunk[np.searchsorted(new.starts, heir, side="right") - 1] = 0.0
                 _copy(contacts, memory, heir, np.array([source]))
                 new.kn[heir], new.ks[heir] = old.kn[source], old.ks[source]
+                # Deeper inside than its force says: the recess of a profile, which is no reason to push.
+                deeper = max(-contacts.gaps[heir[0]] - memory.normal[source] / old.kn[source], 0.0)
+                joint = np.searchsorted(new.starts, heir[0], side="right") - 1
+                contacts.sunk[joint] = min(contacts.sunk[joint], deeper)

@@ -57,10 +57,10 @@ class PushoverAnalysis(LiveAnalysis):
         default=None, gt=0.0, description="largest step of the multiplier on the way from gravity; default: they grow"
     )
     follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
-    collapse: Literal["rate", "load"] = Field(
-        default="rate",
+    collapse: Literal["auto", "rate", "load"] = Field(
+        default="auto",
         description="what is prescribed while the collapse is followed; rate: of displacement, the load is found; "
-        "load: that of failure stays",
+        "load: that of failure stays; auto: rate, or load where joints have a profile, whose snaps a rate would chase",
     )
     max_load: float | None = Field(
         default=None,

@@ -99,15 +99,12 @@ def follow(
 def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
     """The collapse under a constant load until a block moved by `until` [m]; where it holds after all, a little more.
 
-    failure: internal multiplier that was proved impossible.
+    failure: internal multiplier that was proved impossible. Rows and frames of the way up are those of the search.
     """
     relax(sim, 0.0, GRAVITY_TOLERANCE)
-    track.write("gravity")
     sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
     for share in STEPS_UP:
-        settled = settle_or_fail(sim, share * failure, budget, sim.dead_scale())
-        track.write("loading")
-        if settled.state != "equilibrium":
+        if settle_or_fail(sim, share * failure, budget, sim.dead_scale()).state != "equilibrium":
             break
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     load, calm, next_row, next_frame = failure, 0, 0.0, 0.0

@@ -96,7 +96,7 @@ def _search(job: Job) -> tuple[Search, Simulation]:
                     f"the given kn {'lowers' if search.low < rigid else 'raises'} the failure load {change}: "
                     f"on stiff joints it is {rigid:.5g}"
                 )
-            if search.status != "ok" or analysis.follow == 0.0:
+            if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):
                 track.flush()  # else the rows of the collapse tell the whole way
             return search, sim
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
@@ -142,11 +142,17 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
     return summary
 
 
+def _by_load(job: Job) -> bool:
+    """Whether the load of failure stays while the collapse is followed."""
+    wanted = job.case.analysis.collapse
+    return wanted == "load" or (wanted == "auto" and any(joint.profile for joint in job.case.joints.values()))
+
+
 def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float | None]]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.low / sim.live_scale
-    by_load = job.case.analysis.collapse == "load"
+    by_load = _by_load(job)
     ratio, softer = FIXED_RATIO, 1.0
     if not by_load:
         ratio, softer = follow.softness(job.case, search.elastic, load, sim.smallest, until)
