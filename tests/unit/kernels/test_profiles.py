@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from engine import block, rectangle, scene, simulation, steps, tables
+from engine import block, rectangle, scene, simulation, solve, steps, tables
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -146,3 +148,21 @@ def test_points_of_all_joints_are_carried_over():
             (sim.contacts.shear, contacts.shear),
         ):  # fmt: skip
             np.testing.assert_array_equal(now[mine], then[first:last])
+
+
+def test_another_block_changes_no_profile():
+    """Profiles are drawn by the names of blocks and their edges, wherever other blocks are."""
+    profile = {"sides": [3, 7], "aperture": [1e-3, 1e-2]}
+    alone, joined = stacked(profile=profile), stacked(profile=profile)
+    joined["block"].insert(0, block("far", rectangle(-9.0, -9.0, -8.0, -8.5), fixed=True))
+    one, other = (simulation(case, "large").joints for case in (alone, joined))
+    assert len(one.profile) >= 4
+    np.testing.assert_array_equal(one.profile, other.profile)
+
+
+def test_a_joint_that_takes_over_starts_from_its_force():
+    """A column that falls far over its corners: new joints find their blocks inside each other, by the recess."""
+    column = Path(__file__).resolve().parents[3] / "cases/validation/column_14_profile.toml"
+    words = ("follow=0.22", "collapse=rate", "resolution=0.05", "step=0.05")
+    summary, _ = solve(column, *(f"analysis.{word}" for word in words))
+    assert abs(summary["energy_closure"]) < 1e-3
