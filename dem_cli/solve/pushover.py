@@ -145,7 +145,8 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
 def _by_load(job: Job) -> bool:
     """Whether the load of failure stays while the collapse is followed."""
     wanted = job.case.analysis.collapse
-    return wanted == "load" or (wanted == "auto" and any(joint.profile for joint in job.case.joints.values()))
+    snaps = law_of(job.case).bonded or any(joint.profile for joint in job.case.joints.values())
+    return wanted == "load" or (wanted == "auto" and snaps)
 
 
 def _fall(job: Job, sim: Simulation, search: Search) -> tuple[Simulation, dict[str, float | None]]:
