@@ -60,7 +60,7 @@ class PushoverAnalysis(LiveAnalysis):
     collapse: Literal["auto", "rate", "load"] = Field(
         default="auto",
         description="what is prescribed while the collapse is followed; rate: of displacement, the load is found; "
-        "load: that of failure stays; auto: rate, or load where joints snap (a profile, bonds), which a rate would chase",
+        "load: that of failure stays; auto: rate, or load where joints snap (a profile, bonds), as no rate can follow",
     )
     max_load: float | None = Field(
         default=None,
