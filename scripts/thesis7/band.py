@@ -123,7 +123,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         for axis, (key, (what, _)) in zip(figure.subplots(1, 4, sharey=True), CASES.items(), strict=True):
             for corners in found[key]["corners"]:
                 axis.fill(*np.array(corners).T, facecolor=style.STONE, edgecolor="0.35", lw=0.4)
-            axis.set(title=f"({key}) {what}", aspect="equal", xlim=(0.05, 0.47), ylim=(-0.02, 0.40))
+            axis.set(title=f"({key}) {what}", aspect="equal", xlim=(0.05, 0.47), ylim=(-0.02, 0.42))
             axis.axis("off")
 
 
