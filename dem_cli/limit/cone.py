@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from dem_cli.contact.assemble import STEEP
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import Joints
 from dem_cli.laws.law import Law
 
-STEEP = np.cos(np.pi / 4) - 1e-9  # a head joint has its normal within 45° of the horizontal
 SAME = 1e-9  # relative; larger differences from proportion are the law's
 
 

@@ -67,16 +67,25 @@ def check_finite(sim: Simulation) -> None:
         raise SolverError(f"the motion of block '{name}' is not a number after {sim.steps} steps")
 
 
-def relax(sim: Simulation, load: float, tolerance: float, max_steps: int = 40_000, scale: float = 0.0) -> Verdict:
+def relax(
+    sim: Simulation,
+    load: float,
+    tolerance: float,
+    max_steps: int = 40_000,
+    scale: float = 0.0,
+    since: np.ndarray | None = None,
+) -> Verdict:
     """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
 
-    "failure" where blocks came to rest elsewhere (`displaced`); scale: displacement that is elastic [m].
+    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.save_places; default: where
+    they are now); scale: displacement that is elastic [m].
     """
+    since = sim.save_places() if since is None else since
     sim.use(RELAX_SAFETY, damping=0.0)
     sim.set_load(load)
     _limit_falls(sim)
     sim.control[slot.FIRE_MIX], sim.control[slot.SINCE_UPHILL] = 0.1, 0.0
-    start, calm = sim.save_places(), 0
+    calm = 0
     for _ in range(max(1, max_steps // CHUNK)):
         sim.advance(CHUNK, slot.FIRE)
         check_finite(sim)
@@ -87,16 +96,16 @@ def relax(sim: Simulation, load: float, tolerance: float, max_steps: int = 40_00
     sim.use(CREEP_SAFETY)
     if calm < 2:
         return Verdict("unknown", sim.unbalanced)
-    return _at_rest(sim, start, scale)
+    return _at_rest(sim, since, scale)
 
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
     """Equilibrium under dead loads alone, or proof that there is none."""
     start, scale = sim.save_places(), sim.dead_scale()
     _weigh_down(sim, budget)
-    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE, scale=scale)
+    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE, scale=scale, since=start)
     if verdict.state != "unknown":
-        return verdict if verdict.state == "failure" else _at_rest(sim, start, scale)
+        return verdict
     return settle_or_fail(sim, 0.0, budget, scale, GRAVITY_TOLERANCE, start)
 
 
@@ -163,10 +172,16 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
     """Dead loads little by little, where joints remember."""
     steps = _steps_of_memory(sim)
+    if not steps:
+        return
+
+    def put(share: float) -> None:
+        sim.control[slot.DEAD_FACTOR] = share
+
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
     _limit_falls(sim)
-    _climb(sim, lambda share: sim.control.__setitem__(slot.DEAD_FACTOR, share), steps)
+    _climb(sim, put, steps)
     sim.rest()
     budget.spend(steps, "putting on the dead loads")
 

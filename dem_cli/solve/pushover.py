@@ -120,12 +120,13 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
     from dem_cli.limit.analysis import limit_loads, taken_as_plane
 
     case, model = job.case, job.model
-    if note := taken_as_plane(joint_properties(case, model)):
+    properties = joint_properties(case, model)
+    if note := taken_as_plane(properties):
         job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already
     try:
         loads = search.limits or limit_loads(
-            model, joint_properties(case, model), law_of(case), associated_only=by_path
+            model, properties, law_of(case), associated_only=by_path
         )
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")

@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.contact.assemble import (
     LIKE,
     LIKE_ROTATION,
+    Chains,
     JointProperties,
     build_joints,
     carry_memory,
@@ -116,13 +117,15 @@ class Simulation:
 
     def _detect_first(self) -> None:
         model, n_memory = self.model, self.law.n_memory(self.model.dimension)
+        self.chains: Chains | None = None
         if self.kinematics == "fixed":
             self.joints, self.contacts = joints_of_start(
                 model, self.bodies, self.properties, self.smallest, n_memory
             )
         else:
             faces = find_joints(model, self.bodies.corners, SKIN * self.smallest, self.inner)
-            self.chains = chains_of_start(model, faces, self.bodies, self.properties)
+            if self.properties.profiled:
+                self.chains = chains_of_start(model, faces, self.bodies, self.properties)
             self.joints, self.contacts = build_joints(
                 model, faces, self.bodies, self.properties, n_memory, self.chains
             )
