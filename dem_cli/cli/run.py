@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case, Monitor
     from dem_cli.model.model import Model
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Frame, HistoryRow, Observer
+    from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
     from dem_cli.output.store import ResultWriter
 
 
@@ -47,6 +47,10 @@ class Recorder:
     def row(self, row: HistoryRow) -> None:
         with self.interrupts.shielded():
             self.writer.row(row)
+
+    def samples(self, samples: Samples) -> None:
+        with self.interrupts.shielded():
+            self.writer.samples(samples)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         self.bar.update(stage, load, displacement, fraction)

@@ -14,6 +14,8 @@ STAGES = (
     "settlement",
     "associated",
     "non-associated",
+    "shaking",
+    "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
 
 
@@ -34,7 +36,7 @@ class ContactRecord(NamedTuple):
 class Frame(NamedTuple):
     """The structure at one instant."""
 
-    stage: str  # one of STAGES; the last two are limit analysis: positions are moved a little along the mechanism
+    stage: str  # one of STAGES; of limit analysis and of a mode, positions are moved a little along it
     step: int  # solver steps so far
     load: float  # load multiplier
     displacement: float  # control displacement [m] (largest displacement of any block since the start)
@@ -42,6 +44,7 @@ class Frame(NamedTuple):
     orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1); 3D: unit quaternion, (n_blocks, 4)
     velocities: np.ndarray  # per unit of the solver's time, (n_blocks, n_dof)
     contacts: ContactRecord
+    time: float = 0.0  # since the start of a time history [s]; places and velocities are relative to its base
 
 
 class Energy(NamedTuple):
@@ -52,8 +55,11 @@ class Energy(NamedTuple):
     gravity: float
     external: float
     friction: float
-    damping: float
+    damping: float  # local and numerical damping
     supports: float  # work done by prescribed motions
+    dashpots: float = 0.0  # taken by viscous joints
+    mass_damping: float = 0.0
+    maxwell: float = 0.0  # taken by Maxwell elements of joints
 
 
 class HistoryRow(NamedTuple):
@@ -67,16 +73,28 @@ class HistoryRow(NamedTuple):
     overlap: float  # largest overlap [m]
     energy: Energy
     monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
+    time: float = 0.0  # since the start of a time history [s]
+
+
+class Samples(NamedTuple):
+    """A stretch of the histories of a time history, at even intervals."""
+
+    times: np.ndarray  # [s], (n,)
+    base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
+    monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
 
 
 class Observer(Protocol):
-    """Who a solver reports to while it runs; all three return at once and never change the state."""
+    """Who a solver reports to while it runs; all return at once and never change the state."""
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""
 
     def row(self, row: HistoryRow) -> None:
         """A row of the history to keep."""
+
+    def samples(self, samples: Samples) -> None:
+        """A stretch of a time history to keep; follows the one before."""
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""

@@ -24,7 +24,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.columns import Columns
 from dem_cli.output.disk import HeldFile
 from dem_cli.output.folder import write_error
-from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow
+from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, Samples
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
 from dem_cli.output.vtkhdf import GridSeries, PointSeries
@@ -97,6 +97,10 @@ class ResultWriter:
         self.last_row = row
         if len(self._rows) >= _BUFFERED_ROWS:
             self._guarded(self._flush)
+
+    def samples(self, samples: Samples) -> None:
+        """Keep a stretch of a time history."""
+        raise NotImplementedError
 
     def close(self, summary: Mapping[str, Any]) -> None:
         """Complete the files and write summary.json, last of all."""

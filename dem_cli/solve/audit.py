@@ -37,8 +37,9 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
 def closure(sim: Simulation) -> float:
     """Energy error over the largest energy in the ledger: 0 where the books balance."""
     e = sim.energy()
-    error = e.kinetic + e.elastic + e.gravity + e.friction + e.damping - e.external - e.supports
-    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.friction, e.elastic, e.damping)
+    taken = e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
+    error = e.kinetic + e.elastic + e.gravity + taken - e.external - e.supports
+    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken)
     return float(error / largest) if largest > 0.0 else 0.0
 
 

@@ -17,7 +17,7 @@ from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 from dem_cli.model.scales import smallest_edge
-from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
 from dem_cli.solve.audit import closure
 from dem_cli.solve.audit import warnings as doubts
 from dem_cli.solve.equilibrium import Budget
@@ -63,6 +63,11 @@ class Clock:
     def row(self, row: HistoryRow) -> None:
         begun = time.perf_counter()
         self.observer.row(row)
+        self.observing += time.perf_counter() - begun
+
+    def samples(self, samples: Samples) -> None:
+        begun = time.perf_counter()
+        self.observer.samples(samples)
         self.observing += time.perf_counter() - begun
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:

@@ -15,7 +15,7 @@ from dem_cli.case.schema import Case
 from dem_cli.kernels import records as slot
 from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, HistoryRow
+from dem_cli.output.record import Frame, HistoryRow, Samples
 from dem_cli.solve import run as solver
 from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.simulation import Simulation, compiled_advance
@@ -39,12 +39,21 @@ class Records:
 
     rows: list[HistoryRow] = field(default_factory=list)
     frames: list[Frame] = field(default_factory=list)
+    stretches: list[Samples] = field(default_factory=list)
 
     def frame(self, frame: Frame) -> None:
         self.frames.append(frame)
 
     def row(self, row: HistoryRow) -> None:
         self.rows.append(row)
+
+    def samples(self, samples: Samples) -> None:
+        self.stretches.append(samples)
+
+    @property
+    def history(self) -> Samples:
+        """The whole time history."""
+        return Samples(*(np.concatenate(parts) for parts in zip(*self.stretches, strict=True)))
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         pass
