@@ -128,6 +128,12 @@ def check_names(
         for i, table in enumerate(getattr(case, key))
         if table.block is not None and table.block not in blocks
     ]
+    for i, table in enumerate(case.monitor):
+        found += [
+            CaseProblem(("monitor", i, "between", k), unknown_name("block", name, list(blocks)))
+            for k, name in enumerate(table.between or ())
+            if name not in blocks
+        ]
     for i, table in enumerate(case.settlement):
         if fixed is not None and table.block in blocks and not fixed[blocks[table.block]]:
             message = f"block {show(table.block)} is not fixed; only a fixed block can be moved"

@@ -88,32 +88,66 @@ class Settlement(CaseModel):
         return math.radians(self.rotation_deg)
 
 
+PLACES = ("block", "point", "between")  # where a monitor may be
+AT_JOINTS = ("opening", "slip")
+OF_POINTS = ("displacement", "velocity", "acceleration")
+
+
 class Monitor(CaseModel):
     """[[monitor]]: a number followed through the run."""
 
+    name: Name | None = Field(default=None, description="label; default: made of place, quantity and component")
     block: str | None = Field(default=None, description="id of a block: its centroid is followed")
     point: Pair | None = Field(
         default=None, description="instead of block: a point of the undeformed structure [m]"
     )
-    quantity: Literal["displacement", "rotation", "velocity", "acceleration"] = Field(
-        default="displacement", description="[m], [rad], [m/s] or [m/s2]"
+    between: tuple[str, str] | None = Field(
+        default=None, description="for opening and slip: ids of two blocks that share a joint at the start"
+    )
+    quantity: Literal["displacement", "rotation", "velocity", "acceleration", "opening", "slip"] = Field(
+        default="displacement",
+        description="[m], [rad], [m/s] or [m/s2]; of a joint: opening (largest separation of its two ends, negative: "
+        "pressed) or slip of the second block against the first, at the middle, along the normal turned by +90° [m]",
     )
     component: Literal["x", "y"] | None = Field(default=None, description="default: the length of the vector")
+    absolute: bool = Field(
+        default=False, description="with the motion of the base; default: relative to the base that moves"
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> Monitor:
-        if (self.block is None) == (self.point is None):
-            found = "'block' and 'point' are" if self.block else "neither 'block' nor 'point' is"
-            raise ValueError(f"{found} given; a monitor has one of them")
-        if self.quantity == "rotation" and self.component is not None:
-            raise KeyProblem(f"'{self.component}' is not allowed; a rotation has no component", "component")
+        given = [key for key in PLACES if getattr(self, key) is not None]
+        if len(given) != 1:
+            found = " and ".join(f"'{key}'" for key in given) + " are" if given else "none of them is"
+            raise ValueError(f"{found} given; a monitor has one of 'block', 'point' and 'between'")
+        if (self.quantity in AT_JOINTS) != (self.between is not None):
+            allowed = AT_JOINTS if self.between is not None else (*OF_POINTS, "rotation")
+            where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
+            listed = ", ".join(f"'{name}'" for name in allowed)
+            raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
+        if self.quantity not in OF_POINTS and self.component is not None:
+            article = "an" if self.quantity[0] in "aeiou" else "a"
+            raise KeyProblem(
+                f"'{self.component}' is not allowed; {article} {self.quantity} has no component", "component"
+            )
+        if self.quantity not in OF_POINTS and self.absolute:
+            listed = ", ".join(f"'{name}'" for name in OF_POINTS)
+            raise KeyProblem(f"true is not allowed; only {listed} are absolute or relative to the base", "absolute")
         return self
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        if self.between is not None:
+            return " | ".join(self.between)
+        return self.block if self.block is not None else "({:g}, {:g})".format(*self.point or ())
 
 
 class Output(CaseModel):
     """[output]"""
 
     frames: int = Field(default=20, ge=0, description="snapshots kept; 0 for none")
+    rate: Positive = Field(default=200.0, description="samples of the monitors per second, in time histories [1/s]")
 
 
 class Reference(CaseModel):

@@ -226,8 +226,9 @@ def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
     """A different name for each, such as "top-right displacement x"."""
     names: list[str] = []
     for monitor in monitors:
-        place = monitor.block if monitor.block is not None else "({:g}, {:g})".format(*monitor.point or ())
-        name = " ".join(filter(None, (place, monitor.quantity, monitor.component)))
+        name = monitor.name or " ".join(
+            filter(None, (monitor.place, "absolute" if monitor.absolute else "", monitor.quantity, monitor.component))
+        )
         count = 1 + sum(other == name or other.startswith(f"{name} #") for other in names)
         names.append(name if count == 1 else f"{name} #{count}")
     return names

@@ -178,8 +178,5 @@ def _load(case: Case, model: Model) -> str:
 
 
 def _monitors(case: Case) -> str:
-    texts = []
-    for monitor in case.monitor:
-        place = f"'{monitor.block}'" if monitor.block is not None else f"point {list(monitor.point or ())}"
-        texts.append(" ".join(filter(None, (monitor.quantity, monitor.component, "of", place))))
+    texts = [f"{' '.join(filter(None, (m.quantity, m.component)))} of '{m.place}'" for m in case.monitor]
     return ", ".join(texts) if texts else "none"
