@@ -1,0 +1,138 @@
+"""Natural frequencies of a structure on its joints: stiffness of the contact springs, real masses, eigenvalues.
+
+    K = Bᵀ diag(k) B,   K φ = ω² M φ
+
+B: relative motion at every contact point (limit.matrices), k: its normal and shear stiffness; free blocks only.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.limit.matrices import compatibility
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+    from dem_cli.kernels.records import Joints
+    from dem_cli.model.model import Model
+    from dem_cli.solve.simulation import Simulation
+
+DENSE = 90  # degrees of freedom up to which a full matrix is the faster way
+ACCURATE = 1e-4  # of the highest eigenvalue: its residual
+EQUAL = 1e-6  # shares of energy that are no further apart are the same: the first block or joint is named
+
+
+class System(NamedTuple):
+    """Springs and masses of the free degrees of freedom: block by block, translations first."""
+
+    rows: csr_matrix  # B √k M^(-1/2), (n_points·d, n_free): its Gram matrix has the eigenvalues ω² [1/s2]
+    masses: np.ndarray  # [kg, kg m2], (n_free,)
+    blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
+
+    @property
+    def matrix(self) -> csr_matrix:
+        """M^(-1/2) K M^(-1/2) [1/s2], symmetric and positive semidefinite, (n_free, n_free)."""
+        return (self.rows.T @ self.rows).tocsr()
+
+    @property
+    def stiffness(self) -> csr_matrix:
+        """K [N/m, N, N m], (n_free, n_free)."""
+        from scipy.sparse import diags_array
+
+        roots = diags_array(np.sqrt(self.masses))
+        return (roots @ self.matrix @ roots).tocsr()
+
+
+class Highest(NamedTuple):
+    """The fastest vibration of a structure, and what has it."""
+
+    frequency: float  # ω [rad/s]; 0 where no joint holds any block
+    exact: bool  # False: not an eigenvalue but a bound above it
+    block: int  # that moves most (by kinetic energy); -1: none
+    joint: int  # of the simulation, that is strained most among those of this block; -1: none
+
+
+def system(sim: Simulation, closed: np.ndarray | None = None) -> System:
+    """Springs and masses of a simulation where its blocks are now.
+
+    closed: which contact points act, (n_points,) bool; default: all in the list, also those that are open and may
+    close: no state of the structure with these joints vibrates faster.
+    """
+    sim.measured()  # frames and levers of this instant
+    return system_of(sim.model, sim.joints, closed)
+
+
+def system_of(model: Model, joints: Joints, closed: np.ndarray | None = None) -> System:
+    """The same from a model and its joints."""
+    from scipy.sparse import diags_array
+
+    d = model.dimension
+    blocks = np.flatnonzero(~model.fixed)
+    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]]).ravel()
+    springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
+    if closed is not None:
+        springs = springs * closed[:, None]
+    rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ diags_array(1.0 / np.sqrt(masses))
+    return System(rows.tocsr(), masses, blocks)
+
+
+def highest_frequency(sim: Simulation) -> float:
+    """Highest natural frequency ω [rad/s] with all contact points closed; 0 where there are none.
+
+    The largest eigenvalue to within 1e-4, or Gershgorin's bound above it where the iteration does not converge.
+    """
+    return _largest(system(sim))[0]
+
+
+def limiting(sim: Simulation) -> Highest:
+    """The highest natural frequency, and the block and the joint that its mode moves and strains most."""
+    found = system(sim)
+    frequency, vector = _largest(found)
+    if frequency == 0.0:
+        return Highest(0.0, True, -1, -1)
+    exact = vector is not None
+    if vector is None:  # the degree of freedom with the largest bound
+        vector = np.zeros(len(found.masses))
+        vector[_gershgorin(found.matrix).argmax()] = 1.0
+    block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1))]
+    owner = np.repeat(np.arange(len(sim.joints.blocks)), np.diff(sim.joints.starts))
+    energy = ((found.rows @ vector).reshape(len(owner), -1) ** 2).sum(axis=1)
+    strained = np.bincount(owner, energy, len(sim.joints.blocks))
+    strained[~(sim.joints.blocks == block).any(axis=1)] = -1.0
+    return Highest(frequency, exact, int(block), _first_largest(strained))
+
+
+def _largest(found: System) -> tuple[float, np.ndarray | None]:
+    """Highest frequency [rad/s] and its mode times √M, (n_free,); no mode where the frequency is but a bound."""
+    n = len(found.masses)
+    if n == 0 or found.rows.nnz == 0:
+        return 0.0, np.zeros(n)
+    matrix = found.matrix
+    if n <= DENSE:
+        values, vectors = np.linalg.eigh(matrix.toarray())
+        return float(np.sqrt(values[-1])), vectors[:, -1]
+    from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, eigsh
+
+    try:
+        values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=ACCURATE)
+    except (ArpackError, ArpackNoConvergence):
+        return float(np.sqrt(_gershgorin(matrix).max())), None
+    return float(np.sqrt(values[0])), vectors[:, 0]
+
+
+def start_vector(n: int) -> np.ndarray:
+    """A vector for iterations that no mode is orthogonal to, always the same, (n,)."""
+    return np.random.default_rng(0).standard_normal(n)
+
+
+def _gershgorin(matrix: csr_matrix) -> np.ndarray:
+    """Sums of absolute values by row, the largest of which no eigenvalue exceeds, (n,)."""
+    return np.asarray(abs(matrix).sum(axis=1)).ravel()
+
+
+def _first_largest(values: np.ndarray) -> int:
+    """Index of the first of the largest values; round-off does not choose between equal ones."""
+    return int(np.flatnonzero(values >= values.max() - EQUAL * abs(values.max()))[0])
