@@ -11,34 +11,37 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.errors import SolverError
 from dem_cli.limit.matrices import compatibility
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
+    from scipy.sparse import csr_array
 
     from dem_cli.kernels.records import Joints
     from dem_cli.model.model import Model
     from dem_cli.solve.simulation import Simulation
 
-DENSE = 90  # degrees of freedom up to which a full matrix is the faster way
+DENSE = 90  # degrees of freedom up to which a full matrix is the faster way to the highest eigenvalue
+DENSE_MODES = 300  # the same, to the lowest ones
 ACCURATE = 1e-4  # of the highest eigenvalue: its residual
+ZERO, SHIFT = 1e-12, 1e-10  # of the highest eigenvalue: no vibration below it; where the lowest ones are looked for
 EQUAL = 1e-6  # shares of energy that are no further apart are the same: the first block or joint is named
 
 
 class System(NamedTuple):
     """Springs and masses of the free degrees of freedom: block by block, translations first."""
 
-    rows: csr_matrix  # B √k M^(-1/2), (n_points·d, n_free): its Gram matrix has the eigenvalues ω² [1/s2]
+    rows: csr_array  # B √k M^(-1/2), (n_points·d, n_free): its Gram matrix has the eigenvalues ω² [1/s2]
     masses: np.ndarray  # [kg, kg m2], (n_free,)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
 
     @property
-    def matrix(self) -> csr_matrix:
+    def matrix(self) -> csr_array:
         """M^(-1/2) K M^(-1/2) [1/s2], symmetric and positive semidefinite, (n_free, n_free)."""
         return (self.rows.T @ self.rows).tocsr()
 
     @property
-    def stiffness(self) -> csr_matrix:
+    def stiffness(self) -> csr_array:
         """K [N/m, N, N m], (n_free, n_free)."""
         from scipy.sparse import diags_array
 
@@ -53,6 +56,16 @@ class Highest(NamedTuple):
     exact: bool  # False: not an eigenvalue but a bound above it
     block: int  # that moves most (by kinetic energy); -1: none
     joint: int  # of the simulation, that is strained most among those of this block; -1: none
+
+
+class Modes(NamedTuple):
+    """The slowest vibrations of a structure, slowest first."""
+
+    frequencies: np.ndarray  # [Hz], (n,)
+    shapes: np.ndarray  # scaled to φᵀ M φ = 1 kg m2 [m, rad]; zero for fixed blocks, (n, n_blocks, n_dof)
+    effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
+    mechanisms: int  # motions of free blocks that strain no joint: frequency 0, not among the above
+    loose: np.ndarray  # blocks that take part in these, (n_loose,)
 
 
 def system(sim: Simulation, closed: np.ndarray | None = None) -> System:
@@ -76,7 +89,9 @@ def system_of(model: Model, joints: Joints, closed: np.ndarray | None = None) ->
     if closed is not None:
         springs = springs * closed[:, None]
     rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ diags_array(1.0 / np.sqrt(masses))
-    return System(rows.tocsr(), masses, blocks)
+    rows = rows.tocsr()
+    rows.eliminate_zeros()
+    return System(rows, masses, blocks)
 
 
 def highest_frequency(sim: Simulation) -> float:
@@ -114,13 +129,85 @@ def _largest(found: System) -> tuple[float, np.ndarray | None]:
     if n <= DENSE:
         values, vectors = np.linalg.eigh(matrix.toarray())
         return float(np.sqrt(values[-1])), vectors[:, -1]
-    from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, eigsh
+    from scipy.sparse.linalg import ArpackError, eigsh
 
     try:
         values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=ACCURATE)
-    except (ArpackError, ArpackNoConvergence):
+    except ArpackError:
         return float(np.sqrt(_gershgorin(matrix).max())), None
     return float(np.sqrt(values[0])), vectors[:, 0]
+
+
+def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
+    """The `count` lowest natural frequencies above 0 with their shapes; fewer where there are not so many.
+
+    The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
+    """
+    n_free = len(found.blocks)
+    n_dof = len(found.masses) // max(n_free, 1)
+    entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
+    strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
+    held = np.repeat(strained, n_dof)
+    values, held_vectors = _lowest(found.rows[:, held], count)
+    vectors = np.zeros((len(values), n_free * n_dof))
+    vectors[:, held] = held_vectors.T
+    vectors = vectors.reshape(-1, n_free, n_dof)
+    still = values == 0.0
+    loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > EQUAL).any(axis=0)
+    masses = found.masses.reshape(n_free, n_dof)
+    moving = vectors[~still] / np.sqrt(masses)
+    shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
+    shapes = np.zeros((len(moving), n_blocks, n_dof))
+    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum())[:, None, None]
+    return Modes(
+        frequencies=np.sqrt(values[~still]) / (2.0 * np.pi),
+        shapes=shapes,
+        effective_masses=shares**2,
+        mechanisms=int(still.sum() + (~held).sum()),
+        loose=found.blocks[loose],
+    )
+
+
+def _lowest(rows: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """All eigenvalues that are 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
+    n = rows.shape[1]
+    matrix = (rows.T @ rows).tocsr()
+    if n <= DENSE_MODES:
+        values, vectors = np.linalg.eigh(matrix.toarray())
+        values[values < ZERO * values.max(initial=0.0)] = 0.0
+        stop = int((values == 0.0).sum()) + count
+        return values[:stop], vectors[:, :stop]
+    largest, asked = float(_gershgorin(matrix).max()), count
+    while True:
+        values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)
+        values[values < ZERO * largest] = 0.0
+        missing = count - int((values > 0.0).sum())
+        if missing <= 0 or len(values) >= n - 1:
+            return values, vectors
+        asked = max(2 * asked, asked + missing)
+
+
+def _shift_invert(matrix: csr_array, count: int, shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """The `count` lowest eigenvalues in ascending order, with their vectors (n, count)."""
+    from scipy.sparse.linalg import ArpackError, eigsh
+
+    try:
+        values, vectors = eigsh(matrix.tocsc(), k=count, sigma=-shift, v0=start_vector(matrix.shape[0]))
+    except ArpackError as error:
+        raise SolverError(f"the {count} lowest natural frequencies were not found: {error}") from None
+    order = np.argsort(values, kind="stable")
+    return values[order], vectors[:, order]
+
+
+def _signs(shapes: np.ndarray, shares: np.ndarray, mass: float) -> np.ndarray:
+    """1 or −1 for each shape (n, n_blocks, n_dof): with the base where it follows it, else its first large part up."""
+    signs = np.empty(len(shapes))
+    for i, (shape, share) in enumerate(zip(shapes, shares)):
+        axis = _first_largest(np.abs(share))
+        excited = share[axis] ** 2 > EQUAL * mass
+        leading = share[axis] if excited else shape.ravel()[_first_largest(np.abs(shape).ravel())]
+        signs[i] = 1.0 if leading >= 0.0 else -1.0
+    return signs
 
 
 def start_vector(n: int) -> np.ndarray:
@@ -128,7 +215,7 @@ def start_vector(n: int) -> np.ndarray:
     return np.random.default_rng(0).standard_normal(n)
 
 
-def _gershgorin(matrix: csr_matrix) -> np.ndarray:
+def _gershgorin(matrix: csr_array) -> np.ndarray:
     """Sums of absolute values by row, the largest of which no eigenvalue exceeds, (n,)."""
     return np.asarray(abs(matrix).sum(axis=1)).ravel()
 
