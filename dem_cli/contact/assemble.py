@@ -67,11 +67,11 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
 
 def overlap_lengths(edges: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Length of the overlap of two edges along the first [m], (n,); negative: they miss each other."""
-    low, high = _overlap_ends(edges, corners)
+    low, high = overlap_ends(edges, corners)
     return high - low
 
 
-def _overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the overlap of two edges begins and ends, along the first edge from its start [m], (n,) each."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     along = a1 - a0
@@ -129,7 +129,7 @@ def chains_of_start(model: Model, faces: Faces, bodies: Bodies, properties: Join
     """Contact points of the joints of the start, by the layout of their named joint."""
     corners, n = bodies.corners, len(faces.parts)
     named = properties.between(model, model.part_blocks[faces.parts])
-    low, high = _overlap_ends(faces.edges, corners)
+    low, high = overlap_ends(faces.edges, corners)
     a0, a1, b0, b1 = (corners[faces.edges[:, i]] for i in range(4))
     along = (a1 - a0) / np.sqrt(((a1 - a0) ** 2).sum(axis=1))[:, None]
     from_b1 = ((b1 - a0) * along).sum(axis=1)  # where the edge of b starts, along that of a

@@ -54,9 +54,9 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 
 
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors at a point where there is no block."""
+    """Monitors at a point where there is no block, or of blocks that share no joint."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
-    return [
+    return shared_problems(case, model) + [
         CaseProblem(
             ("monitor", i, "point"),
             f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
@@ -64,6 +64,24 @@ def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
         for i, monitor in enumerate(case.monitor)
         if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
     ]
+
+
+def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors of the joint of two blocks that share none."""
+    wanted = [(i, monitor.between) for i, monitor in enumerate(case.monitor) if monitor.between is not None]
+    if not wanted:
+        return []
+    from dem_cli.contact.between import StartJoints
+    from dem_cli.model.assemble import assembly
+
+    joints, blocks, found = StartJoints(model), assembly(case).block_map, []
+    for i, (a, b) in wanted:
+        near = joints.neighbours(blocks[a])
+        if blocks[b] not in near:
+            message = f"'{a}' and '{b}' share no joint at the start"
+            listed = ", ".join(f"'{model.block_ids[k]}'" for k in near) or "none"
+            found.append(CaseProblem(("monitor", i, "between"), f"{message}; joints of '{a}' are with: {listed}"))
+    return found
 
 
 def profile_problems(case: Case, model: Model) -> list[CaseProblem]:

@@ -1,0 +1,61 @@
+"""The joint between two blocks of the undeformed structure: its two ends as material points of both, 2D."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.assemble import overlap_ends
+from dem_cli.contact.detect import Faces, find_joints
+from dem_cli.contact.start import TOUCH
+from dem_cli.model.model import Model
+from dem_cli.model.places import undeformed
+from dem_cli.model.scales import smallest_edge
+
+REACH = 0.05  # of the smallest edge: a wider gap is no joint
+
+
+class JointEnds(NamedTuple):
+    """Where a joint begins and ends, before anything moved."""
+
+    normal: np.ndarray  # unit, from the first block to the second, (d,)
+    on_first: np.ndarray  # from the centroid of the first block [m], (2, d)
+    on_second: np.ndarray  # opposite places on the second, from its centroid [m], (2, d)
+
+
+class StartJoints:
+    """All joints of the undeformed structure, by the two blocks that share them."""
+
+    def __init__(self, model: Model):
+        self.model, self.corners = model, undeformed(model)
+        edge = smallest_edge(model)
+        faces = find_joints(model, self.corners, REACH * edge)
+        low, high = overlap_ends(faces.edges, self.corners)
+        keep = high - low > TOUCH * edge
+        self.faces = Faces(*(field[keep] for field in faces))
+        self.lengths = (high - low)[keep]
+        self.blocks = model.part_blocks[self.faces.parts]
+
+    def neighbours(self, block: int) -> list[int]:
+        """Blocks that share a joint with this one."""
+        pairs = self.blocks[(self.blocks == block).any(axis=1)]
+        return sorted({int(b) for b in pairs.ravel()} - {block})
+
+    def ends(self, first: int, second: int) -> JointEnds | None:
+        """Of the joint of two blocks, the longest one where they share several; None: they share none."""
+        shared = np.flatnonzero((np.sort(self.blocks, axis=1) == sorted((first, second))).all(axis=1))
+        if not len(shared):
+            return None
+        joint = shared[self.lengths[shared].argmax()]
+        edges = self.faces.edges[joint]
+        if self.blocks[joint, 0] != first:
+            edges = edges[[2, 3, 0, 1]]
+        places = np.array(overlap_ends(edges[np.newaxis], self.corners))  # (2, 1) along the first edge
+        a0, a1, b0, b1 = self.corners[edges]
+        along = (a1 - a0) / np.hypot(*(a1 - a0))
+        on_first = a0 + places * along
+        share = (on_first - b0) @ along / ((b1 - b0) @ along)
+        on_second = b0 + share[:, np.newaxis] * (b1 - b0)
+        centroids = self.model.centroids
+        return JointEnds(np.array([along[1], -along[0]]), on_first - centroids[first], on_second - centroids[second])
