@@ -92,7 +92,7 @@ def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
     d = dimension
     frames = directions(joints, d)
     n_points = len(frames)
-    levers = joints.levers.reshape(n_points, 2, d, -1).swapaxes(1, 2)
+    levers = joints.levers.reshape(n_points, 2, d, joints.levers.shape[1] // (2 * d)).swapaxes(1, 2)
     one = np.concatenate([np.repeat(frames[:, :, None], 2, axis=2), levers], axis=3)
     return one * np.array([-1.0, 1.0])[:, None]
 

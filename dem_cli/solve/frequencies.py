@@ -172,19 +172,17 @@ def _lowest(rows: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
     """All eigenvalues that are 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
     n = rows.shape[1]
     matrix = (rows.T @ rows).tocsr()
-    if n <= DENSE_MODES:
-        values, vectors = np.linalg.eigh(matrix.toarray())
-        values[values < ZERO * values.max(initial=0.0)] = 0.0
-        stop = int((values == 0.0).sum()) + count
-        return values[:stop], vectors[:, :stop]
-    largest, asked = float(_gershgorin(matrix).max()), count
+    largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
     while True:
-        values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)
+        if n <= DENSE_MODES:
+            values, vectors = np.linalg.eigh(matrix.toarray())
+        else:
+            values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)
         values[values < ZERO * largest] = 0.0
-        missing = count - int((values > 0.0).sum())
-        if missing <= 0 or len(values) >= n - 1:
-            return values, vectors
-        asked = max(2 * asked, asked + missing)
+        stop = int((values == 0.0).sum()) + count
+        if len(values) >= min(stop, n - 1):
+            return values[:stop], vectors[:, :stop]
+        asked = max(2 * asked, stop)
 
 
 def _shift_invert(matrix: csr_array, count: int, shift: float) -> tuple[np.ndarray, np.ndarray]:
