@@ -1,1 +1,1 @@
-"""Failure loads worked out without anything of dem_cli: what the solver is judged by."""
+"""Failure loads and motions worked out without anything of dem_cli: what the solver is judged by."""
