@@ -103,6 +103,7 @@ def _new_bar(stream: TextIO) -> Any:
     return Bar(*columns, console=Console(file=stream), transient=True)
 
 
+MOST_PEAKS = 8  # of monitors, a line each
 MOST_TURNS = 6  # of a load path, in one line
 STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
 
@@ -110,7 +111,7 @@ STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analys
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
     lines = [str(summary["title"])]
-    rows = [*_load_rows(summary), *_sureness_rows(summary), *_cost_rows(summary)]
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *_sureness_rows(summary), *_cost_rows(summary)]
     rows += [("warning", text) for text in summary.get("warnings", ())]
     if verbose:
         rows += [("skipped", text) for text in summary.get("skipped", ())]
@@ -140,9 +141,37 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")
     if reached:
-        where = f"load {_load(reached['load'])}, displacement {metres(reached['displacement'])}"
+        where = f"{reached['time']:.4g} s" if "time" in reached else f"load {_load(reached['load'])}"
+        where += f", displacement {metres(reached['displacement'])}"
         rows.append(("reached", f"{reached['stage']}, {where}"))
     return rows
+
+
+def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Of a time history: did it stand, how far did it go, what took the energy."""
+    rows = []
+    if summary.get("collapsed") is not None:
+        at = summary.get("collapse_time")
+        fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
+        rows.append(("result", fell if summary["collapsed"] else "stood"))
+    peaks = summary.get("peaks") or {}
+    for name, found in list(peaks.items())[:MOST_PEAKS]:
+        peak, residual = (_measure(found[key], found["unit"]) for key in ("peak", "residual"))
+        rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} in the end"))
+    if len(peaks) > MOST_PEAKS:
+        rows.append(("", f"and {len(peaks) - MOST_PEAKS} more in summary.json"))
+    shares = {name: share for name, share in (summary.get("energy_shares") or {}).items() if share >= 0.0005}
+    if shares:
+        listed = sorted(shares.items(), key=lambda item: -item[1])
+        rows.append(("energy went to", ", ".join(f"{name.replace('_', ' ')} {100 * s:.3g} %" for name, s in listed)))
+    return rows
+
+
+def _measure(value: float | None, unit: str) -> str:
+    """A value of a monitor with its unit."""
+    if value is None:
+        return "–"
+    return metres(value) if unit == "m" else f"{value:.3g} {unit}"
 
 
 def _load(value: float | None) -> str:

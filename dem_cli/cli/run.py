@@ -31,6 +31,12 @@ class Outcome(Protocol):
     summary: dict[str, Any]
 
 
+# What a run that was stopped does not know, by kind.
+ANSWERS = {
+    "pushover": ("failure_load", "failure_load_bracket", "failure_mode", "displacement_at_failure"),
+    "time-history": ("collapsed", "collapse_time"),
+}
+
 Solve = Callable[["Case", "Model", "Observer"], Outcome]
 
 
@@ -120,13 +126,15 @@ def execute(
         with interrupts.shielded():
             names = monitor_names(case.monitor)
             text, kind = case_text(case), case.analysis.kind
-            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, name=output)
+            quantities = [monitor.quantity for monitor in case.monitor]
+            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
         with abandoning(writer), console.Progress(quiet) as bar:
             recorder = Recorder(writer, bar, interrupts)
             found = solved(solve or load_solver(case), case, model, recorder)
             interrupts.ignore()
             bar.stop()
-            summary = completed(found, loaded, model, started)
+            peaks = {"peaks": writer.peaks()} if writer.peaks() else {}
+            summary = completed(found | peaks, loaded, model, started)
             writer.close(summary)
             if plot:
                 draw(folder.path, quiet)
@@ -157,13 +165,13 @@ def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str,
     """Summary of a run that did not reach its end."""
     last = writer.last_row or writer.last_frame
     reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
+    if last and last.stage == "shaking":
+        reached = {"stage": last.stage, "time": last.time, "displacement": last.displacement}
     points = writer.last_frame.contacts.joint if writer.last_frame else None
+    unknown = ANSWERS.get(writer.kind, ANSWERS["pushover"])
     return {
         "status": status,
-        "failure_load": None,
-        "failure_load_bracket": None,
-        "failure_mode": None,
-        "displacement_at_failure": None,
+        **dict.fromkeys(unknown),
         "reached": reached,
         "joints": None if points is None else len(set(points.tolist())),
         "contacts": None if points is None else len(points),

@@ -15,6 +15,7 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
 from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame
+from dem_cli.output.series import Series, read_series
 from dem_cli.output.store import FORMAT, FRAME_ARRAYS, FRAME_SCALARS, RESULTS, ROW_SCALARS
 
 
@@ -25,12 +26,14 @@ class Results:
     summary: dict[str, Any]  # {} where a killed run left none
     model: Model
     frames: Frames  # a sequence of Frame, in the order in which they came
-    history: dict[str, np.ndarray]  # "stage" (names), "step", "load", "displacement", "unbalanced", "overlap"
+    history: dict[str, np.ndarray]  # "stage" (names), "step", "load", "displacement", "unbalanced", "overlap", "time"
     energy: dict[str, np.ndarray]  # [J], one value per history row, by the names of Energy
     monitors: dict[str, np.ndarray]  # one value per history row, by monitor name
     case_text: str
     provenance: dict[str, str]
     status: str
+    kind: str
+    series: Series | None  # of a time history
 
 
 class Frames(Sequence[Frame]):
@@ -59,6 +62,7 @@ class Frames(Sequence[Frame]):
             orientations=columns["orientations"][i],
             velocities=columns["velocities"][i],
             contacts=contacts,
+            time=float(columns["time"][i]),
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -99,7 +103,7 @@ def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
     n_rows = len(history["stage"]) if "stage" in history else 0
     columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}
     columns["stage"] = np.array(STAGES)[history["stage"][:]] if n_rows else np.zeros(0, dtype=str)
-    energy = {name: history["energy"][name][:n_rows] for name in Energy._fields} if n_rows else {}
+    energy = {name: history["energy"][name][:n_rows] for name in Energy._fields if name in history.get("energy", ())}
     monitors = {
         str(name): history["monitor_values"][:n_rows, i] if n_rows else np.zeros(0)
         for i, name in enumerate(history.attrs["monitors"])
@@ -114,6 +118,8 @@ def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
         case_text=dem["case"].asstr()[()],
         provenance={name: str(value) for name, value in dem["provenance"].attrs.items()},
         status=str(dem.attrs["status"]),
+        kind=str(dem.attrs["kind"]),
+        series=read_series(dem["series"]) if "series" in dem else None,
     )
 
 
@@ -123,7 +129,8 @@ def _read_frames(dem: h5py.Group) -> Frames:
         return Frames({}, {})
     n_frames = len(group["n_contacts"])
     names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stage", "n_contacts")
-    columns = {name: group[name][:n_frames] for name in names}
+    columns = {name: group[name][:n_frames] for name in names if name in group}
+    columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
     return Frames(columns, {name: dem["contacts"][name][:] for name in ContactRecord._fields})
 
 

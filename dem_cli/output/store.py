@@ -9,6 +9,7 @@ results.h5 holds `/VTKHDF` (float32, what ParaView shows) beside `/dem` (float64
     /dem/frames      one row per frame; n_contacts says how many rows of /dem/contacts belong to it
     /dem/contacts    the contact points of all frames, one after the other
     /dem/history     one row per HistoryRow, with energy/ and monitors (names in its attribute)
+    /dem/series      of time histories: base motion and monitors at an even rate (output/series.py)
 """
 
 from __future__ import annotations
@@ -25,17 +26,20 @@ from dem_cli.output.columns import Columns
 from dem_cli.output.disk import HeldFile
 from dem_cli.output.folder import write_error
 from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, Samples
+from dem_cli.output.series import SeriesWriter
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
 from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
 FORMAT = 1
-RESULTS, CONTACTS, CASE = "results.h5", "contacts.vtkhdf", "case.toml"
-ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap")
-FRAME_SCALARS = ("step", "load", "displacement")
+RESULTS, CONTACTS, CASE, HISTORY = "results.h5", "contacts.vtkhdf", "case.toml", "history.csv"
+ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time")
+FRAME_SCALARS = ("step", "load", "displacement", "time")
+IN_SECONDS = frozenset(("time-history",))  # kinds whose frames ParaView counts in seconds; others by their number
 FRAME_ARRAYS = ("positions", "orientations", "velocities")
 _VTK_POLYGON = 7
 _BUFFERED_ROWS = 4096
+_BUFFERED_SAMPLES = 1024
 _TEXT = h5py.string_dtype()
 
 
@@ -51,24 +55,27 @@ class ResultWriter:
         monitors: Sequence[str] = (),
         kind: str = "pushover",
         name: Path | None = None,
+        quantities: Sequence[str] = (),
     ):
         self.folder, self.model, self.monitors = Path(folder), model, tuple(monitors)
         self.name = name or self.folder  # what messages call it
+        self.kind, self.quantities = kind, tuple(quantities) or ("displacement",) * len(self.monitors)
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._rows: list[HistoryRow] = []
         self._files: list[HeldFile] = []
-        self._series: tuple[GridSeries, PointSeries] | None = None
+        self._vtk: tuple[GridSeries, PointSeries] | None = None
+        self._series: SeriesWriter | None = None
         self._rest = rest_vertices(model)
-        self._guarded(lambda: self._start(case_text, provenance, kind))
+        self._guarded(lambda: self._start(case_text, provenance))
 
-    def _start(self, case_text: str, provenance: Mapping[str, str], kind: str) -> None:
+    def _start(self, case_text: str, provenance: Mapping[str, str]) -> None:
         (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
         file = self._open(RESULTS)
         self.dem = dem = file.create_group("dem")
         dem.attrs["format"] = FORMAT
-        dem.attrs["kind"] = kind
+        dem.attrs["kind"] = self.kind
         dem.attrs["status"] = "running"
         dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)
         dem.create_dataset("case", data=case_text, dtype=_TEXT)
@@ -99,14 +106,24 @@ class ResultWriter:
             self._guarded(self._flush)
 
     def samples(self, samples: Samples) -> None:
-        """Keep a stretch of a time history."""
-        raise NotImplementedError
+        """Keep a stretch of a time history; it goes to disk with the next frame, or when many wait."""
+        if self._series is None:
+            self._series = SeriesWriter(self.dem.create_group("series"), self.monitors, self.quantities)
+        self._series.append(samples)
+        if self._series.n_waiting >= _BUFFERED_SAMPLES:
+            self._guarded(self._flush)
+
+    def peaks(self) -> dict[str, dict[str, float | str]]:
+        """Peak, its time, last value and unit of each monitor of a time history so far, by name."""
+        return self._series.peaks() if self._series else {}
 
     def close(self, summary: Mapping[str, Any]) -> None:
         """Complete the files and write summary.json, last of all."""
 
         def finish() -> None:
             self._flush_rows()
+            if self._series is not None:
+                self._series.write_csv(self.folder / HISTORY)
             self.dem.attrs["status"] = str(summary["status"])
             while self._files:
                 self._files.pop().close()
@@ -135,12 +152,14 @@ class ResultWriter:
         rows, self._rows = self._rows, []
         if rows:
             _store_rows(self._history, rows)
+        if self._series is not None:
+            self._series.flush()
 
     def _frame(self, frame: Frame) -> None:
         self._store_frame(frame)
-        if self._series is None:
-            self._series = self._start_series()
-        grid, points = self._series
+        if self._vtk is None:
+            self._vtk = self._start_vtk()
+        grid, points = self._vtk
         vertices = placed_vertices(self.model, frame.positions, frame.orientations)
         velocities = vertex_velocities(self.model, vertices, frame.positions, frame.velocities)
         step_fields = {
@@ -148,19 +167,20 @@ class ResultWriter:
             "control_displacement": float(frame.displacement),
             "stage": STAGES.index(frame.stage),
             "step": int(frame.step),
+            "time": float(frame.time),
         }
         moved = in_space(vertices - self._rest)
         cell_fields = {}
         if self.model.dimension == 2:
             cell_fields["rotation"] = frame.orientations[self.model.part_blocks, 0].astype(np.float32)
-        value = float(self.n_frames)
+        value = float(frame.time if self.kind in IN_SECONDS else self.n_frames)
         fields = {"displacement": moved, "velocity": in_space(velocities)}
         grid.add(value, in_space(vertices), fields, cell_fields, step_fields)
         points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), step_fields)
         self.n_frames += 1
         self._flush()
 
-    def _start_series(self) -> tuple[GridSeries, PointSeries]:
+    def _start_vtk(self) -> tuple[GridSeries, PointSeries]:
         cells = block_fields(self.model)
         grid = GridSeries(self._files[0].hdf, self.model.part_starts, _VTK_POLYGON, cells)
         return grid, PointSeries(self._open(CONTACTS))

@@ -16,7 +16,7 @@ from dem_cli.output.folder import write_error
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
-from dem_cli.output.store import block_fields, contact_fields
+from dem_cli.output.store import IN_SECONDS, block_fields, contact_fields
 
 Fields = Mapping[str, np.ndarray]
 _POLYGON = 7
@@ -60,7 +60,7 @@ def export_pvd(results: Results, folder: Path) -> list[Path]:
                 _write_whole(folder / name, text)
                 series[name.split("_")[0]].append(name)
         for kind, names in series.items():
-            _write_whole(folder / f"{kind}.pvd", _collection(names))
+            _write_whole(folder / f"{kind}.pvd", _collection(names, times(results)))
     except OSError as error:
         raise write_error(error, folder) from None
     return [folder / f"{kind}.pvd" for kind in series]
@@ -98,6 +98,7 @@ def _step_fields(frame: Frame) -> Fields:
         "load_multiplier": np.array([frame.load]),
         "control_displacement": np.array([frame.displacement]),
         "step": np.array([frame.step], dtype=np.int64),
+        "time": np.array([frame.time]),
     }
 
 
@@ -156,9 +157,17 @@ def _array(name: str, values: np.ndarray, extra: str) -> str:
     )
 
 
-def _collection(names: list[str]) -> str:
+def times(results: Results) -> list[float]:
+    """What a viewer counts the frames by: seconds in time histories, otherwise their number."""
+    if results.kind in IN_SECONDS:
+        return [frame.time for frame in results.frames]
+    return [float(i) for i in range(len(results.frames))]
+
+
+def _collection(names: list[str], values: list[float]) -> str:
     rows = "".join(
-        f'<DataSet timestep="{i}" part="0" file={quoteattr(name)}/>\n' for i, name in enumerate(names)
+        f'<DataSet timestep="{value:.9g}" part="0" file={quoteattr(name)}/>\n'
+        for value, name in zip(values, names, strict=True)
     )
     return (
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'

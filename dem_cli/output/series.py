@@ -1,0 +1,125 @@
+"""Time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and in history.csv.
+
+    /dem/series                                        attributes: monitors (names), quantities
+    /dem/series/time                                   [s], (n,); written last, it counts
+    /dem/series/base_acceleration, _velocity, _displacement   [m, s], (n, d)
+    /dem/series/monitors                               (n, n_monitors), SI
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+
+from dem_cli.output.columns import Columns
+from dem_cli.output.record import Samples
+
+UNITS = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m", "rotation": "rad", "opening": "m", "slip": "m"}
+BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
+_AXES = "xyz"
+_TEXT = h5py.string_dtype()
+
+
+class Peak(NamedTuple):
+    """The largest value of a monitor, by size."""
+
+    peak: float  # with its sign
+    time: float  # when [s]
+    residual: float  # the last value
+
+
+class Series(NamedTuple):
+    """The histories of a run."""
+
+    time: np.ndarray  # [s], (n,)
+    base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
+    monitors: dict[str, np.ndarray]  # by name, (n,) each
+    quantities: dict[str, str]  # of each monitor, a key of UNITS
+
+
+class SeriesWriter:
+    """Keeps what comes in memory until `flush`; remembers the peaks."""
+
+    def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str]):
+        self.names, self.quantities = tuple(names), tuple(quantities)
+        group.attrs.create("monitors", list(self.names), dtype=_TEXT)
+        group.attrs.create("quantities", list(self.quantities), dtype=_TEXT)
+        self._group, self._columns = group, Columns(group)
+        self._waiting: list[Samples] = []
+        self.n_waiting = 0
+        self._peaks: list[Peak] = []
+
+    def append(self, samples: Samples) -> None:
+        """Keep a stretch. Raises ValueError where it has not one value per monitor."""
+        n_values = samples.monitors.shape[1]
+        if n_values != len(self.names):
+            raise ValueError(f"{n_values} values of {len(self.names)} monitors")
+        if len(samples.times):
+            self._waiting.append(samples)
+            self.n_waiting += len(samples.times)
+            self._remember(samples)
+
+    def _remember(self, samples: Samples) -> None:
+        values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
+        largest = np.abs(values).argmax(axis=0)
+        for i, row in enumerate(largest.tolist()):
+            here = Peak(float(values[row, i]), float(samples.times[row]), float(samples.monitors[-1, i]))
+            if i == len(self._peaks):
+                self._peaks.append(here)
+            elif abs(here.peak) > abs(self._peaks[i].peak):
+                self._peaks[i] = here
+            else:
+                self._peaks[i] = self._peaks[i]._replace(residual=here.residual)
+
+    def peaks(self) -> dict[str, dict[str, float | str]]:
+        """Peak, its time, the last value and the unit of each monitor, by name."""
+        found = zip(self.names, self.quantities, self._peaks)
+        return {name: {**peak._asdict(), "unit": UNITS[quantity]} for name, quantity, peak in found}
+
+    def flush(self) -> None:
+        """Hand what was kept to the file."""
+        waiting, self._waiting, self.n_waiting = self._waiting, [], 0
+        if waiting:
+            times, base, monitors = (np.concatenate(parts) for parts in zip(*waiting, strict=True))
+            for i, name in enumerate(BASE):
+                self._columns.append(f"base_{name}", base[:, i])
+            self._columns.append("monitors", monitors)
+            self._columns.append("time", times)  # last: it counts
+
+    def write_csv(self, path: Path) -> None:
+        """All of it as text, one line per sample."""
+        series = read_series(self._group)
+        with path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerow(headers(series))
+            if len(series.time):
+                np.savetxt(file, table(series), fmt="%.9g", delimiter=",")
+
+
+def headers(series: Series) -> list[str]:
+    """A name with its unit for each column of `table`."""
+    axes = _AXES[: series.base.shape[2]]
+    base = [f"base {name} {axis} [{UNITS[name]}]" for name in BASE for axis in axes]
+    return ["time [s]", *base, *(f"{name} [{UNITS[quantity]}]" for name, quantity in series.quantities.items())]
+
+
+def table(series: Series) -> np.ndarray:
+    """Time, motion of the base and monitors side by side, (n, n_columns)."""
+    return np.column_stack([series.time, series.base.reshape(len(series.time), -1), *series.monitors.values()])
+
+
+def read_series(group: h5py.Group) -> Series:
+    """What has been written so far."""
+    names, quantities = (list(map(str, group.attrs[key])) for key in ("monitors", "quantities"))
+    if "time" not in group:
+        nothing = np.zeros(0)
+        return Series(nothing, np.zeros((0, len(BASE), 2)), dict.fromkeys(names, nothing), dict(zip(names, quantities)))
+    n = len(group["time"])
+    base = np.stack([group[f"base_{name}"][:n] for name in BASE], axis=1)
+    values = group["monitors"][:n]
+    monitors = {name: values[:, i] for i, name in enumerate(names)}
+    return Series(group["time"][:], base, monitors, dict(zip(names, quantities, strict=True)))
