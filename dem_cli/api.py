@@ -20,6 +20,9 @@ def make_case_model() -> type[Case]:
     """The class of case files with every registered structure, law and analysis, and all other tables."""
     from dem_cli.calibrate.table import Calibration
     from dem_cli.laws.registry import LAWS
+    from dem_cli.motion.table import MOTIONS
+    from dem_cli.solve.damping import DampingTable
+    from dem_cli.solve.initial import Initial
     from dem_cli.solve.registry import ANALYSES
     from dem_cli.structures.registry import GENERATORS
 
@@ -28,6 +31,9 @@ def make_case_model() -> type[Case]:
         {name: law.parameters for name, law in LAWS.items()},
         {kind: analysis.parameters for kind, analysis in ANALYSES.items()},
         Calibration,
+        DampingTable,
+        Initial,
+        MOTIONS,
     )
 
 
@@ -44,13 +50,18 @@ def build_model(loaded: LoadedCase) -> Model:
     from dem_cli.model import validate
     from dem_cli.model.assemble import assembly
 
+    found_odd = []
     try:
         made = assembly(loaded.case)
+        if loaded.case.motion:
+            from dem_cli.motion.build import check
+
+            found_odd += map(loaded.render, check(loaded.case))
     except CaseError as error:
         raise CaseError(error.problems, loaded.render) from None
     found = validate.problems(loaded.case, made.model, made.blocks)
     if found:
         raise CaseError(found, loaded.render)
-    found_odd = [*map(loaded.render, made.doubts), *validate.warnings(made.model)]
+    found_odd += [*map(loaded.render, made.doubts), *validate.warnings(made.model)]
     loaded.warnings += [line for line in found_odd if line not in loaded.warnings]
     return made.model

@@ -23,13 +23,6 @@ from dem_cli.case.words import (
 )
 from dem_cli.errors import CaseProblem, KeyPath
 
-# Parts of the format that this version does not have yet: table or key -> what it belongs to.
-LATER_TABLES = {
-    "motion": "time-history analysis",
-    "damping": "time-history analysis",
-    "initial": "free vibration",
-}
-
 
 class Spot(NamedTuple):
     """Where an error belongs.
@@ -155,8 +148,6 @@ def has_tag(declared: Any, tag: str | int) -> bool:
 def unknown_key(name: str, owner: type[BaseModel] | None) -> str:
     """What to say about a key that the table does not have."""
     names = list(owner.model_fields) if owner else []
-    if name in LATER_TABLES:
-        return f"not available yet in this version ({LATER_TABLES[name]})"
     hint = nearest(name, names)
     return f"unknown key, {hint}" if hint else f"unknown key (allowed: {listing(names)})"
 

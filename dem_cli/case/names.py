@@ -9,14 +9,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from dem_cli.case.schema import Case
-from dem_cli.case.words import either, show, unknown_name
+from dem_cli.case.words import either, listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 
 def complete(data: dict[str, Any], title: str) -> None:
-    """Fill in, in place, the title, the only material and the ids of structures."""
+    """Fill in, in place, the title, the only material and the ids of structures; one [motion] becomes a list."""
     if data.get("title", "") == "":
         data["title"] = title
+    if isinstance(data.get("motion"), dict):
+        data["motion"] = [data["motion"]]
     materials = data.get("materials")
     only = next(iter(materials)) if isinstance(materials, dict) and len(materials) == 1 else ""
     tables = [table for _, table in entries(data, "structure")]
@@ -117,7 +119,7 @@ def names(data: dict[str, Any], key: str) -> list[str]:
 def check_names(
     case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None
 ) -> list[CaseProblem]:
-    """Tables about blocks that do not exist, and settlements of free blocks.
+    """Tables about blocks that do not exist, and settlements and motions of free blocks.
 
     blocks  number of the block by its id and its aliases, known only after the structures are built
     fixed   for each block, whether it is a support
@@ -138,4 +140,25 @@ def check_names(
         if fixed is not None and table.block in blocks and not fixed[blocks[table.block]]:
             message = f"block {show(table.block)} is not fixed; only a fixed block can be moved"
             found.append(CaseProblem(("settlement", i, "block"), message))
+    found += _initial_problems(case, blocks, fixed)
+    for i, table in enumerate(case.motion):
+        supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
+        for k, name in enumerate(table.blocks):
+            if name not in blocks:
+                found.append(CaseProblem(("motion", i, "blocks", k), unknown_name("support", name, supports)))
+            elif name not in supports:
+                message = f"block {show(name)} is not fixed; only a fixed block can be moved"
+                message += f" (fixed: {listing(supports)})"
+                found.append(CaseProblem(("motion", i, "blocks", k), message))
     return found
+
+
+def _initial_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
+    """[[initial]] tables about blocks that do not exist or cannot move."""
+    for i, table in enumerate(case.initial):
+        for k, name in enumerate(table.names):
+            path = ("initial", i, "block") if table.block is not None else ("initial", i, "blocks", k)
+            if name not in blocks:
+                yield CaseProblem(path, unknown_name("block", name, list(blocks)))
+            elif fixed is not None and fixed[blocks[name]]:
+                yield CaseProblem(path, f"block {show(name)} is fixed; only blocks that can move have a start")

@@ -46,11 +46,16 @@ class Source:
 
     def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
         """Line and column, from 1, of the value at a key path (or of its key)."""
-        return self.places.locate(path, key)
+        return self.places.locate(self.as_written(path), key)
+
+    def as_written(self, path: KeyPath) -> KeyPath:
+        """A key path without the number of a table that is not written as a list: motion.0.file -> motion.file."""
+        alone = path[:1] == ("motion",) and path[1:2] == (0,) and path[:2] not in self.places.values
+        return path[:1] + path[2:] if alone else path
 
     def render(self, problem: CaseProblem) -> str:
         """`case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""
-        path = problem.path
+        path = self.as_written(problem.path)
         for override in self.overrides:
             if path and override.path == path[: len(override.path)]:
                 return f"--set {dotted(path)}: {problem.message}"
@@ -101,7 +106,7 @@ def validate(data: dict[str, Any], model: type[Case], source: Source) -> Case:
     names.complete(data, source.path.stem)
     case = None
     try:
-        case = model.model_validate(data)
+        case = model.model_validate(data, context={"folder": source.path.parent})  # where relative paths start
     except ValidationError as error:
         found += problems_from(error, model, data)
     found += names.problems(data)

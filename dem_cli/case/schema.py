@@ -180,10 +180,13 @@ class Case(CaseModel):
     imperfection: tuple[Imperfection, ...] = Field(default=(), description="errors of blocks and structures")
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
+    damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")
+    initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
     reference: Reference | None = Field(default=None, description="what the answer is compared with")
+    motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: dict[str, Any] | None = Field(
         default=None, description="values to be combined; `dem run` ignores it"
@@ -206,10 +209,14 @@ def case_model(
     laws: Mapping[str, type[CaseModel]],
     analyses: Mapping[str, type[CaseModel]],
     calibration: type[CaseModel] | None = None,
+    damping: type[CaseModel] | None = None,
+    initial: type[CaseModel] | None = None,
+    motions: Mapping[str, type[CaseModel]] | None = None,
 ) -> type[Case]:
     """The class of case files in which these kinds exist: kind -> class of its parameters.
 
-    calibration: class of the [calibration] table; None: there is no such table.
+    calibration, damping, initial: classes of the tables of these names; None: there is no such table.
+    motions: kinds of the [motion] tables.
     """
     structure = one_of(structures, "kind")
     joint = one_of(laws, "law", default="coulomb")
@@ -222,7 +229,13 @@ def case_model(
             analysis,
             Field(default_factory=dict, validate_default=True, description=fields["analysis"].description),
         ),
+        "motion": (one_or_more(one_of(motions, "kind") if motions else Any), fields["motion"]),
         "calibration": (calibration and calibration | None, fields["calibration"]),
+        "damping": (damping and damping | None, fields["damping"]),
+        "initial": (
+            tuple[initial, ...] if initial else tuple[()],  # type: ignore[valid-type]
+            Field(default=(), description=fields["initial"].description),
+        ),
     }
     return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
 
@@ -238,6 +251,19 @@ def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None =
     if len(classes) > 1:
         table = Annotated[table, Field(discriminator=key)]
     return Annotated[table, BeforeValidator(with_default(key, default))] if default in kinds else table
+
+
+def one_or_more(table: Any) -> Any:
+    """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
+    return Annotated[tuple[table, ...], OneOrMore()]  # type: ignore[valid-type]
+
+
+class OneOrMore:
+    """Tells editors, by the JSON Schema, that one table will do."""
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        several = handler(core_schema)
+        return {"anyOf": [several["items"], several]}
 
 
 def with_default(key: str, value: str | None) -> Callable[[Any], Any]:

@@ -15,7 +15,9 @@ from dem_cli.case.schema import Case
 HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
 NUMBERS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
 FIRST = ("kind", "law", "id")  # keys that tell what a table is
-SEVERAL = ("materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "monitor")
+SEVERAL = (
+    "materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "motion", "monitor",
+)  # fmt: skip
 
 
 def case_text(case: Case) -> str:

@@ -13,11 +13,14 @@ ANYTHING = None
 ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
     "bench": {"api", "case", "contact", "kernels", "laws", "limit", "model", "output", "post", "solve"},
-    "api": {"case", "model", "structures", "laws", "solve", "output.record", "calibrate.table"},
+    "api": {"case", "model", "structures", "laws", "solve", "output.record", "calibrate.table", "motion"},
     "case": {"case"},
-    "post": {"output", "model"},
+    "post": {"output", "model", "motion"},
     "output": {"model"},
-    "solve": {"limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema"},
+    "motion": {"case.base", "case.schema"},
+    "solve": {
+        "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema",
+    },
     "calibrate": {"laws", "case.base", "case.schema"},
     "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
     "contact": {"model", "geometry", "kernels"},

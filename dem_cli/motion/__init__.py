@@ -1,0 +1,1 @@
+"""Ground motion: records, pulses and artificial accelerograms, and their response spectra."""

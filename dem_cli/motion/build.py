@@ -1,0 +1,158 @@
+"""From the [motion] tables of a case to `Motion` objects."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dem_cli.case.base import Pair
+from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.motion import pulses
+from dem_cli.motion.motion import Motion, Shape, moving_at_the_end
+from dem_cli.motion.read import RecordError, read_series
+from dem_cli.motion.record import Record, record
+from dem_cli.motion.table import (
+    ArtificialTable,
+    HarmonicTable,
+    MotionTable,
+    NoMotion,
+    PulseTable,
+    RecordTable,
+)
+from dem_cli.motion.units import STANDARD_GRAVITY, UNITS
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+STRONGEST, WEAKEST = 10.0, 1e-4  # g: beyond these a record most likely has another unit
+LIKELY = (0.005, 3.0)  # g: peaks of a unit that is proposed instead
+
+
+def motions_of(case: Case) -> list[Motion]:
+    """The motions of a case, one for each [[motion]] but those of kind "none"; of a suite the record `number`.
+
+    Motions of the same block add up. Raises CaseError on a record that cannot be used.
+    """
+    return [
+        suite[table.number - 1 if isinstance(table, ArtificialTable) else 0]
+        for table, suite in zip(_moving(case), suites_of(case))
+    ]
+
+
+def suites_of(case: Case) -> list[list[Motion]]:
+    """All records of each [[motion]] but those of kind "none": one, or `count` of an artificial one.
+
+    Raises CaseError on a record that cannot be used.
+    """
+    return [_suite(table, i, case.seed) for i, table in enumerate(case.motion) if not isinstance(table, NoMotion)]
+
+
+def check(case: Case) -> list[CaseProblem]:
+    """Reads every record: warnings about them. Raises CaseError on one that cannot be used."""
+    found = []
+    for i, table in enumerate(case.motion):
+        if isinstance(table, RecordTable):
+            for motion in _suite(table, i, case.seed):
+                found += [CaseProblem(("motion", i, "file"), warning) for warning in motion.warnings]
+    return found
+
+
+def _moving(case: Case) -> list[MotionTable]:
+    return [table for table in case.motion if not isinstance(table, NoMotion)]
+
+
+def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
+    """The records of one table, with its direction, blocks and start."""
+    factor = 1.0
+    shapes: list[Shape]
+    if isinstance(table, PulseTable):
+        shapes, name = [_pulse(table)], table.shape
+    elif isinstance(table, HarmonicTable):
+        shapes, name = [_harmonic(table)], f"{table.frequency:g} Hz"
+    elif isinstance(table, RecordTable):
+        shape = _record(table, i_table)
+        shapes, name = [shape], Path(table.file).stem
+        factor = table.peak / shape.peak if table.peak is not None else table.scale or 1.0
+    else:
+        assert isinstance(table, ArtificialTable)
+        from dem_cli.motion.synthetic import suite
+
+        chosen = seed if table.seed is None else table.seed
+        shapes, name, factor = [*suite(table, chosen, i_table)], "artificial", table.scale
+    along = _unit(table.direction)
+    motions = []
+    for k, shape in enumerate(shapes, 1):
+        title = f"{name} {k}" if isinstance(table, ArtificialTable) else name
+        motion = Motion(shape, along, table.blocks, table.start, factor, title)
+        warning = moving_at_the_end(motion) if isinstance(table, RecordTable) else ""
+        advice = "" if getattr(table, "baseline", False) is not False else "; baseline = true takes a drift out"
+        motions.append(Motion(shape, along, table.blocks, table.start, factor, title, (warning + advice,))
+                       if warning else motion)
+    return motions
+
+
+def _unit(direction: Pair) -> Pair:
+    length = math.hypot(*direction)
+    return direction[0] / length, direction[1] / length
+
+
+def _pulse(table: PulseTable) -> Shape:
+    if table.shape == "impulse":
+        assert table.duration is not None
+        return pulses.impulse(table.amplitude, table.duration, table.rebound)
+    assert table.frequency is not None
+    if table.shape == "ricker":
+        return pulses.Ricker(table.amplitude, table.frequency)
+    cycles = 0.5 if table.shape == "half-sine" else 1.0
+    phase = 0.5 * math.pi if table.shape == "cosine" else 0.0
+    return pulses.Wave(table.amplitude, table.frequency, cycles / table.frequency, phase)
+
+
+def _harmonic(table: HarmonicTable) -> Shape:
+    ramp = min(table.ramp / table.frequency, 0.5 * table.length)
+    return pulses.Wave(table.amplitude, table.frequency, table.length, math.radians(table.phase_deg), ramp)
+
+
+def _record(table: RecordTable, i_table: int) -> Record:
+    """Read, convert, correct; the factor of `scale` or `peak` is left to the motion. Raises CaseError."""
+    try:
+        series = read_series(Path(table.file), table.step, table.column, table.uneven)
+    except RecordError as error:
+        raise CaseError([CaseProblem(("motion", i_table, "file"), str(error))]) from None
+    unit = _unit_of(table, series.quantity, series.unit, i_table)
+    made = record(series.times, UNITS[table.quantity][unit] * series.values, table.quantity, table.baseline_order)
+    if made.peak == 0.0:
+        message = f"{Path(table.file).name}: no motion, every {table.quantity} is the same"
+        raise CaseError([CaseProblem(("motion", i_table, "file"), message)])
+    _check_peak(table, unit, made.peak / STANDARD_GRAVITY, i_table)
+    return made
+
+
+def _unit_of(table: RecordTable, quantity: str | None, unit: str | None, i_table: int) -> str:
+    """The unit of a record, as the case or else the file says. Raises CaseError where they disagree or are silent."""
+    name, allowed = Path(table.file).name, ", ".join(f"'{unit}'" for unit in UNITS[table.quantity])
+    if quantity is not None and quantity != table.quantity:
+        message = f"'{table.quantity}' is not allowed; {name} says that it holds {quantity}"
+        raise CaseError([CaseProblem(("motion", i_table, "quantity"), message)])
+    if table.unit is None and unit is None:
+        message = f"missing; {name} does not say what its values are in (allowed: {allowed})"
+        raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
+    factors = UNITS[table.quantity]
+    if table.unit is not None and unit is not None and factors[table.unit] != factors[unit]:
+        message = f"'{table.unit}' is not allowed; {name} says that its values are in {unit}"
+        raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
+    return table.unit or unit  # type: ignore[return-value]
+
+
+def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> None:
+    """Raises CaseError where the peak [g] is that of no earthquake, unless scale or peak is given."""
+    if table.scale is not None or table.peak is not None or WEAKEST <= peak <= STRONGEST:
+        return
+    message = f"'{unit}' gives a peak acceleration of {peak:.3g} g"
+    factors = UNITS[table.quantity]
+    others = {other: peak * factor / factors[unit] for other, factor in factors.items()}
+    likely = [f"'{other}' would give {g:.3g} g" for other, g in others.items() if LIKELY[0] <= g <= LIKELY[1]]
+    message += f"; {' and '.join(likely)}" if likely else ""
+    message += "; if it is meant, add scale = 1.0"
+    raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])

@@ -1,0 +1,97 @@
+"""A sampled history as a piecewise polynomial: its integrals are exact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
+
+QUANTITIES = ("acceleration", "velocity", "displacement")
+BASELINE = 1  # order for baseline = true
+
+
+class Record:
+    """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Shape`).
+
+    times (n,) are the samples [s], the first one 0.
+    """
+
+    def __init__(self, acceleration: PPoly):
+        self.times = acceleration.x
+        self.duration = float(self.times[-1])
+        self.step = float(np.diff(self.times).min())
+        self.polynomials = [acceleration, acceleration.antiderivative(1), acceleration.antiderivative(2)]
+        self.peak = largest(acceleration)
+
+    def acceleration(self, t: np.ndarray) -> np.ndarray:
+        return self.polynomials[0](t)
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        return self.polynomials[1](t)
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        return self.polynomials[2](t)
+
+
+def record(
+    times: np.ndarray, values: np.ndarray, quantity: str = "acceleration", baseline: int | None = None
+) -> Record:
+    """A record from samples at increasing times, even or not; the first time becomes 0.
+
+    acceleration  linear between the samples
+    velocity      a cubic spline (not-a-knot) through the samples, less the first of them: acceleration is quadratic
+    displacement  a cubic spline through the samples, less the first, that starts with velocity 0: acceleration linear
+    baseline      order of a polynomial taken from the acceleration, see `corrected`; None for none
+
+    times [s], values [m/s2, m/s or m], both (n,), n ≥ 2.
+    """
+    from scipy.interpolate import CubicSpline, PPoly
+
+    times, values = np.asarray(times, float) - times[0], np.asarray(values, float)
+    if quantity == "acceleration":
+        acceleration = PPoly(np.stack((np.diff(values) / np.diff(times), values[:-1])), times)
+    elif quantity == "velocity":
+        acceleration = CubicSpline(times, values - values[0]).derivative(1)
+    else:
+        acceleration = CubicSpline(times, values - values[0], bc_type=((1, 0.0), "not-a-knot")).derivative(2)
+    return Record(acceleration if baseline is None else corrected(acceleration, baseline))
+
+
+def corrected(acceleration: PPoly, order: int) -> PPoly:
+    """`acceleration` less the polynomial of this order whose integral comes closest to the velocity.
+
+    Closest in the sense of least squares over the samples, each with the time around it as its weight. The integral
+    is 0 at the start, so that the corrected velocity starts at 0 too; it ends near 0, not at it.
+    """
+    from numpy.polynomial import Polynomial
+    from scipy.interpolate import PPoly
+
+    times = acceleration.x
+    end = times[-1]
+    powers = np.arange(1, order + 2)
+    weights = np.sqrt(np.gradient(times))
+    basis = (times[:, None] / end) ** powers
+    velocity = acceleration.antiderivative()(times)
+    fitted = np.linalg.lstsq(weights[:, None] * basis, weights * velocity, rcond=None)[0]
+    drift = Polynomial([0.0, *(fitted / end**powers)]).deriv()  # of the acceleration
+    taylor, factorial = [], 1.0  # about the start of each piece, lowest power first
+    for k in range(order + 1):
+        factorial *= max(k, 1)
+        taylor.append((drift.deriv(k) if k else drift)(times[:-1]) / factorial)
+    rows = max(order + 1, acceleration.c.shape[0])
+    pieces = np.zeros((rows, len(times) - 1))
+    pieces[rows - acceleration.c.shape[0] :] = acceleration.c
+    pieces[rows - order - 1 :] -= np.array(taylor[::-1])
+    return PPoly(pieces, times)
+
+
+def largest(polynomial: PPoly) -> float:
+    """Largest absolute value of a piecewise polynomial."""
+    values = [*polynomial.c[-1], float(polynomial(polynomial.x[-1]))]
+    if polynomial.c.shape[0] > 2:  # higher than linear: crests between the samples
+        crests = polynomial.derivative().roots(discontinuity=False, extrapolate=False)
+        values += [*polynomial(crests[np.isfinite(crests)])]
+    return float(np.abs(values).max())

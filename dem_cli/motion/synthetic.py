@@ -1,0 +1,152 @@
+"""Artificial accelerograms that fit a response spectrum, in the manner of SIMQKE.
+
+Sources: D. A. Gasparini and E. H. Vanmarcke, Simulated earthquake motions compatible with prescribed response spectra,
+MIT R76-4 (1976); E. H. Vanmarcke, Structural response to earthquakes (1976), for the power spectrum of a response
+spectrum. The scheme and its numbers: docs/motion.md.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.motion.eurocode import Target, eurocode, listed
+from dem_cli.motion.record import Record, record
+from dem_cli.motion.spectrum import Filter, oscillator, pseudo_accelerations
+
+if TYPE_CHECKING:
+    from dem_cli.motion.table import ArtificialTable
+
+LOWEST, HIGHEST = 0.10, 35.0  # Hz: sines of the motion
+EQUIVALENT = 10.0  # s: of stationary motion that the power spectrum is for
+QUANTILE = 0.5  # chance that the peak response stays below the spectrum
+CONTROLLED = (0.03, 4.0)  # s: periods at which the spectrum is corrected
+CONTROLS = 80
+LEAST = 0.92  # of the target: lower places count in the choice of the best iteration (Eurocode 8 allows 0.90)
+END_LEVEL = 0.05  # of the envelope at the end of the decay
+
+
+def target_of(table: ArtificialTable) -> Target:
+    """The spectrum that a table asks for."""
+    if isinstance(table.spectrum, str):
+        assert table.soil is not None
+        assert table.ag is not None
+        return eurocode(table.spectrum, table.soil, table.ag, table.damping)
+    return listed(table.spectrum, table.damping)
+
+
+def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Record]:
+    """`count` records; record i depends on (seed, stream, i) and on nothing else that is random."""
+    count = round(table.duration / table.time_step)
+    times = table.duration / count * np.arange(count + 1)
+    histories = accelerograms(
+        target_of(table), times, envelope(times, table.rise, table.plateau), table.iterations,
+        [np.random.default_rng([seed, stream, i]) for i in range(table.count)],
+    )  # fmt: skip
+    return [record(times, history) for history in histories]
+
+
+def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
+    """(t/rise)² up to `rise`, 1 for `plateau`, then an exponential down to 0.05 at the last of the times, (n,)."""
+    end = rise + plateau
+    decay = -np.log(END_LEVEL) / max(times[-1] - end, 1e-9)
+    return np.where(times < end, np.minimum(times / rise, 1.0) ** 2, np.exp(-decay * np.maximum(times - end, 0.0)))
+
+
+def power_spectrum(target: Target, omegas: np.ndarray) -> np.ndarray:
+    """One-sided power spectrum G [m2/s3] of a stationary motion whose response spectrum is the target, (n,).
+
+    G(ω) = [Sa²/r² − ∫₀^ω G dω] / [ω (π/(4ξ') − 1)], ξ' = ξ/(1 − exp(−2ξωs)), s = 10 s, r the peak factor with
+    probability p = 0.5 (Vanmarcke 1976). `omegas` even and increasing [rad/s].
+    """
+    damping = target.damping / (1.0 - np.exp(-2.0 * target.damping * omegas * EQUIVALENT))
+    crossings = omegas * EQUIVALENT / (2.0 * np.pi) / -np.log(QUANTILE)
+    bandwidth = (4.0 * damping / np.pi) ** 0.6
+    inner = 2.0 * crossings * (1.0 - np.exp(-bandwidth * np.sqrt(np.pi * np.log(np.maximum(2.0 * crossings, 1.01)))))
+    peak_factor = np.sqrt(2.0 * np.log(np.maximum(inner, 1.1)))
+    variances = (target(2.0 * np.pi / omegas) / peak_factor) ** 2
+    widths = omegas * (np.pi / (4.0 * damping) - 1.0)
+    power, below, step = np.empty(len(omegas)), 0.0, omegas[1] - omegas[0]
+    for k in range(len(omegas)):
+        power[k] = max((variances[k] - below) / widths[k], 0.0)
+        below += power[k] * step
+    return power
+
+
+def accelerograms(
+    target: Target, times: np.ndarray, shape: np.ndarray, iterations: int, generators: list[np.random.Generator]
+) -> np.ndarray:
+    """One history per generator [m/s2], (count, n), each from rest to rest where it started.
+
+    Sines with the power of the target and random phases, times the envelope `shape` (n,). Then `iterations` times
+    every amplitude is multiplied by the target over the spectrum reached at its frequency; the best of all is kept,
+    and where its peak is below that of the target it is raised to it as a whole.
+    """
+    step, n = times[1] - times[0], len(times) - 1
+    orders = np.arange(int(np.ceil(LOWEST * times[-1])), int(HIGHEST * times[-1]) + 1)
+    orders = orders[orders <= n // 2 - 1]
+    omegas = 2.0 * np.pi / times[-1] * orders
+    amplitudes = np.sqrt(2.0 * power_spectrum(target, omegas) * (omegas[1] - omegas[0]))
+    phases = np.array([generator.uniform(0.0, 2.0 * np.pi, len(orders)) for generator in generators])
+    unit = np.exp(1j * phases)
+    controls, filters, wanted = _controls(target, step)
+    rest = _at_rest(times, shape)
+    strengths = np.tile(amplitudes, (len(generators), 1))
+    best, least = np.zeros((len(generators), n + 1)), np.full(len(generators), np.inf)
+    for i in range(iterations + 1):
+        histories = rest(shape * _sum_of_sines(strengths * unit, orders, n))
+        ratios = pseudo_accelerations(histories, filters, controls) / wanted
+        badness = _badness(ratios)
+        better = badness < least
+        best[better], least[better] = histories[better], badness[better]
+        if i < iterations:
+            strengths = strengths / _at(omegas, controls, ratios)
+    peaks = np.abs(best).max(axis=1)
+    return best * np.maximum(1.0, target.ground / peaks)[:, None]
+
+
+def _controls(target: Target, step: float) -> tuple[np.ndarray, list[Filter], np.ndarray]:
+    """Circular frequencies at which the spectrum is corrected, their oscillators, and the target there."""
+    shortest = max(CONTROLLED[0], 2.0 * step)
+    omegas = 2.0 * np.pi / np.geomspace(shortest, CONTROLLED[1], CONTROLS)[::-1]
+    return omegas, [oscillator(w, target.damping, step) for w in omegas], target(2.0 * np.pi / omegas)
+
+
+def _sum_of_sines(coefficients: np.ndarray, orders: np.ndarray, n: int) -> np.ndarray:
+    """Σ Re(c exp(i 2π k j/n)) at j = 0 … n; the last sample is the first again, (count, n + 1)."""
+    spectrum = np.zeros((len(coefficients), n // 2 + 1), complex)
+    spectrum[:, orders] = coefficients
+    one = np.fft.irfft(spectrum, n) * (0.5 * n)
+    return np.concatenate((one, one[:, :1]), axis=1)
+
+
+def _at_rest(times: np.ndarray, shape: np.ndarray):
+    """A function that takes from histories the two multiples of the envelope, plain and times t, that leave no
+    velocity and no displacement at the end (of an acceleration that is linear between samples)."""
+    step = times[1] - times[0]
+    to_velocity = np.full(len(times), step)
+    to_velocity[[0, -1]] *= 0.5
+    to_displacement = to_velocity * (times[-1] - times)
+    to_displacement[0] -= step**2 / 6.0
+    to_displacement[-1] += step**2 / 6.0
+    functionals = np.stack((to_velocity, to_displacement))
+    forms = np.stack((shape, shape * times / times[-1]))
+    solve = np.linalg.inv(functionals @ forms.T)
+
+    def corrected(histories: np.ndarray) -> np.ndarray:
+        for _ in range(2):  # the second time takes the rounding of the first
+            histories = histories - (histories @ functionals.T @ solve.T) @ forms
+        return histories
+
+    return corrected
+
+
+def _at(omegas: np.ndarray, controls: np.ndarray, ratios: np.ndarray) -> np.ndarray:
+    """Ratios of the spectrum, interpolated to the frequencies of the sines, (count, n_sines)."""
+    return np.stack([np.interp(np.log(omegas), np.log(controls), row) for row in ratios])
+
+
+def _badness(ratios: np.ndarray) -> np.ndarray:
+    """Root mean square of log ratios, with places below what Eurocode 8 allows counted on top, (count,)."""
+    return np.sqrt((np.log(ratios) ** 2).mean(axis=1)) + np.maximum(LEAST - ratios, 0.0).max(axis=1)

@@ -1,0 +1,226 @@
+"""[motion]: how supports move. One table, or several [[motion]], which add up."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
+from dem_cli.motion.units import UNITS
+
+Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
+Period = tuple[NonNegative, Positive]  # period [s], acceleration [m/s2]
+PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("impulse",)}
+EC8_KEYS = ("soil", "ag")
+
+
+class MotionTable(CaseModel):
+    """What every kind of motion accepts."""
+
+    direction: Pair = Field(default=(1.0, 0.0), description="of positive values; its length does not matter")
+    blocks: tuple[str, ...] = Field(default=(), description="ids of the fixed blocks that move; default: all of them")
+    start: NonNegative = Field(default=0.0, description="time at which it begins [s]")
+
+    @model_validator(mode="after")
+    def _has_direction(self) -> MotionTable:
+        if self.direction == (0.0, 0.0):
+            raise KeyProblem("[0, 0] is not allowed; must point somewhere", "direction")
+        return self
+
+
+class PulseTable(MotionTable):
+    """[motion] kind = "pulse": one cycle or one blow."""
+
+    kind: Literal["pulse"] = "pulse"
+    shape: Literal["sine", "cosine", "half-sine", "ricker", "impulse"] = Field(
+        default="sine",
+        description="one cycle of sine or cosine, half a cycle of sine, Ricker's wavelet, or a constant for a while",
+    )
+    amplitude: float = Field(description="peak acceleration of the base [m/s2]")
+    frequency: Positive | None = Field(default=None, description="[Hz]; of ricker, where its spectrum peaks")
+    duration: Positive | None = Field(default=None, description="of impulse: how long it lasts [s]")
+    rebound: NonNegative = Field(
+        default=0.0,
+        description="of impulse: then −rebound · amplitude until the base stands still; 0: it keeps its velocity",
+    )
+
+    @model_validator(mode="after")
+    def _right_keys(self) -> PulseTable:
+        _some(self.amplitude, "amplitude")
+        needed = next(key for key, shapes in PULSES.items() if self.shape in shapes)
+        other = "duration" if needed == "frequency" else "frequency"
+        if getattr(self, needed) is None:
+            raise KeyProblem(f"missing; shape = '{self.shape}' needs it: a number > 0", needed)
+        if getattr(self, other) is not None:
+            raise KeyProblem(f"not allowed with shape = '{self.shape}', which has a {needed}", other)
+        if self.rebound and self.shape != "impulse":
+            raise KeyProblem(f"not allowed with shape = '{self.shape}'; only 'impulse' has one", "rebound")
+        return self
+
+
+class HarmonicTable(MotionTable):
+    """[motion] kind = "harmonic": a sine of the given length."""
+
+    kind: Literal["harmonic"] = "harmonic"
+    amplitude: float = Field(description="peak acceleration of the base [m/s2]")
+    frequency: Positive = Field(description="[Hz]")
+    cycles: Positive | None = Field(default=None, description="number of cycles")
+    duration: Positive | None = Field(default=None, description="instead of cycles: how long it lasts [s]")
+    phase_deg: float = Field(default=0.0, description="0: a sine; 90: a cosine, after which the base has not drifted")
+    ramp: NonNegative = Field(default=0.0, description="cycles over which it rises at the start and falls at the end")
+
+    @model_validator(mode="after")
+    def _one_length(self) -> HarmonicTable:
+        _some(self.amplitude, "amplitude")
+        if (self.cycles is None) == (self.duration is None):
+            found = "'cycles' and 'duration' are" if self.cycles else "neither 'cycles' nor 'duration' is"
+            raise ValueError(f"{found} given; a harmonic motion has one of them")
+        if 2.0 * self.ramp > self.length * self.frequency * (1.0 + 1e-9):
+            most = 0.5 * self.length * self.frequency
+            raise KeyProblem(f"{self.ramp:g} is not allowed; must be at most half of all cycles, {most:g}", "ramp")
+        return self
+
+    @property
+    def length(self) -> float:
+        """How long it lasts [s]."""
+        return self.duration if self.duration is not None else self.cycles / self.frequency  # type: ignore[operator]
+
+
+class RecordTable(MotionTable):
+    """[motion] kind = "record": what was measured, or computed elsewhere."""
+
+    kind: Literal["record"] = "record"
+    file: Annotated[str, Field(min_length=1)] = Field(
+        description="columns of time [s] and value (CSV), or a PEER file (AT2); a relative path starts at the case file"
+    )
+    quantity: Literal["acceleration", "velocity", "displacement"] = Field(
+        default="acceleration", description="what the values are"
+    )
+    unit: Unit | None = Field(default=None, description="of the values; may be left out where the file says it (AT2)")
+    scale: float | None = Field(default=None, description="factor on the values; default: 1")
+    peak: Positive | None = Field(default=None, description="instead of scale: the peak acceleration wanted [m/s2]")
+    baseline: bool | Annotated[int, Field(ge=0, le=3)] = Field(
+        default=False, description="take out a polynomial of this order of the acceleration; true: 1"
+    )
+    step: Positive | None = Field(default=None, description="time step of a file that has values only [s]")
+    column: Annotated[int, Field(ge=1)] | None = Field(
+        default=None, description="number of the column of values, from 1; may be left out when there is no choice"
+    )
+    uneven: bool = Field(default=False, description="time steps that differ are meant; no gaps are looked for")
+
+    @field_validator("file")
+    @classmethod
+    def _absolute(cls, file: str, info: ValidationInfo) -> str:
+        """Paths of a case that was loaded do not depend on where it lies."""
+        folder = (info.context or {}).get("folder")
+        path = Path(file).expanduser()
+        if folder is None or path.is_absolute():
+            return str(path)
+        return str((Path(folder).absolute() / path).resolve())
+
+    @model_validator(mode="after")
+    def _consistent(self) -> RecordTable:
+        if self.scale is not None and self.peak is not None:
+            raise ValueError("'scale' and 'peak' are given; a record has one of them, or none")
+        if self.scale == 0.0:
+            raise KeyProblem("0 is not allowed; must be another number", "scale")
+        units = UNITS[self.quantity]
+        if self.unit is not None and self.unit not in units:
+            allowed = ", ".join(f"'{unit}'" for unit in units)
+            raise KeyProblem(f"'{self.unit}' is not a unit of {self.quantity} (allowed: {allowed})", "unit")
+        if not Path(self.file).is_file():
+            raise KeyProblem(_no_file(Path(self.file)), "file")
+        return self
+
+    @property
+    def baseline_order(self) -> int | None:
+        """Order of the polynomial to take out; None: nothing is taken out."""
+        return (1 if self.baseline else None) if isinstance(self.baseline, bool) else self.baseline
+
+
+class ArtificialTable(MotionTable):
+    """[motion] kind = "artificial": made to fit a response spectrum."""
+
+    kind: Literal["artificial"] = "artificial"
+    spectrum: Literal["EC8-1", "EC8-2"] | Annotated[tuple[Period, ...], Field(min_length=2)] = Field(
+        description="elastic spectrum of Eurocode 8, type 1 or 2, or a list of [period [s], acceleration [m/s2]]"
+    )
+    soil: Literal["A", "B", "C", "D", "E"] | None = Field(default=None, description="ground type of Eurocode 8")
+    ag: Positive | None = Field(default=None, description="ground acceleration on rock [m/s2], with Eurocode 8")
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(default=0.05, description="ratio that the spectrum is for")
+    duration: Positive = Field(default=20.0, description="how long each record lasts [s]")
+    rise: Positive = Field(default=2.0, description="how long it grows [s], with the square of time")
+    plateau: Positive = Field(default=10.0, description="how long it stays strong [s]; Eurocode 8 wants 10 s")
+    time_step: Positive = Field(default=0.01, description="of the samples [s]")
+    count: Annotated[int, Field(ge=1, le=1000)] = Field(default=1, description="number of records in the suite")
+    number: Annotated[int, Field(ge=1)] = Field(default=1, description="which of them a time history uses, from 1")
+    iterations: Annotated[int, Field(ge=0, le=200)] = Field(default=12, description="corrections towards the spectrum")
+    seed: Annotated[int, Field(ge=0)] | None = Field(default=None, description="default: the seed of the case")
+    first_period: Positive | None = Field(
+        default=None, description="T1 of the structure [s]: Eurocode 8 judges a suite from 0.2 T1 to 2 T1"
+    )
+    scale: float = Field(default=1.0, description="factor on the finished records")
+
+    @field_validator("spectrum")
+    @classmethod
+    def _rising_periods(cls, spectrum: str | tuple[Period, ...]) -> str | tuple[Period, ...]:
+        if isinstance(spectrum, tuple):
+            for i in range(1, len(spectrum)):
+                if spectrum[i][0] <= spectrum[i - 1][0]:
+                    raise KeyProblem(f"{spectrum[i][0]:g} is not allowed; periods increase", i, 0)
+        return spectrum
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ArtificialTable:
+        for key in EC8_KEYS:
+            if isinstance(self.spectrum, str) and getattr(self, key) is None:
+                raise KeyProblem(f"missing; spectrum = '{self.spectrum}' needs it", key)
+            if not isinstance(self.spectrum, str) and getattr(self, key) is not None:
+                raise KeyProblem("not allowed beside a spectrum given as a list", key)
+        _some(self.scale, "scale")
+        if self.number > self.count:
+            raise KeyProblem(f"{self.number} is not allowed; must be at most count = {self.count}", "number")
+        if self.rise + self.plateau > self.duration:
+            room = f"rise + plateau = {self.rise + self.plateau:g} s is longer than that"
+            raise KeyProblem(f"{self.duration:g} s is not allowed; {room}", "duration")
+        if self.time_step > self.duration / 100.0 or self.time_step > 0.02:
+            most = min(0.02, self.duration / 100.0)
+            raise KeyProblem(f"{self.time_step:g} s is not allowed; must be at most {most:g}", "time_step")
+        if self.duration / self.time_step > 200_000:
+            raise KeyProblem(f"{self.time_step:g} s is not allowed; that makes more than 200,000 samples", "time_step")
+        return self
+
+
+class NoMotion(MotionTable):
+    """[motion] kind = "none": supports rest."""
+
+    kind: Literal["none"] = "none"
+
+
+MOTIONS: dict[str, type[MotionTable]] = {
+    "pulse": PulseTable,
+    "harmonic": HarmonicTable,
+    "record": RecordTable,
+    "artificial": ArtificialTable,
+    "none": NoMotion,
+}
+
+
+def _some(value: float, key: str) -> None:
+    if value == 0.0:
+        raise KeyProblem("0 is not allowed; must be another number (kind = 'none' is no motion)", key)
+
+
+def _no_file(path: Path) -> str:
+    """`no such file: /x/east.csv, did you mean 'east.csv'?`"""
+    if path.is_dir():
+        return f"{path} is a folder; a record is a file"
+    try:
+        files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
+    except OSError:
+        return f"no such file: {path} (there is no folder '{path.parent}')"
+    close = get_close_matches(path.name, files, 1)
+    return f"no such file: {path}" + (f", did you mean '{close[0]}'?" if close else "")
