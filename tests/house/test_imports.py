@@ -19,7 +19,8 @@ ALLOWED: dict[str, set[str] | None] = {
     "output": {"model"},
     "motion": {"case.base", "case.schema"},
     "solve": {
-        "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base", "case.schema",
+        "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base",
+        "case.schema",
     },
     "calibrate": {"laws", "case.base", "case.schema"},
     "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
