@@ -14,8 +14,9 @@ from dem_cli.cli import console
 @click.option(
     "-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Default: beside the results."
 )
-def command(folder: Path, output: Path | None) -> None:
-    """Draw capacity.png, collapse.png and energy.png from the results in DIR."""
+@click.option("--animate", is_flag=True, help="Draw collapse.gif as well.")
+def command(folder: Path, output: Path | None, animate: bool) -> None:
+    """Draw capacity.png, histories.png, collapse.png and energy.png from the results in DIR: those that it has."""
     from dem_cli.output.folder import write_error
     from dem_cli.post.plots import draw_all
 
@@ -23,7 +24,7 @@ def command(folder: Path, output: Path | None) -> None:
     try:
         if output is not None:
             output.mkdir(parents=True, exist_ok=True)
-        written = draw_all(folder, target)
+        written = draw_all(folder, target, animate)
     except OSError as error:
         raise write_error(error, target) from None
     for path in written:

@@ -19,7 +19,7 @@ import numpy as np
 from dem_cli.output.columns import Columns
 from dem_cli.output.record import Samples
 
-UNITS = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m", "rotation": "rad", "opening": "m", "slip": "m"}
+UNITS = {"displacement": "m", "rotation": "rad", "opening": "m", "slip": "m", "velocity": "m/s", "acceleration": "m/s2"}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
 _TEXT = h5py.string_dtype()

@@ -11,6 +11,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, Frame
 from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import measures, style
 
 MECHANISM = "mechanism"  # of limit analysis
@@ -24,8 +25,10 @@ def draw_collapse(results: Results, path: Path) -> None:
     model, panels = results.model, _panels(results)
     corners = [rest_vertices(model)]
     drawn = []
-    for name, frame in panels:
-        scale = measures.visible_scale(model, frame)
+    scales = [measures.visible_scale(model, frame) for _, frame in panels]
+    if results.kind in IN_SECONDS:  # the same structure before and after
+        scales = [min(scales)] * len(scales)
+    for (name, frame), scale in zip(panels, scales, strict=True):
         shown = measures.scaled(model, frame, scale)
         corners.append(placed_vertices(model, shown.positions, shown.orientations))
         drawn.append((name, frame, shown, scale))
@@ -35,7 +38,7 @@ def draw_collapse(results: Results, path: Path) -> None:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, (name, frame, shown, scale) in zip(axes, drawn, strict=True):
             _draw_panel(axis, model, shown, scale, low, high)
-            axis.set_title(_panel_title(name, frame, scale), fontsize=10, fontweight="normal")
+            axis.set_title(_panel_title(name, frame, scale, results.kind), fontsize=10, fontweight="normal")
         _legend(figure, any(len(measures.chains(model, measures.resultants(f.contacts))) for _, f in panels))
         style.headline(figure, results.summary)
 
@@ -47,6 +50,8 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
         return []
     if results.summary.get("kind") == "limit":
         return [(f"{frame.stage} {MECHANISM}", frame) for frame in frames]
+    if results.kind in IN_SECONDS:
+        return _instants(results)
     last = len(frames) - 1
     first = _failure_frame(results)
     if first is None:
@@ -61,6 +66,18 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
     return panels
 
 
+def _instants(results: Results) -> list[tuple[str, Frame]]:
+    """Of a time history: the start, the collapse or else the largest displacement, and the end."""
+    frames, at = results.frames, results.summary.get("collapse_time")
+    last = len(frames) - 1
+    if at is not None:
+        name, middle = "collapse", int(np.abs([frame.time - at for frame in frames]).argmin())
+    else:
+        name, middle = "farthest", int(np.argmax([frame.displacement for frame in frames]))
+    chosen = {0: "start"} | {middle: name} | {last: "end"}
+    return [(text, frames[i]) for i, text in sorted(chosen.items())]
+
+
 def _failure_frame(results: Results) -> int | None:
     """The frame on the way into failure, under the lowest load that the structure did not stand."""
     if results.summary.get("failure_load") is None:
@@ -69,12 +86,13 @@ def _failure_frame(results: Results) -> int | None:
     return min(range(len(results.frames)), key=lambda i: abs(results.frames[i].load - high))
 
 
-def _panel_title(name: str, frame: Frame, scale: float) -> str:
+def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
     if name.endswith(MECHANISM):
         return f"{name}: λ = {frame.load:.4g}\nof any size: rigid blocks have no displacement at failure"
     factor, unit = style.length_unit(frame.displacement)
+    instant = f"{frame.time:.3g} s" if kind in IN_SECONDS else f"λ = {frame.load:.4g}"
     drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
-    return f"{name}: λ = {frame.load:.4g}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
+    return f"{name}: {instant}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
 
 
 def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

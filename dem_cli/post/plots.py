@@ -11,22 +11,30 @@ from dem_cli.output.reader import Results, read
 from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy
+from dem_cli.post.histories import draw_histories
 
 PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "capacity.png": draw_capacity,
+    "histories.png": draw_histories,
     "collapse.png": draw_collapse,
     "energy.png": draw_energy,
 }
+ANIMATION = "collapse.gif"
 
 
-def draw_all(folder: Path, output: Path) -> list[Path]:
-    """Draw every picture that the results in `folder` allow; returns the files written."""
+def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
+    """Draw every picture that the results in `folder` allow; returns the files written. An animation takes longer."""
     results = read(folder)
     written = []
     for name, draw in PICTURES.items():
         if _has_data(name, results):
             draw(results, output / name)
             written.append(output / name)
+    if animate:
+        from dem_cli.post.animation import draw_animation
+
+        draw_animation(results, output / ANIMATION)
+        written.append(output / ANIMATION)
     return written
 
 
@@ -35,6 +43,8 @@ def _has_data(name: str, results: Results) -> bool:
     no_rows = np.zeros(0)
     if name == "collapse.png":
         return len(results.frames) > 0
+    if name == "histories.png":
+        return results.series is not None and len(results.series.time) > 0
     if name == "capacity.png":
         return bool((results.history.get("load", no_rows) != 0.0).any())
     return len(results.history.get("load", no_rows)) > 0

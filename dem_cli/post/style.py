@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
 STATE_COLOURS = {"open": "#c51b7d", "sticking": "#9aa3ad", "sliding": "#e08214"}
 STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8c5b", "collapse": "#c0392b"}
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
+COLLAPSE = "#c0392b"
 DPI = 160
 
 _STYLE: Any = {
@@ -44,17 +45,29 @@ _STYLE: Any = {
 @contextmanager
 def figure(path: Path, **options: Any) -> Iterator[Any]:
     """A new figure that is saved to `path` at the end of the block."""
+    with canvas() as make:
+        drawn = make(**options)
+        yield drawn
+        drawn.savefig(path, dpi=DPI, metadata={"Software": None})
+
+
+@contextmanager
+def canvas() -> Iterator[Callable[..., Any]]:
+    """Makes figures in our style, to be drawn inside the block."""
     try:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
-    with matplotlib.rc_context(_STYLE):
+
+    def make(**options: Any) -> Any:
         drawn = Figure(layout="constrained", **options)
         FigureCanvasAgg(drawn)
-        yield drawn
-        drawn.savefig(path, dpi=DPI, metadata={"Software": None})
+        return drawn
+
+    with matplotlib.rc_context(_STYLE):
+        yield make
 
 
 def headline(figure: Any, summary: Mapping[str, Any]) -> None:
@@ -63,6 +76,9 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
     text = str(summary.get("title", ""))
     if summary.get("kind") == "limit" and summary.get("status") == "ok":
         text += ": limit analysis"
+    elif summary.get("collapsed") is not None:
+        at = summary.get("collapse_time")
+        text += (": collapsed" + (f" at {at:.3g} s" if at is not None else "")) if summary["collapsed"] else ": stood"
     elif load is None:
         text += f": {summary.get('status', 'unfinished')}"
     else:

@@ -42,6 +42,7 @@ ONLY_HERE = {  # third parties that stay in the packages named
     "h5py": {"output", "post"},
     "meshio": {"output", "cli"},
     "matplotlib": {"post"},
+    "PIL": {"post"},
     "pymunk": {"bench"},
     "Box2D": {"bench"},
     "pyvista": {"post"},

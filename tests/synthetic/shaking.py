@@ -26,8 +26,7 @@ def base_motion(times: np.ndarray) -> np.ndarray:
     w = 2.0 * np.pi * FREQUENCY
     out = np.zeros((len(times), 3, 2))
     a = AMPLITUDE
-    out[:, :, 0] = np.stack([a * np.sin(w * times), a / w * (1 - np.cos(w * times)),
-                             a / w * times - a / w**2 * np.sin(w * times)], axis=1)  # fmt: skip
+    out[:, :, 0] = a * np.stack([np.sin(w * times), -np.cos(w * times) / w, -np.sin(w * times) / w**2], axis=1)
     return out
 
 

@@ -1,0 +1,171 @@
+"""collapse.gif: the structure from frame to frame, on the ground that moves where the run has a time history."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.model.model import Model
+from dem_cli.output.reader import Results
+from dem_cli.output.record import Frame
+from dem_cli.output.series import Series
+from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.store import IN_SECONDS
+from dem_cli.post import measures, style
+
+_FRAME_MS = 80  # of a picture: 12.5 per second
+_LAST_MS = 1200  # the last one stays longer
+_DPI = 100
+_WHITE = "#ffffff"
+_SHADES = 7  # of each pair of colours that meet at a smooth edge
+_EDGES = (
+    (_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE),
+    (style.STONE, style.STONE_EDGE), (style.GROUND, style.STONE_EDGE),
+)  # fmt: skip
+_FALLEN = 0.8  # of the size of the structure: what falls farther leaves the picture
+_CARRIED = 0.6  # of the width of the structure: a base that moves farther is drawn in its own frame
+
+
+def draw_animation(results: Results, path: Path) -> None:
+    """One picture per frame. Raises UsageError where the run kept no frames, or Pillow is missing."""
+    if not len(results.frames):
+        raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to animate")
+    pictures = _pictures(results)
+    times = [_FRAME_MS] * (len(pictures) - 1) + [_LAST_MS]
+    with path.open("wb") as file:
+        pictures[0].save(
+            file, "GIF", save_all=True, append_images=pictures[1:], duration=times, loop=0, optimize=True, disposal=1
+        )
+
+
+def _pictures(results: Results) -> list[Any]:
+    """All frames as images that share one palette."""
+    with style.canvas() as make:
+        try:
+            from PIL import Image
+        except ImportError:
+            raise UsageError("an animation needs Pillow: pip install 'dem-cli[plot]'") from None
+        scene = _Scene(results, make)
+        palette = Image.new("P", (1, 1))
+        palette.putpalette(_palette())
+        pictures = []
+        for frame in results.frames:
+            scene.show(frame)
+            image = Image.frombuffer("RGBA", *scene.pixels()).convert("RGB")
+            pictures.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
+    return pictures
+
+
+def _palette() -> list[int]:
+    """Red, green and blue of every colour of the pictures: flat areas and the shades of their edges."""
+    from matplotlib.colors import to_rgb
+
+    steps = np.linspace(0.0, 1.0, _SHADES)[:, np.newaxis]
+    shades = [np.array(to_rgb(a)) * (1.0 - steps) + np.array(to_rgb(b)) * steps for a, b in _EDGES]
+    return np.rint(255.0 * np.concatenate(shades)).astype(int).ravel().tolist()
+
+
+class _Scene:
+    """A figure whose blocks move: the structure above, the acceleration of its base below."""
+
+    def __init__(self, results: Results, make: Any):
+        model, self.results = results.model, results
+        self.model = model
+        frames = results.frames
+        self.scale = min(measures.visible_scale(model, frame) for frame in frames)
+        self.carried = _carried(results, self.scale)
+        corners = [self._corners(frame) for frame in frames]
+        low, high = _window(model, corners)
+        series = results.series
+        self.strip = series is not None and bool((series.base[:, 0] != 0.0).any())
+        width, height = _size(high - low)
+        self.figure = make(figsize=(width, height + (1.3 if self.strip else 0.0) + 0.4), dpi=_DPI)
+        rows = self.figure.subplots(1 + self.strip, 1, squeeze=False, height_ratios=[height, 1.1][: 1 + self.strip])
+        self.axis = rows[0, 0]
+        self._draw_structure(low, high)
+        if self.strip and series is not None:
+            self._draw_strip(rows[1, 0], series)
+        style.headline(self.figure, results.summary)
+
+    def _corners(self, frame: Frame) -> np.ndarray:
+        """Corners as drawn: displacements scaled, carried along by the ground [m], (n_vertices, 2)."""
+        shown = measures.scaled(self.model, frame, self.scale)
+        return placed_vertices(self.model, shown.positions, shown.orientations) + self._ground(frame)
+
+    def _ground(self, frame: Frame) -> np.ndarray:
+        """Where the ground is in this picture [m], (2,)."""
+        series = self.results.series
+        if not self.carried or series is None:
+            return np.zeros(self.model.dimension)
+        return np.array([np.interp(frame.time, series.time, path) for path in series.base[:, 2].T])
+
+    def _draw_structure(self, low: np.ndarray, high: np.ndarray) -> None:
+        from matplotlib.collections import PolyCollection
+
+        fixed = self.model.fixed[self.model.part_blocks]
+        faces = [style.GROUND if f else style.STONE for f in fixed]
+        self.blocks = PolyCollection([], facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6)
+        self.axis.add_collection(self.blocks)
+        self.axis.set_aspect("equal")
+        self.axis.set_xlim(low[0], high[0])
+        self.axis.set_ylim(low[1], high[1])
+        self.axis.axis("off")
+        if self.carried:  # a place in space that stays, so that one sees the ground move
+            self.axis.plot(rest_vertices(self.model)[:, 0].mean(), low[1], "^", ms=9, color=style.INK, clip_on=False)
+
+    def _draw_strip(self, axis: Any, series: Series) -> None:
+        axis.plot(series.time, series.base[:, 0], lw=0.8, color=style.GREY)
+        axis.set_xlim(0.0, series.time[-1] or 1.0)
+        axis.set_ylabel("base\n[m/s2]")
+        axis.set_xlabel("time [s]")
+        self.cursor = axis.axvline(0.0, color=style.COLLAPSE, lw=1.4)
+
+    def show(self, frame: Frame) -> None:
+        """Put the blocks where they are in a frame."""
+        corners, starts = self._corners(frame), self.model.part_starts
+        self.blocks.set_verts([corners[a:b] for a, b in zip(starts, starts[1:])])
+        timed = self.results.kind in IN_SECONDS
+        text = f"{frame.time:.2f} s" if timed else f"{frame.stage}: λ = {frame.load:.3f}"
+        drawn = "" if self.scale == 1.0 else f", displacements × {self.scale:,.0f}"
+        self.axis.set_title(text + drawn, fontsize=10, fontweight="normal")
+        if self.strip:
+            self.cursor.set_xdata([frame.time, frame.time])
+
+    def pixels(self) -> tuple[tuple[int, int], bytes]:
+        """Size and RGBA bytes of the picture."""
+        self.figure.canvas.draw()
+        buffer = np.asarray(self.figure.canvas.buffer_rgba())
+        return (buffer.shape[1], buffer.shape[0]), buffer.tobytes()
+
+
+def _carried(results: Results, scale: float) -> bool:
+    """Whether blocks are drawn in space: the base moves, but not out of the picture, and nothing is exaggerated."""
+    series = results.series
+    if series is None or scale != 1.0 or not len(series.time):
+        return False
+    travel = float(np.ptp(series.base[:, 2], axis=0).max())
+    return 0.0 < travel <= _CARRIED * measures.size(results.model)
+
+
+def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """What all pictures show: wherever free blocks come, but not far away; of the ground what is near."""
+    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    start = corners[0][free] if free.any() else corners[0]
+    reach = _FALLEN * float(np.ptp(start, axis=0).max())
+    moving = np.concatenate([c[free] if free.any() else c for c in corners])
+    everything = np.concatenate(corners)
+    low = np.maximum(moving.min(axis=0), start.min(axis=0) - reach)
+    high = np.minimum(moving.max(axis=0), start.max(axis=0) + reach)
+    margin = 0.06 * float((high - low).max())
+    low = np.maximum(np.minimum(everything.min(axis=0), low), low - 2.0 * margin)  # with some ground
+    high = np.minimum(np.maximum(everything.max(axis=0), high), high + 2.0 * margin)
+    return low - margin, high + margin
+
+
+def _size(extent: np.ndarray) -> tuple[float, float]:
+    """Width and height of the structure's part of the picture [inches]."""
+    width = float(np.clip(4.4 * extent[0] / extent[1], 4.2, 6.4))
+    return width, float(np.clip(width * extent[1] / extent[0], 1.6, 4.6))
