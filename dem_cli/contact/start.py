@@ -21,7 +21,7 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
     corners = world_corners(block_shape(model), positions, orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,
-        np.zeros((n, 2)), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+        np.zeros((n, 2)), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
     )  # fmt: skip
 
 

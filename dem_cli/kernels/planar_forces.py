@@ -17,15 +17,18 @@ from dem_cli.kernels.planar_geometry import overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
-def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
+def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False) -> Callable:
+    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+
+    keeps: frames and levers of the points that touch are kept up to date, for dampers.
+    """
     press = make_press(law, bonded)
 
     @inline
     def planar_forces(joints, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, joints.edges, joints.scales
-        kns, kss, parameters = joints.kn, joints.ks, joints.law
+        kns, kss, parameters, frames, levers = joints.kn, joints.ks, joints.law, joints.frames, joints.levers
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
         slips, memory, stale = contacts.slip, contacts.memory, contacts.stale
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
@@ -63,6 +66,10 @@ def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             if on_low:
                 frame, levers_a, levers_b, _ = place_end(xa, xb, share_low, ta, tb, a0, b1)
+                if keeps:
+                    frames[first, 0], frames[first, 1] = frame[0]
+                    levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
                 normal, shear, path, work = press(
                     gap_low, opened_low, normals[first], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, first, 0, like[1:]), kns[first], kss[first], parameters, joint, memory, first,
@@ -77,6 +84,10 @@ def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
                 torque_b = add_torques(levers_b, normal, shear, torque_b)
             if on_high:
                 frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, ta, tb, a1, b0)
+                if keeps:
+                    frames[second, 0], frames[second, 1] = frame[0]
+                    levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
                 normal, shear, path, work = press(
                     gap_high, opened_high, normals[second], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, second, 0, like[1:]), kns[second], kss[second], parameters, joint, memory, second,
@@ -95,4 +106,4 @@ def make_planar_forces(law: Callable, bonded: bool = False) -> Callable:
             add_at(forces, b, d, torque_b, 1.0)
         return friction_work
 
-    return named(planar_forces, law, "bonded" if bonded else "")
+    return named(planar_forces, law, "bonded" if bonded else "", "keeps" if keeps else "")

@@ -47,10 +47,11 @@ def _end(inside, blend, corner_a, corner_b, ta, ts, on_side):
     return gap, share
 
 
-def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = False) -> Callable:
+def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = False, places: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    places: instead of forces, the loop keeps gaps, frames, levers and points up to date, for detection and records.
+    keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
+    loop keeps gaps, frames, levers and points up to date, for detection and records.
     """
     press = make_press(law, bonded)
 
@@ -142,11 +143,12 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
                 if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, side, corner_a, corner_b)
-                if places:
+                if keeps or places:
                     frames[point, 0], frames[point, 1] = frame[0]
-                    places_out[point, 0], places_out[point, 1] = place
                     levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
                     levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
+                if places:
+                    places_out[point, 0], places_out[point, 1] = place
                     continue
                 loaded = True
                 normal, shear, path, work = press(
@@ -168,7 +170,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, places: bool = Fal
                 add_at(forces, b, d, torque_b, 1.0)
         return lost
 
-    return named(profiled_forces, law, "bonded" if bonded else "", "places" if places else "")
+    return named(profiled_forces, law, "bonded" if bonded else "", "keeps" if keeps else "", "places" if places else "")
 
 
 @inline

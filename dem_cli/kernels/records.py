@@ -23,6 +23,7 @@ class Bodies(NamedTuple):
     turns: np.ndarray  # cosine and sine of the orientations, 2D; kept only by moving geometry, (n_blocks, 2)
     means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
     drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
+    pulled: np.ndarray  # velocities before the dashpots of the last step, (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
 
@@ -57,7 +58,7 @@ class Contacts(NamedTuple):
     shear: np.ndarray  # shear force on b along the tangents [N], (n_points, d - 1)
     normal: np.ndarray  # normal force, compression positive [N], (n_points,)
     slip: np.ndarray  # accumulated slip path [m], (n_points,)
-    memory: np.ndarray  # whatever the law remembers, (n_points, n_memory)
+    memory: np.ndarray  # whatever the law remembers, then what the dampers do, (n_points, n_memory)
     sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
 
@@ -72,9 +73,39 @@ class Loads(NamedTuple):
     speed_limits: np.ndarray  # largest velocity; infinite but for blocks that fall in pseudo-time, (n_blocks, n_dof)
 
 
+class Ground(NamedTuple):
+    """Motion of the supports over the steps of a stretch; the frame of coordinates moves with the base."""
+
+    accelerations: np.ndarray  # of the frame, mean over each step [m/s²], (n_steps, d)
+    moving: np.ndarray  # supports that move relative to the frame, (n_moving,)
+    velocities: np.ndarray  # of them, after each step [m/s, rad/s], (n_steps, n_moving, n_dof)
+
+
+class Dampers(NamedTuple):
+    """Viscous joints of time histories. Their impulses and Maxwell forces are columns of Contacts.memory, from `first`
+    on: d impulses [N s], then d forces of each Maxwell element [N].
+    """
+
+    first: int
+    viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
+    elements: np.ndarray  # Maxwell elements: stiffness over that of the joint [-] and rate [1/s], (n_elements, 2)
+    rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
+    gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
+    slips: np.ndarray  # slip path after the last step [m], (n_points,)
+    states: np.ndarray  # 0: open, 1: sticking, 2: slipping, (n_points,) int8
+
+
+class Watch(NamedTuple):
+    """Blocks whose motion is sampled: place, velocity and acceleration at one instant, relative to the base."""
+
+    blocks: np.ndarray  # (n_watched,)
+    every: int  # steps from one sample to the next
+    samples: np.ndarray  # out: of the steps 0, every, 2 every ... of a stretch, (n_samples, n_watched, 3, n_dof)
+
+
 # Slots of the vector `ledger`: sums over steps [J].
-EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT = 0, 1, 2, 3, 4
-N_LEDGER = 5
+EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7
+N_LEDGER = 8
 
 # Slots of the vector `control`.
 DEAD_FACTOR = 0  # multiplies dead loads
@@ -87,7 +118,8 @@ TRAVEL_LIMIT = 6  # stop when a corner may have moved that far since detection [
 FIRE_MIX = 7  # state of FIRE: current mixing
 SINCE_UPHILL = 8  # state of FIRE: steps since the power was negative
 DAMP_CHANGE = 9  # combined damping: share of |F| against its own change
-N_CONTROL = 10
+MASS_RATE = 10  # damping force over mass and velocity of a block [1/s]
+N_CONTROL = 11
 
 # What the step is driven by.
 HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3

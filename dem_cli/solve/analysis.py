@@ -87,3 +87,42 @@ class SettlementAnalysis(AnalysisBase):
     """[analysis] with kind = "settlement": supports move as [[settlement]] says."""
 
     kind: Literal["settlement"] = "settlement"
+
+
+class TimeHistoryAnalysis(CaseModel):
+    """[analysis] with kind = "time-history": the motion of the structure while its supports move."""
+
+    kind: Literal["time-history"] = "time-history"
+    duration: float | None = Field(default=None, gt=0.0, description="[s]; default: that of the motion")
+    time_step: float | None = Field(
+        default=None, gt=0.0, description="[s]; default: margin × the largest stable one of joints that all touch"
+    )
+    margin: float = Field(default=0.5, gt=0.0, le=0.95, description="time step over the largest stable one")
+    settle: bool = Field(default=True, description="come to rest under dead loads first; false: start as drawn")
+    fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed")
+    dropped: float | None = Field(
+        default=None, gt=0.0, description="a block that sank by so much has collapsed [m]; default: its least width"
+    )
+    after_collapse: float = Field(default=0.5, ge=0.0, description="how long a collapse is followed [s]")
+    max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
+
+    @property
+    def kinematics(self) -> str:
+        """Geometry always moves."""
+        return "large"
+
+
+class ModesAnalysis(AnalysisBase):
+    """[analysis] with kind = "modes": natural frequencies, mode shapes, joint stiffness from a measured one."""
+
+    kind: Literal["modes"] = "modes"
+    count: int = Field(default=6, ge=1, le=200, description="number of natural frequencies, from the lowest")
+    contacts: Literal["pressed", "touching"] = Field(
+        default="pressed",
+        description="which contact points are springs; pressed: those that gravity presses together, and bonds; "
+        "touching: also those without a gap that carry nothing, such as dry head joints",
+    )
+    measured: float | None = Field(
+        default=None, gt=0.0, description="measured natural frequency [Hz]: all kn and ks are scaled to meet it"
+    )
+    mode: int = Field(default=1, ge=1, le=200, description="number of the mode that the measured frequency belongs to")

@@ -1,6 +1,14 @@
 """All analysis kinds. A new one is one file and one line here."""
 
-from dem_cli.solve.analysis import Analysis, CycleAnalysis, GravityAnalysis, PushoverAnalysis, SettlementAnalysis
+from dem_cli.solve.analysis import (
+    Analysis,
+    CycleAnalysis,
+    GravityAnalysis,
+    ModesAnalysis,
+    PushoverAnalysis,
+    SettlementAnalysis,
+    TimeHistoryAnalysis,
+)
 
 
 def _gravity():
@@ -27,6 +35,18 @@ def _settlement():
     return run
 
 
+def _modes():
+    from dem_cli.solve.modes import run
+
+    return run
+
+
+def _time_history():
+    from dem_cli.solve.time_history import run
+
+    return run
+
+
 ANALYSES: dict[str, Analysis] = {
     analysis.kind: analysis
     for analysis in (
@@ -34,5 +54,7 @@ ANALYSES: dict[str, Analysis] = {
         Analysis("cycle", CycleAnalysis, _cycle),
         Analysis("gravity", GravityAnalysis, _gravity),
         Analysis("settlement", SettlementAnalysis, _settlement),
+        Analysis("time-history", TimeHistoryAnalysis, _time_history),
+        Analysis("modes", ModesAnalysis, _modes),
     )
 }

@@ -62,6 +62,8 @@ class Simulation:
 
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
+    n_damped    numbers that the dampers of a time history remember of each point
+    skin        reach of detection, in smallest edges
     """
 
     def __init__(
@@ -73,8 +75,12 @@ class Simulation:
         live_scale: float = 1.0,
         tilting: bool = False,
         safety: float = 0.85,
+        n_damped: int = 0,
+        skin: float = SKIN,
     ):
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
+        self.n_memory = law.n_memory(model.dimension) + n_damped
+        self.skin, self.time = skin, 0.0
         self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
         d, r = model.dimension, model.inertias.shape[1]
         n = model.n_blocks
@@ -116,14 +122,14 @@ class Simulation:
     # -- detection ---------------------------------------------------------------------------------
 
     def _detect_first(self) -> None:
-        model, n_memory = self.model, self.law.n_memory(self.model.dimension)
+        model, n_memory = self.model, self.n_memory
         self.chains: Chains | None = None
         if self.kinematics == "fixed":
             self.joints, self.contacts = joints_of_start(
                 model, self.bodies, self.properties, self.smallest, n_memory
             )
         else:
-            faces = find_joints(model, self.bodies.corners, SKIN * self.smallest, self.inner)
+            faces = find_joints(model, self.bodies.corners, self.skin * self.smallest, self.inner)
             if self.properties.profiled:
                 self.chains = chains_of_start(model, faces, self.bodies, self.properties)
             self.joints, self.contacts = build_joints(
@@ -151,11 +157,10 @@ class Simulation:
         """New faces after large motion; memory follows the contact points."""
         old, memory = self.joints, self.contacts
         self.measured()  # the points of the old joints, for those that move on
-        faces = find_joints(self.model, self.bodies.corners, SKIN * self.smallest, self.inner)
-        n_memory = self.law.n_memory(self.model.dimension)
-        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, n_memory, self.chains)
+        faces = find_joints(self.model, self.bodies.corners, self.skin * self.smallest, self.inner)
+        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.n_memory, self.chains)
         carry_memory(old, memory, joints, contacts)
-        if self.bodies.travel.max(initial=0.0) < 0.01 * SKIN * self.smallest:
+        if self.bodies.travel.max(initial=0.0) < 0.01 * self.skin * self.smallest:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
             contacts.stale[:-1] |= np.array([tuple(row) in asked for row in joints.edges.tolist()], bool)
@@ -166,7 +171,7 @@ class Simulation:
         self.detections += 1
         self.longest = max(100, LONGEST_CALL // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
-        self.control[slot.TRAVEL_LIMIT] = 0.5 * SKIN * self.smallest
+        self.control[slot.TRAVEL_LIMIT] = 0.5 * self.skin * self.smallest
         self.set_masses()
 
     def measured(self) -> Contacts:
@@ -345,6 +350,9 @@ class Simulation:
             friction=float(self.ledger[slot.FRICTION]),
             damping=float(self.ledger[slot.DAMPING]),
             supports=float(self.ledger[slot.SUPPORT]),
+            dashpots=float(self.ledger[slot.DASHPOT]),
+            mass_damping=float(self.ledger[slot.MASS]),
+            maxwell=float(self.ledger[slot.MAXWELL]),
         )
 
     def contact_record(self) -> ContactRecord:

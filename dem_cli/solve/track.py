@@ -23,7 +23,7 @@ class Track:
         sim = self.sim
         return HistoryRow(
             stage, sim.steps, sim.load * sim.live_scale, sim.largest_displacement(), sim.unbalanced,
-            sim.largest_overlap(), sim.energy(), self.monitors.values(sim),
+            sim.largest_overlap(), sim.energy(), self.monitors.values(sim), sim.time,
         )  # fmt: skip
 
     def keep(self, stage: str) -> None:

@@ -1,0 +1,213 @@
+"""Viscous joints of time histories: dashpots solved within the step, and Maxwell elements.
+
+A dashpot beside each spring resists its mean rate over the step, J = −c dt (w₀ + w)/2, together with all others: two
+symmetric Gauss–Seidel sweeps over the impulses J, warm from the step before, leave the largest stable step that of
+the springs alone, however stiff the dashpots. Spring and dashpot together do not pull (J_n ≥ −N dt); points that
+slip have no dashpot along the joint, and open ones none at all.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.records import DASHPOT, MAXWELL
+from dem_cli.kernels.vec import (
+    add_at,
+    add_torques,
+    axpy,
+    components,
+    compose,
+    dot,
+    load,
+    load_frame,
+    load_levers,
+    scale,
+    store,
+    turn,
+)
+
+OPEN, STICKS, SLIPS = 0, 1, 2
+
+
+@always_inline
+def _rates(frame, levers_a, levers_b, relative, spin_a, spin_b):
+    """Speed of opening and sliding of a point [m/s]."""
+    normal, along = components(frame, relative)
+    normal_a, along_a = turn(levers_a, spin_a)
+    normal_b, along_b = turn(levers_b, spin_b)
+    return normal + normal_b - normal_a, axpy(-1.0, along_a, axpy(1.0, along_b, along))
+
+
+@inline
+def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation):
+    """States, rates and gains of all points before the kick; adds the forces of Maxwell elements to `forces`."""
+    blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
+    frames, levers, normals, memory, slips = (
+        joints.frames, joints.levers, contacts.normal, contacts.memory, contacts.slip
+    )  # fmt: skip
+    viscosity, elements, rates, gains = dampers.viscosity, dampers.elements, dampers.rates, dampers.gains
+    states, seen, first = dampers.states, dampers.slips, dampers.first
+    d, n_elements = len(like), elements.shape[0]
+    for number in range(blocks.shape[0]):
+        joint = np.uint64(number)
+        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        half = 0.5 * viscosity[joint] * dt
+        for p in range(starts[joint], starts[number + 1]):
+            point = np.uint64(p)
+            if normals[point] == 0.0:
+                if states[point] != OPEN:
+                    states[point] = OPEN
+                    for k in range(first, memory.shape[1]):
+                        memory[point, k] = 0.0
+                continue
+            states[point] = STICKS if slips[point] == seen[point] else SLIPS
+            seen[point] = slips[point]
+            frame = load_frame(frames, point, like)
+            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
+            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            opening, sliding = _rates(frame, levers_a, levers_b, relative, spin_a, spin_b)
+            rates[point, 0] = opening
+            store(rates, point, 1, sliding)
+            masses = inverse_masses[a, 0] + inverse_masses[b, 0]
+            turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
+            for k in range(d):
+                stiffness = kns[point] if k == 0 else kss[point]
+                inverse = masses
+                inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
+                gains[point, k] = 1.0 / (1.0 + half * stiffness * inverse)
+            if n_elements > 0:
+                stiffness = (kns[point], kss[point])
+                _relax(memory, rates, elements, states[point], normals[point], stiffness, dt, point, first, d)
+                normal, shear = 0.0, scale(0.0, sliding)
+                for e in range(n_elements):
+                    column = first + d * (e + 1)
+                    normal += memory[point, column]
+                    shear = axpy(1.0, load(memory, point, column + 1, sliding), shear)
+                force = compose(frame, normal, shear, scale(0.0, like))
+                none = scale(0.0, like_rotation)
+                add_at(forces, a, 0, force, -1.0)
+                add_at(forces, b, 0, force, 1.0)
+                add_at(forces, a, d, add_torques(levers_a, normal, shear, none), -1.0)
+                add_at(forces, b, d, add_torques(levers_b, normal, shear, none), 1.0)
+
+
+@inline
+def _relax(memory, rates, elements, state, pressed, stiffness, dt, point, first, d):
+    """Forces of the Maxwell elements of a point after a step at constant rates; with the joint's own they do not pull.
+    """
+    total = 0.0
+    for e in range(elements.shape[0]):
+        share, rate = elements[e, 0], elements[e, 1]
+        keep = math.exp(-rate * dt)
+        gain = share * (1.0 - keep) / rate
+        column = first + d * (e + 1)
+        for k in range(d):
+            fed = 0.0 if k > 0 and state == SLIPS else rates[point, k]
+            memory[point, column + k] = keep * memory[point, column + k] - gain * stiffness[min(k, 1)] * fed
+        total += memory[point, column]
+    if total < -pressed and pressed >= 0.0:
+        for e in range(elements.shape[0]):
+            memory[point, first + d * (e + 1)] *= -pressed / total
+
+
+@inline
+def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backwards, warm, like, like_rotation):
+    """One sweep over all impulses; warm: puts on those of the step before as they are."""
+    blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
+    frames, levers, normals, memory = joints.frames, joints.levers, contacts.normal, contacts.memory
+    viscosity, rates, gains, states, first = (
+        dampers.viscosity, dampers.rates, dampers.gains, dampers.states, dampers.first
+    )  # fmt: skip
+    d, n = len(like), blocks.shape[0]
+    for i in range(n):
+        number = n - 1 - i if backwards else i
+        joint = np.uint64(number)
+        half = 0.5 * viscosity[joint] * dt
+        if half == 0.0:
+            continue
+        low, high = starts[joint], starts[number + 1]
+        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
+        turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
+        va, vb = load(velocities, a, 0, like), load(velocities, b, 0, like)
+        spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
+        touched = False
+        for j in range(high - low):
+            point = np.uint64(high - 1 - j if backwards else low + j)
+            state = states[point]
+            if state == OPEN:
+                continue
+            touched = True
+            frame = load_frame(frames, point, like)
+            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            push, along = memory[point, first], load(memory, point, first + 1, like[1:])
+            new, new_along = push, along
+            if not warm:
+                opening, sliding = _rates(frame, levers_a, levers_b, axpy(-1.0, va, vb), spin_a, spin_b)
+                new -= (half * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
+                mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
+                error = axpy(half * kss[point], mean, along)
+                new_along = axpy(-gains[point, 1], error, along)
+            if normals[point] >= 0.0:
+                new = max(new, -normals[point] * dt)
+            if state == SLIPS:
+                new_along = scale(0.0, along)
+            memory[point, first] = new
+            store(memory, point, first + 1, new_along)
+            if not warm:
+                new, new_along = new - push, axpy(-1.0, along, new_along)
+            force = compose(frame, new, new_along, scale(0.0, like))
+            va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
+            none = scale(0.0, spin_a)
+            spin_a = axpy(-turning_a, add_torques(levers_a, new, new_along, none), spin_a)
+            spin_b = axpy(turning_b, add_torques(levers_b, new, new_along, none), spin_b)
+        if touched:
+            store(velocities, a, 0, va)
+            store(velocities, a, d, spin_a)
+            store(velocities, b, 0, vb)
+            store(velocities, b, d, spin_b)
+
+
+@inline
+def resist(joints, contacts, velocities, inverse_masses, dampers, dt, like, like_rotation):
+    """The impulses of all dashpots on the velocities after the kick."""
+    for sweep in range(3):
+        _turn_on(
+            joints, contacts, velocities, inverse_masses, dampers, dt, sweep == 2, sweep == 0, like, like_rotation
+        )  # fmt: skip
+
+
+@inline
+def book_dampers(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation):
+    """What dashpots and Maxwell elements took in this step, by the mean rates over it."""
+    blocks, starts, frames, levers, memory = (
+        joints.blocks, joints.starts, joints.frames, joints.levers, contacts.memory
+    )  # fmt: skip
+    rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, dampers.elements.shape[0]
+    d = len(like)
+    by_dashpots = by_elements = 0.0
+    for number in range(blocks.shape[0]):
+        joint = np.uint64(number)
+        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        for p in range(starts[joint], starts[number + 1]):
+            point = np.uint64(p)
+            if states[point] == OPEN:
+                continue
+            spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
+            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            opening, sliding = _rates(
+                load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b
+            )  # fmt: skip
+            opening = 0.5 * (opening + rates[point, 0])
+            sliding = scale(0.5, axpy(1.0, load(rates, point, 1, sliding), sliding))
+            by_dashpots -= memory[point, first] * opening + dot(load(memory, point, first + 1, sliding), sliding)
+            for e in range(n_elements):
+                column = first + d * (e + 1)
+                by_elements -= memory[point, column] * opening + dot(load(memory, point, column + 1, sliding), sliding)
+    ledger[DASHPOT] += by_dashpots
+    ledger[MAXWELL] += dt * by_elements

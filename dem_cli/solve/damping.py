@@ -1,0 +1,182 @@
+"""[damping] of time histories: what joints and blocks lose, beside friction."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.kernels.records import Joints
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+DEFAULT_FRACTION = 0.35  # thesis 6.1: best for the restitution of blocks with h/b from 2 to 5
+JOINTS = ("contact_fraction", "restitution", "rayleigh", "stiffness")  # each sets the dashpots: one of them
+
+
+class Rayleigh(CaseModel):
+    """damping.rayleigh: damping ratio of elastic modes, c = a0 m + a1 k."""
+
+    ratio: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(description="damping ratio at the given frequencies")
+    frequency: Positive | None = Field(
+        default=None, description="where the ratio is least [Hz]; with one part alone: where it holds"
+    )
+    frequencies: tuple[Positive, Positive] | None = Field(
+        default=None, description="instead of frequency: two between which the ratio is at most the given one [Hz]"
+    )
+    mass: bool = Field(default=True, description="with the part that is proportional to mass")
+    stiffness: bool = Field(default=True, description="with the part that is proportional to stiffness")
+
+    @model_validator(mode="after")
+    def _frequencies_and_parts(self) -> Rayleigh:
+        if (self.frequency is None) == (self.frequencies is None):
+            both = "'frequency' and 'frequencies' are"
+            found = both if self.frequency else "neither 'frequency' nor 'frequencies' is"
+            raise ValueError(f"{found} given; one of them says where the ratio holds")
+        if not (self.mass or self.stiffness):
+            raise KeyProblem("false is not allowed where mass = false too: nothing would be damped", "stiffness")
+        if self.frequencies is not None and not (self.mass and self.stiffness):
+            raise KeyProblem("two frequencies need both parts; one part alone needs 'frequency'", "frequencies")
+        return self
+
+    def coefficients(self) -> tuple[float, float]:
+        """a0 [1/s] of mass and a1 [s] of stiffness (Clough and Penzien, ch. 12)."""
+        if self.frequencies is not None:
+            low, high = (2.0 * math.pi * f for f in self.frequencies)
+            return 2.0 * self.ratio * low * high / (low + high), 2.0 * self.ratio / (low + high)
+        assert self.frequency is not None
+        omega = 2.0 * math.pi * self.frequency
+        share = 1.0 if self.mass and self.stiffness else 2.0
+        return share * self.ratio * omega * self.mass, share * self.ratio / omega * self.stiffness
+
+
+class Element(CaseModel):
+    """damping.maxwell: a spring and a dashpot in series beside each spring of a joint."""
+
+    ratio: Annotated[float, Field(gt=0.0, lt=0.5)] = Field(description="damping ratio that it gives at its frequency")
+    frequency: Positive = Field(description="where it damps most [Hz]")
+
+
+class DampingTable(CaseModel):
+    """[damping]; joints have at most one of contact_fraction, restitution, rayleigh and stiffness."""
+
+    contact_fraction: NonNegative | None = Field(
+        default=None,
+        description="dashpots of the joints as a fraction of critical at the frequency of a block on its joint; "
+        f"{DEFAULT_FRACTION} without a [damping] table",
+    )
+    restitution: Annotated[float, Field(gt=0.0, lt=1.0)] | Literal["housner"] | None = Field(
+        default=None, description="wanted ratio of angular velocities after and before a rocking block lands"
+    )
+    block: str | None = Field(
+        default=None,
+        description="id of the block whose frequency or restitution is meant; default: each joint for itself, "
+        "and the heaviest block on a support for a restitution",
+    )
+    rayleigh: Rayleigh | None = Field(default=None, description="{ ratio, frequency or frequencies, mass, stiffness }")
+    stiffness: Positive | None = Field(default=None, description="damping over stiffness of all joints [s]")
+    mass: Positive | None = Field(default=None, description="damping force over mass and velocity of blocks [1/s]")
+    maxwell: Annotated[tuple[Element, ...], Field(min_length=1)] | None = Field(
+        default=None, description="elements beside each spring: [{ ratio, frequency }]"
+    )
+    local: Annotated[float, Field(gt=0.0, lt=1.0)] | None = Field(
+        default=None, description="share of the unbalanced force against the motion; has no physical meaning"
+    )
+    none: bool = Field(default=False, description="true: no damping but friction")
+
+    @model_validator(mode="after")
+    def _one_choice_for_joints(self) -> DampingTable:
+        given = [name for name in JOINTS if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise KeyProblem(f"not beside {given[0]}: joints have one of {', '.join(JOINTS)}", given[1])
+        others = [*given, *(name for name in ("mass", "maxwell", "local") if getattr(self, name) is not None)]
+        if self.none and others:
+            raise KeyProblem(f"true is not allowed beside {others[0]}", "none")
+        if not (self.none or others):
+            raise ValueError(f"nothing is given; one of {', '.join(JOINTS)}, mass, maxwell, local, or none = true")
+        if self.mass is not None and self.rayleigh is not None and self.rayleigh.mass:
+            raise KeyProblem("not beside rayleigh, which has a part of mass already (rayleigh.mass = false)", "mass")
+        if self.block is not None and self.contact_fraction is None and self.restitution is None:
+            raise KeyProblem("needs contact_fraction or restitution, which are those of a block", "block")
+        return self
+
+
+@dataclass(frozen=True)
+class Damping:
+    """What is lost, in numbers."""
+
+    fraction: float = 0.0  # of critical, each joint at its own frequency
+    stiffness: float = 0.0  # damping over stiffness of all joints [s]
+    mass: float = 0.0  # [1/s]
+    local: float = 0.0
+    elements: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # as Dampers.elements
+    words: str = "none"  # for users
+
+    @property
+    def in_joints(self) -> bool:
+        """Whether joints have anything but springs."""
+        return self.fraction > 0.0 or self.stiffness > 0.0 or len(self.elements) > 0
+
+    def viscosities(self, model: Model, joints: Joints) -> np.ndarray:
+        """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M, M the reduced mass of its blocks."""
+        found = np.full(len(joints.blocks), self.stiffness)
+        if self.fraction > 0.0 and len(found):
+            found += 2.0 * self.fraction / joint_frequencies(model, joints)
+        return found
+
+
+def joint_frequencies(model: Model, joints: Joints) -> np.ndarray:
+    """√(K/M) of each joint [rad/s]: K all its normal springs, M the reduced mass of its blocks, (n_joints,)."""
+    inverse = np.where(model.fixed, 0.0, 1.0 / model.masses)[joints.blocks].sum(axis=1)
+    return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * inverse)
+
+
+def element_numbers(elements: tuple[Element, ...]) -> np.ndarray:
+    """Stiffness over that of the joint [-] and rate [1/s] of each, (n, 2).
+
+    At its own frequency an element of stiffness share r loses r/2 of the joint's stiffness in quadrature: ratio r/4,
+    over the joint's stiffness alone.
+    """
+    return np.array([[4.0 * e.ratio, 2.0 * math.pi * e.frequency] for e in elements]).reshape(-1, 2)
+
+
+def damping_of(case: Case, model: Model, joints: Joints) -> Damping:
+    """The [damping] of a case in numbers. Raises CaseError for an unknown block or a restitution out of reach.
+
+    joints: those of the start.
+    """
+    table: DampingTable = case.damping or DampingTable(contact_fraction=DEFAULT_FRACTION)
+    mass, stiffness, fraction, words = table.mass or 0.0, table.stiffness or 0.0, 0.0, []
+    if table.rayleigh is not None:
+        more, stiffness = table.rayleigh.coefficients()
+        mass += more
+        words.append(f"Rayleigh, {table.rayleigh.ratio:.3g} of critical")
+    if table.stiffness:
+        words.append("dashpots of the joints")
+    if table.restitution is not None:
+        from dem_cli.solve.restitution import fraction_of
+
+        fraction, said = fraction_of(case, model, joints, table)
+        words.append(said)
+    if table.contact_fraction:
+        fraction = table.contact_fraction
+        words.append(f"dashpots of the joints, {fraction:.3g} of critical")
+    if fraction and table.block is not None:
+        from dem_cli.solve.restitution import reference_block
+
+        stiffness, fraction = 2.0 * fraction / reference_block(case, model, joints, table).frequency, 0.0
+        words[-1] += f" at the frequency of block '{table.block}'"
+    if table.mass:
+        words.append("mass-proportional")
+    if table.maxwell:
+        words.append(f"{len(table.maxwell)} Maxwell elements")
+    if table.local:
+        words.append(f"local, {table.local:.3g}")
+    elements = element_numbers(table.maxwell or ())
+    return Damping(fraction, stiffness, mass, table.local or 0.0, elements, ", ".join(words) or "none")

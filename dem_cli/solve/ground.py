@@ -1,0 +1,67 @@
+"""How the ground moves under a structure: the base, which carries the frame of coordinates, and single supports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.kernels.records import Ground
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.motion.motion import Motion
+
+
+class GroundMotion:
+    """The sum of all motions on each support.
+
+    Motions without `blocks` move the base. A support that motions name follows these alone; where all supports have
+    the same ones, they move the base.
+    """
+
+    def __init__(self, motions: Sequence[Motion], model: Model):
+        self.dimension, self.n_dof = model.dimension, model.dead_loads.shape[1]
+        own = {
+            i: [motion for motion in motions if model.block_ids[i] in motion.blocks]
+            for i in np.flatnonzero(model.fixed).tolist()
+        }
+        self.base = [motion for motion in motions if not motion.blocks]
+        shared = next(iter(own.values()), [])
+        if shared and all(found == shared for found in own.values()):
+            self.base, own = shared, {}
+        self.own = {i: found for i, found in own.items() if found}
+        self.moving = np.array(sorted(self.own), np.int64)
+        self.duration = max((motion.duration for motion in motions), default=0.0)
+        self.peak = max((motion.peak for motion in motions), default=0.0)
+
+    def of_base(self, times: np.ndarray) -> np.ndarray:
+        """Acceleration, velocity and displacement of the base [m, s], (n, 3, d)."""
+        return np.stack([self._sum(self.base, name, times) for name in ("acceleration", "velocity", "displacement")], 1)
+
+    def along(self, time: float) -> float:
+        """Acceleration of the base along its first motion [m/s²]."""
+        if not self.base:
+            return 0.0
+        return float(self._sum(self.base, "acceleration", np.array([time]))[0] @ np.array(self.base[0].direction))
+
+    def stretch(self, start: float, n_steps: int, dt: float) -> Ground:
+        """The ground over n_steps steps from the time `start` [s]: the frame is accelerated by as much as it gains
+        in velocity over each step, so that no impulse is lost between samples.
+        """
+        times = start + dt * np.arange(n_steps + 1)
+        gained = np.diff(self._sum(self.base, "velocity", times - 0.5 * dt), axis=0)
+        velocities = np.zeros((n_steps, len(self.moving), self.n_dof))
+        if len(self.moving):
+            carried = self._sum(self.base, "displacement", times)
+            for j, block in enumerate(self.moving.tolist()):
+                way = self._sum(self.own[block], "displacement", times) - carried
+                velocities[:, j, : self.dimension] = np.diff(way, axis=0) / dt
+        return Ground(np.ascontiguousarray(gained / dt), self.moving, velocities)
+
+    def _sum(self, motions: Sequence[Motion], name: str, times: np.ndarray) -> np.ndarray:
+        total = np.zeros((len(times), self.dimension))
+        for motion in motions:
+            total += getattr(motion, name)(times)[:, None] * np.array(motion.direction)
+        return total

@@ -1,0 +1,83 @@
+"""[[initial]]: blocks that start tilted, displaced or moving; 2D."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, Pair
+from dem_cli.contact.detect import world_corners
+from dem_cli.model.assemble import assembly
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.solve.simulation import Simulation
+
+
+class Initial(CaseModel):
+    """[[initial]]: how blocks start, once the structure has come to rest."""
+
+    block: str | None = Field(default=None, description="id of a block that can move")
+    blocks: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
+        default=None, description="instead of block: ids of several, which are moved as one"
+    )
+    tilt: float = Field(
+        default=0.0,
+        gt=-1.6,
+        lt=1.6,
+        description="turn about the corner on which they then stand, counter-clockwise [rad]",
+    )
+    displacement: Pair = Field(default=(0.0, 0.0), description="how far they are moved [m]")
+    velocity: tuple[float, float, float] = Field(
+        default=(0.0, 0.0, 0.0), description="of each centroid [m/s], and of the turn, counter-clockwise [rad/s]"
+    )
+
+    @model_validator(mode="after")
+    def _someone(self) -> Initial:
+        if (self.block is None) == (self.blocks is None):
+            found = "'block' and 'blocks' are" if self.block else "neither 'block' nor 'blocks' is"
+            raise ValueError(f"{found} given; one of them says what moves")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Ids of all blocks that it moves."""
+        return self.blocks if self.blocks is not None else (self.block or "",)
+
+
+def set_initial(case: Case, sim: Simulation) -> None:
+    """Moves the blocks of all [[initial]] tables, one after the other."""
+    names = assembly(case).block_map
+    for table in case.initial:
+        chosen = np.array([names[name] for name in table.names])
+        if table.tilt:
+            _turn(sim, chosen, table.tilt, _pivot(sim, chosen, table.tilt))
+        sim.bodies.positions[chosen] += table.displacement
+        sim.bodies.velocities[chosen] = table.velocity
+    bodies = sim.bodies
+    bodies.corners[:] = world_corners(sim.shape, bodies.positions, bodies.orientations)
+    bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
+    sim.detect()
+
+
+def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
+    """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
+    record = sim.contact_record()
+    ours = np.isin(record.blocks, chosen)
+    between = (ours.sum(axis=1) == 1) & (record.normal_force > 0.0)
+    points = record.points[between] - sim.origin
+    if not len(points):  # nothing holds them: about their lowest corner on that side
+        mine = np.isin(sim.shape.corner_blocks, chosen)
+        corners = sim.bodies.corners[mine]
+        points = corners[corners[:, 1] <= corners[:, 1].min() + 1e-9]
+    return points[(points[:, 0] * np.sign(tilt)).argmin()]
+
+
+def _turn(sim: Simulation, chosen: np.ndarray, angle: float, about: np.ndarray) -> None:
+    """Turns the chosen blocks as one."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    arms = sim.bodies.positions[chosen] - about
+    sim.bodies.positions[chosen] = about + arms @ np.array([[cosine, sine], [-sine, cosine]])
+    sim.bodies.orientations[chosen] += angle

@@ -1,0 +1,233 @@
+"""kind = "time-history": the motion of a structure while its supports move."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.kernels.records import Watch
+from dem_cli.model.model import Model
+from dem_cli.model.scales import origin_of, smallest_edge
+from dem_cli.motion.build import motions_of
+from dem_cli.output.record import Energy, Observer, Samples
+from dem_cli.solve.audit import closure
+from dem_cli.solve.damping import Damping, damping_of
+from dem_cli.solve.equilibrium import stand
+from dem_cli.solve.gravity import FALLS
+from dem_cli.solve.ground import GroundMotion
+from dem_cli.solve.initial import set_initial
+from dem_cli.solve.joints import joint_properties, law_of, laws_of
+from dem_cli.solve.run import Job, Outcome
+from dem_cli.solve.shaken import Shaken
+from dem_cli.solve.timestep import TimeStep, time_step
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.solve.track import Track
+
+DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
+ROWS = 400  # looks along the way: energies, collapse, whether all is well
+BLOW_UP = 0.2  # energy error over the largest energy from which a run is stopped
+WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
+TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
+GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a run warns
+
+
+def run(case: Case, model: Model, observer: Observer) -> Outcome:
+    """Outcome of a time history; collapse is an answer, not an error. Raises SolverError where it blows up."""
+    job = Job.start(case, model, observer)
+    history = TimeHistory(job, GroundMotion(motions_of(case), model))
+    return history.run()
+
+
+class Fallen(NamedTuple):
+    """The first block that collapsed."""
+
+    block: str
+    time: float  # [s]
+    how: str
+
+
+class TimeHistory:
+    """One run: a structure under one motion of the ground."""
+
+    def __init__(self, job: Job, ground: GroundMotion):
+        self.job, self.ground, self.case = job, ground, job.case
+        self.duration = _duration(job.case, ground)
+        properties = joint_properties(job.case, job.model, DYNAMIC_RATIO)
+        bodies = bodies_at_rest(job.model, origin_of(job.model))
+        joints, _ = joints_of_start(job.model, bodies, properties, smallest_edge(job.model))
+        self.damping: Damping = damping_of(job.case, job.model, joints)
+        self.sim, self.step = self._simulation()
+        self.track: Track = job.track(self.sim)
+        self.overlap = 0.0
+
+    def _simulation(self) -> tuple[Shaken, TimeStep]:
+        """The simulation, with laws that know the time step."""
+        analysis, model = self.case.analysis, self.job.model
+
+        def make(step: float) -> Shaken:
+            properties = joint_properties(self.case, model, DYNAMIC_RATIO, step)
+            return Shaken(model, law_of(self.case), properties, self.damping)
+
+        sim = self.job.clock.compiled(lambda: make(math.inf))
+        stiffer = math.sqrt(1.0 + self.damping.elements[:, 0].sum())
+        found = time_step(sim, analysis.margin / stiffer, analysis.time_step)
+        if not math.isfinite(found.step):
+            found = found._replace(step=min(1e-4, 1e-3 * self.duration))
+        if any(law.rates for law in laws_of(self.case)):
+            sim = self.job.clock.compiled(lambda: make(found.step))
+        return sim, found
+
+    def run(self) -> Outcome:
+        """Rest, first motion, shaking; the summary."""
+        sim, case = self.sim, self.case
+        if case.analysis.settle:
+            self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
+            if stand(sim, self.job.budget).state != "equilibrium":
+                self.track.write("gravity")
+                self.track.frame("gravity")
+                return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0})
+        sim.begin(self.step.step)
+        if case.initial:
+            set_initial(case, sim)
+        if case.initial or not case.analysis.settle:
+            sim.start_moving()
+        self.track.write("shaking")
+        self.track.frame("shaking")
+        return self._outcome(self._shake())
+
+    def _shake(self) -> dict[str, Any]:
+        """Stretches of the motion until its end, or until a collapse was followed long enough."""
+        sim, output, dt = self.sim, self.case.output, self.step.step
+        every = max(1, round(1.0 / (output.rate * dt)))
+        total = max(1, math.ceil(self.duration / dt))
+        if total > self.case.analysis.max_steps:
+            raise SolverError(
+                f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
+                f"({self.case.analysis.max_steps:,}): {self.step.cause}"
+            )
+        stretch = every * math.ceil(total / ROWS / every)
+        frames = np.linspace(0.0, self.duration, max(output.frames, 2))[1:]
+        done, shown, fallen, end = 0, 0, None, self.duration
+        while done < total and sim.time < end - 0.5 * dt:
+            n = min(stretch, total - done)
+            self._stretch(n, every)
+            done += n
+            self._look()
+            if fallen is None:
+                fallen = self._fallen()
+                if fallen is not None:
+                    end = min(end, fallen.time + self.case.analysis.after_collapse)
+                    self.track.frame("collapse")
+            if shown < len(frames) and sim.time >= frames[shown] - 0.5 * dt:
+                self.track.frame("collapse" if fallen else "shaking")
+                shown = int((frames <= sim.time + 0.5 * dt).sum())
+            self.track.observer.progress(
+                "shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0)
+            )
+        found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
+        found["collapse_time"] = None if fallen is None else fallen.time
+        if fallen is not None:
+            found |= {"collapse_block": fallen.block, "collapse": fallen.how}
+        return found
+
+    def _stretch(self, n_steps: int, every: int) -> None:
+        """n_steps of motion, sampled every so many steps."""
+        sim, monitors, start = self.sim, self.job.monitors, self.sim.time
+        n_samples = -(-n_steps // every)
+        n_dof = sim.bodies.velocities.shape[1]
+        watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
+        sim.shake(self.ground.stretch(start, n_steps, self.step.step), n_steps, watch)
+        _check_finite(sim)
+        times = start + self.step.step * every * np.arange(n_samples)
+        base = self.ground.of_base(times)
+        self.track.observer.samples(Samples(times, base, monitors.series(watch.samples, base)))
+        sim.show_base(self.ground.along(sim.time), self.case.gravity)
+
+    def _look(self) -> None:
+        """The books of this instant; stops a run that makes energy."""
+        sim = self.sim
+        self.track.write("shaking")
+        self.overlap = max(self.overlap, sim.largest_overlap())
+        error = closure(sim)
+        if abs(error) > BLOW_UP and sim.energy().kinetic > sim.noticeable_energy:
+            block = sim.model.block_ids[_fastest(sim)]
+            raise SolverError(
+                f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "
+                f"fastest; the step {self.step.step:.3g} s is {self.step.step / self.step.limit:.0%} of the limit of "
+                "the joints of the start, lower analysis.margin"
+            )
+
+    def _fallen(self) -> Fallen | None:
+        """The first block that turned or sank so far that it has collapsed."""
+        sim, analysis, d = self.sim, self.case.analysis, self.job.model.dimension
+        free = sim.free
+        turned = np.abs(sim.bodies.orientations[free, 0])
+        sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
+        limit = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
+        for values, limits, word, unit in (
+            (np.degrees(turned), np.full(len(free), analysis.fallen_deg), "turned by", "°"),
+            (sank, limit, "sank by", " m"),
+        ):
+            over = values - limits
+            if len(over) and over.max() > 0.0:
+                k = int(over.argmax())
+                return Fallen(sim.model.block_ids[free[k]], sim.time, f"{word} {values[k]:.3g}{unit}")
+        return None
+
+    def _outcome(self, found: dict[str, Any]) -> Outcome:
+        """The summary, audited."""
+        sim = self.sim
+        shares = energy_shares(sim.energy())
+        if shares.get("local", 0.0) > GOVERNS:
+            self.job.warnings.append(
+                f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "
+                "slows every motion; use it for nothing but a test"
+            )
+        return self.job.outcome([sim], found | {
+            "time_step": self.step.step,
+            "largest_time_step": self.step.limit,
+            "duration": sim.time,
+            "peak_ground_acceleration": self.ground.peak,
+            "damping": self.damping.words,
+            "energy_shares": shares,
+            "largest_displacement": sim.largest_displacement(),
+            "largest_overlap": self.overlap,
+            "unbalanced_force": None,
+        })  # fmt: skip
+
+
+def energy_shares(energy: Energy) -> dict[str, float]:
+    """What each way of losing energy took of all that was lost; nothing where nothing was."""
+    taken = {WAYS.get(name, name): getattr(energy, name) for name in TAKERS}
+    total = sum(taken.values())
+    return {name: value / total for name, value in taken.items() if value != 0.0} if total > 0.0 else {}
+
+
+def _duration(case: Case, ground: GroundMotion) -> float:
+    """How long to look. Raises CaseError where neither the case nor a motion says it."""
+    duration = case.analysis.duration or ground.duration
+    if duration <= 0.0:
+        message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"
+        raise CaseError([CaseProblem(("analysis", "duration"), message)])
+    return duration
+
+
+def _check_finite(sim: Shaken) -> None:
+    """Raises SolverError that names time and block where a number is no number."""
+    bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
+    if bad.any():
+        name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
+        raise SolverError(f"the motion of block '{name}' is not a number at {sim.time:.4g} s: lower analysis.margin")
+
+
+def _fastest(sim: Shaken) -> int:
+    """The block with the largest velocity of a corner."""
+    d = sim.model.dimension
+    speeds = np.sqrt((sim.bodies.velocities[:, :d] ** 2).sum(axis=1))
+    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, d:]).max(axis=1)).argmax())
