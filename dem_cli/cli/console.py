@@ -54,7 +54,8 @@ class Progress:
             self._say(now, stage, load, displacement, fraction)
 
     def _say(self, now: float, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        where = f"load {load:.4f}, displacement {metres(displacement)}"
+        drive = f"base {load:+.3f} g" if stage == "shaking" else f"load {load:.4f}"
+        where = f"{drive}, displacement {metres(displacement)}"
         if self.on_terminal:
             self._draw(stage, where, fraction)
         else:

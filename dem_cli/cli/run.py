@@ -165,7 +165,7 @@ def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str,
     """Summary of a run that did not reach its end."""
     last = writer.last_row or writer.last_frame
     reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
-    if last and last.stage == "shaking":
+    if last and writer.kind == "time-history":
         reached = {"stage": last.stage, "time": last.time, "displacement": last.displacement}
     points = writer.last_frame.contacts.joint if writer.last_frame else None
     unknown = ANSWERS.get(writer.kind, ANSWERS["pushover"])

@@ -22,7 +22,7 @@ _COLOURS = {
     "kinetic": "#8250a8",
     "supports": "#7c7c86",
 }
-_IN_TIME = {"damping": "other damping", "supports": "base motion"}  # what these are in time histories
+_IN_TIME = {"damping": "local damping", "external": "base and loads"}  # what these are in time histories
 _SPARE = "#404048"
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dem_cli.output.reader import Results, read
+from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy
@@ -46,5 +47,5 @@ def _has_data(name: str, results: Results) -> bool:
     if name == "histories.png":
         return results.series is not None and len(results.series.time) > 0
     if name == "capacity.png":
-        return bool((results.history.get("load", no_rows) != 0.0).any())
+        return results.kind not in IN_SECONDS and bool((results.history.get("load", no_rows) != 0.0).any())
     return len(results.history.get("load", no_rows)) > 0

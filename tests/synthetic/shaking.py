@@ -66,7 +66,7 @@ def shaking_rows(frames: list[Frame], per_frame: int = 10) -> list[HistoryRow]:
     rows = []
     for time in np.linspace(0.0, DURATION, per_frame * len(frames)):
         grown = 0.3 * time
-        energy = Energy(0.1 * np.sin(9 * time) ** 2, 0.02, 0.05 * time, 0.0, 0.4 * grown, 0.02 * grown, grown,
+        energy = Energy(0.1 * np.sin(9 * time) ** 2, 0.02, 0.05 * time, grown, 0.4 * grown, 0.02 * grown, 0.0,
                         dashpots=0.45 * grown, mass_damping=0.1 * grown)  # fmt: skip
         stage = "gravity" if time == 0.0 else "shaking"
         rows.append(HistoryRow(stage, int(80 * time), 0.0, 0.01, 1e-3, 1e-9, energy, (0.0,) * len(MONITORS), time))

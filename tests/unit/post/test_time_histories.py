@@ -54,7 +54,7 @@ def test_the_ledger_over_time_has_every_damping(results, tmp_path, figures):
     draw_energy(results, tmp_path / "energy.png")
     axis = figures[0].axes[0]
     lines = {line.get_label(): line for line in axis.get_lines()}
-    assert {"friction", "dashpots", "mass damping", "other damping", "base motion", "kinetic"} <= lines.keys()
+    assert {"friction", "dashpots", "mass damping", "local damping", "base and loads", "kinetic"} <= lines.keys()
     assert "maxwell" not in lines  # nothing was taken by it
     assert lines["dashpots"].get_xdata()[-1] == pytest.approx(5.0)
     assert axis.get_xlabel() == "time [s]"
