@@ -1,8 +1,9 @@
 """Natural frequencies of a structure on its joints: stiffness of the contact springs, real masses, eigenvalues.
 
-    K = Bᵀ diag(k) B,   K φ = ω² M φ
+    K = Bᵀ diag(k) B + G,   K φ = ω² M φ
 
-B: relative motion at every contact point (limit.matrices), k: its normal and shear stiffness; free blocks only.
+B: relative motion at every contact point (limit.matrices), k: its normal and shear stiffness; free blocks only. G, on
+request: the geometric stiffness of the contact forces (solve.geometric), a share W/(kn h) of the rest.
 """
 
 from __future__ import annotations
@@ -13,12 +14,11 @@ import numpy as np
 
 from dem_cli.errors import SolverError
 from dem_cli.limit.matrices import compatibility
+from dem_cli.solve.geometric import geometric_stiffness
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-    from dem_cli.kernels.records import Joints
-    from dem_cli.model.model import Model
     from dem_cli.solve.simulation import Simulation
 
 DENSE = 90  # degrees of freedom up to which a full matrix is the faster way to the highest eigenvalue
@@ -31,14 +31,16 @@ EQUAL = 1e-6  # shares of energy that are no further apart are the same: the fir
 class System(NamedTuple):
     """Springs and masses of the free degrees of freedom: block by block, translations first."""
 
-    rows: csr_array  # B √k M^(-1/2), (n_points·d, n_free): its Gram matrix has the eigenvalues ω² [1/s2]
+    rows: csr_array  # √k B M^(-1/2), (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
+    geometric: csr_array | None  # M^(-1/2) G M^(-1/2) [1/s2], (n_free, n_free); None: left out
     masses: np.ndarray  # [kg, kg m2], (n_free,)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
 
     @property
     def matrix(self) -> csr_array:
-        """M^(-1/2) K M^(-1/2) [1/s2], symmetric and positive semidefinite, (n_free, n_free)."""
-        return (self.rows.T @ self.rows).tocsr()
+        """M^(-1/2) K M^(-1/2) [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
+        springs = (self.rows.T @ self.rows).tocsr()
+        return springs if self.geometric is None else springs + self.geometric
 
     @property
     def stiffness(self) -> csr_array:
@@ -64,34 +66,32 @@ class Modes(NamedTuple):
     frequencies: np.ndarray  # [Hz], (n,)
     shapes: np.ndarray  # scaled to φᵀ M φ = 1 kg m2 [m, rad]; zero for fixed blocks, (n, n_blocks, n_dof)
     effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
-    mechanisms: int  # motions of free blocks that strain no joint: frequency 0, not among the above
+    mechanisms: int  # motions of free blocks that no joint holds back: without a frequency, not among the above
     loose: np.ndarray  # blocks that take part in these, (n_loose,)
 
 
-def system(sim: Simulation, closed: np.ndarray | None = None) -> System:
+def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = False) -> System:
     """Springs and masses of a simulation where its blocks are now.
 
     closed: which contact points act, (n_points,) bool; default: all in the list, also those that are open and may
-    close: no state of the structure with these joints vibrates faster.
+    close: no state of the structure with these joints vibrates faster. geometric: with the forces that act now.
     """
-    sim.measured()  # frames and levers of this instant
-    return system_of(sim.model, sim.joints, closed)
-
-
-def system_of(model: Model, joints: Joints, closed: np.ndarray | None = None) -> System:
-    """The same from a model and its joints."""
     from scipy.sparse import diags_array
 
-    d = model.dimension
+    contacts = sim.measured()  # and frames and levers of this instant
+    model, joints, d = sim.model, sim.joints, sim.model.dimension
     blocks = np.flatnonzero(~model.fixed)
     masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]]).ravel()
     springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
     if closed is not None:
         springs = springs * closed[:, None]
-    rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ diags_array(1.0 / np.sqrt(masses))
-    rows = rows.tocsr()
+    per_mass = diags_array(1.0 / np.sqrt(masses))
+    rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ per_mass).tocsr()
     rows.eliminate_zeros()
-    return System(rows, masses, blocks)
+    turning = None
+    if geometric:
+        turning = (per_mass @ geometric_stiffness(model, joints, contacts, sim.bodies) @ per_mass).tocsr()
+    return System(rows, turning, masses, blocks)
 
 
 def highest_frequency(sim: Simulation) -> float:
@@ -148,7 +148,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)
-    values, held_vectors = _lowest(found.rows[:, held], count)
+    values, held_vectors = _lowest(found.matrix[held][:, held], count)
     vectors = np.zeros((len(values), n_free * n_dof))
     vectors[:, held] = held_vectors.T
     vectors = vectors.reshape(-1, n_free, n_dof)
@@ -168,10 +168,9 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     )
 
 
-def _lowest(rows: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """All eigenvalues that are 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
-    n = rows.shape[1]
-    matrix = (rows.T @ rows).tocsr()
+def _lowest(matrix: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """All eigenvalues up to 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
+    n = matrix.shape[0]
     largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
     while True:
         if n <= DENSE_MODES:

@@ -1,0 +1,68 @@
+"""Geometric stiffness: how contact forces turn and shift when blocks with forces between them move; 2D.
+
+A force f along a direction e of the contact frame (normal or tangent) does work on e · (c − x), where c is a corner
+of one block and e turns with the edge of the other, whose centroid is x. With A, B: arms of the point from the
+centroids of a and b, e' = e turned by +90°, the second derivatives of that distance are, for an edge of a,
+
+    (θa, xa) −e'    (θa, xb) e'    (θa, θa) −e · A    (θa, θb) e · B    (θb, θb) −e · B
+
+and for an edge of b the same with a and b exchanged and the opposite sign. Their sum times −f is what has to be added
+to the stiffness of the springs. The joints of planar_geometry.py blend both where corners meet, and so does this.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.limit.matrices import directions
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+    from dem_cli.kernels.records import Bodies, Contacts, Joints
+    from dem_cli.model.model import Model
+
+
+def geometric_stiffness(model: Model, joints: Joints, contacts: Contacts, bodies: Bodies) -> csr_array:
+    """Of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be current."""
+    from scipy.sparse import coo_array
+
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    blocks = joints.blocks[owner]
+    frames = directions(joints, 2)
+    forces = np.column_stack([contacts.normal, contacts.shear])
+    along = np.einsum("pd,pdk->pk", forces, frames)  # force on b [N], (n_points, 2)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    share = shares(joints, bodies)[:, None]
+    arms = joints.points[:, None] - bodies.positions[blocks]
+    lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
+    one, two = share[:, 0], 1.0 - share[:, 0]
+    local = np.zeros((len(owner), 6, 6))  # second derivatives times forces: x, y, θ of a, then of b
+    for k in (0, 1):
+        local[:, 2, k], local[:, 2, 3 + k] = -one * across[:, k], one * across[:, k]
+        local[:, 5, k], local[:, 5, 3 + k] = -two * across[:, k], two * across[:, k]
+    local[:, 2, 5] = one * lever_b - two * lever_a
+    local += local.swapaxes(1, 2)
+    local[:, 2, 2], local[:, 5, 5] = (two - one) * lever_a, (two - one) * lever_b
+    numbers = np.full(model.n_blocks, -1)
+    numbers[~model.fixed] = np.arange(int((~model.fixed).sum())) * 3
+    first = numbers[blocks]
+    dofs = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(3)).reshape(-1, 6)
+    rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+    used = (rows >= 0) & (columns >= 0)
+    n = 3 * int((~model.fixed).sum())
+    return coo_array((-local[used], (rows[used], columns[used])), shape=(n, n)).tocsr()
+
+
+def shares(joints: Joints, bodies: Bodies) -> np.ndarray:
+    """1: a corner of b on the edge of a; 0: one of a on the edge of b; between: both corners meet, (n_points,)."""
+    a0, a1, b0, b1 = (bodies.corners[joints.edges[:, i]] for i in range(4))
+    along = (a1 - a0) * joints.scales[:, [1]]
+    low = ((b1 - a0) * along).sum(axis=1)
+    high = joints.scales[:, 0] - ((b0 - a0) * along).sum(axis=1)
+    found = np.ones(len(joints.kn))
+    for inside, ends in ((low, joints.starts[:-1]), (high, joints.starts[1:] - 1)):
+        found[ends] = np.clip(0.5 + inside * joints.scales[:, 3], 0.0, 1.0)
+    return found
