@@ -22,6 +22,7 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "check": "Validate a case and print its model; solve nothing.",
     "calibrate": "Find the joint profile that comes closest to a test.",
     "limit": "Failure load by rigid-block limit analysis.",
+    "motion": "Measure, write and draw the ground motions of a case.",
     "build": "Write the geometry of a case to a file.",
     "new": "Print a commented case file to start from.",
     "schema": "Print the JSON Schema of the case file.",

@@ -38,6 +38,13 @@ class Target:
     def __call__(self, periods: np.ndarray | float) -> np.ndarray:
         return self.acceleration(np.asarray(periods, float))
 
+    def scaled(self, factor: float) -> Target:
+        """The same spectrum, `factor` times as high."""
+        if factor == 1.0:
+            return self
+        title = f"{factor:g} × {self.title}"
+        return Target(lambda periods: factor * self.acceleration(periods), factor * self.ground, self.damping, title)
+
 
 def damping_correction(damping: float) -> float:
     """η = √(10/(5 + ξ)) ≥ 0.55, ξ in per cent (EN 1998-1, equation 3.6); `damping` is a ratio."""

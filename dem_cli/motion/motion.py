@@ -81,6 +81,13 @@ class Motion:
         count = int(min(most, np.ceil(self.duration / self.shape.step))) if self.duration > 0.0 else 1
         return np.linspace(0.0, self.duration, max(count, 1) + 1)
 
+    def samples(self) -> np.ndarray:
+        """Times that the motion is made of: those of a record, otherwise even ones [s], (n,)."""
+        own = getattr(self.shape, "times", None)
+        if own is None:
+            return self.times()
+        return own if self.start == 0.0 else np.concatenate(([0.0], self.start + own))
+
     @property
     def end_velocity(self) -> float:
         """Velocity that stays after the end [m/s]."""

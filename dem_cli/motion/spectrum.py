@@ -127,19 +127,18 @@ def subdivided(records: np.ndarray, division: int) -> np.ndarray:
     return np.concatenate((parts.reshape(*records.shape[:-1], (n - 1) * division), records[..., -1:]), axis=-1)
 
 
-def peak(history: np.ndarray) -> np.ndarray:
-    """Largest absolute value, the crest of the parabola through the largest sample and its neighbours, (...,)."""
-    size = np.abs(history)
-    n = size.shape[-1]
-    top = size.argmax(axis=-1)
-    inner = np.clip(top, 1, n - 2)[..., None] if n > 2 else np.zeros((*top.shape, 1), int)
-    highest = np.take_along_axis(size, top[..., None], -1)[..., 0]
-    if n < 3:
-        return highest
-    signs = np.sign(np.take_along_axis(history, top[..., None], -1))
-    left, middle, right = (signs * np.take_along_axis(history, inner + d, -1) for d in (-1, 0, 1))
-    bend = left - 2.0 * middle + right
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crest = (middle - 0.125 * (right - left) ** 2 / bend)[..., 0]
-    crested = (bend[..., 0] < 0.0) & (top > 0) & (top < n - 1)
-    return np.where(crested, crest, highest)
+def peak(histories: np.ndarray) -> np.ndarray:
+    """Largest absolute value of each, the crest of the parabola through its largest sample and the neighbours.
+
+    histories (..., n), result (...,).
+    """
+    n = histories.shape[-1]
+    rows = histories.reshape(-1, n)
+    one = np.arange(len(rows))
+    top = np.abs(rows).argmax(axis=-1)
+    middle = rows[one, top]
+    left, right = rows[one, np.maximum(top - 1, 0)] - middle, rows[one, np.minimum(top + 1, n - 1)] - middle
+    bend, slope = left + right, right - left
+    within = (top > 0) & (top < n - 1) & (bend * middle < 0.0)
+    crest = middle - np.where(within, 0.125 * slope**2 / np.where(within, bend, 1.0), 0.0)
+    return np.abs(crest).reshape(histories.shape[:-1])

@@ -136,7 +136,8 @@ def _at_rest(times: np.ndarray, shape: np.ndarray):
 
     def corrected(histories: np.ndarray) -> np.ndarray:
         for _ in range(2):  # the second time takes the rounding of the first
-            histories = histories - (histories @ functionals.T @ solve.T) @ forms
+            left = np.einsum("ij,kj->ik", histories, functionals)  # a matrix product would start threads for this
+            histories = histories - left @ solve.T @ forms
         return histories
 
     return corrected

@@ -36,6 +36,9 @@ OWN_NAMES = frozenset(
         "calibration.csv",
         "calibration.png",
         "calibrated.toml",
+        "records",
+        "spectra.png",
+        "motion.png",
         "pvd",
     )
 )

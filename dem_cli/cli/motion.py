@@ -1,0 +1,202 @@
+"""`dem motion`: the ground motions of a case, measured, written and drawn."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from dem_cli import __version__
+from dem_cli.cli import console
+from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.errors import CaseError, DemError, UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.case.reader import LoadedCase
+    from dem_cli.motion.eurocode import Target
+    from dem_cli.motion.measures import Fit
+    from dem_cli.motion.motion import Motion
+
+RECORDS, SPECTRA, PICTURE = "records", "spectra.png", "motion.png"
+COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
+HEADINGS = ("record", "duration", "acceleration", "velocity", "displacement", "Arias", "5–95 %", "spectrum/target")
+
+
+class Group(NamedTuple):
+    """The records of one [motion] table."""
+
+    motions: list[Motion]
+    target: Target | None  # what they were made to fit
+    fit: Fit | None
+    chosen: int  # which of them a time history uses
+
+
+@click.command("motion", short_help="Measure, write and draw the ground motions of a case.")
+@case_argument
+@overrides_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME-motion.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
+def command(case: str, overrides: Sequence[str], output: Path | None, as_json: bool, force: bool) -> None:
+    """Measure the motions in [motion] of CASE: all records of a suite, and how they fit their spectrum.
+
+    Each is written as CSV (time, acceleration, velocity, displacement) and drawn, with its response spectrum.
+    """
+    from dem_cli import api
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.summary import to_json
+
+    loaded = api.load_case(case, overrides)
+    api.build_model(loaded)  # supports that do not exist, records that cannot be used
+    warn(loaded)
+    groups = groups_of(loaded)
+    summary = summarised(loaded, groups)
+    with OutputFolder(output or Path("results") / f"{loaded.path.stem}-motion", force=force) as folder:
+        write(folder, groups, summary)
+        place = folder.commit()
+    console.show(to_json(summary).rstrip() if as_json else answer(summary, place))
+
+
+def groups_of(loaded: LoadedCase) -> list[Group]:
+    """The records of every table. Raises UsageError for a case without motion."""
+    from dem_cli.motion.build import suites_of
+    from dem_cli.motion.measures import fit
+    from dem_cli.motion.synthetic import target_of
+
+    tables = [table for table in loaded.case.motion if table.kind != "none"]
+    if not tables:
+        raise UsageError(f"{loaded.path}: has no [motion] that moves anything")
+    try:
+        suites = suites_of(loaded.case)
+    except CaseError as error:
+        raise CaseError(error.problems, loaded.render) from None
+    groups = []
+    for table, motions in zip(tables, suites):
+        target = compared = None
+        if table.kind == "artificial":
+            target = target_of(table).scaled(abs(table.scale))
+            compared = fit(motions, target, table.first_period)
+        groups.append(Group(motions, target, compared, getattr(table, "number", 1) - 1))
+    return groups
+
+
+def summarised(loaded: LoadedCase, groups: Sequence[Group]) -> dict[str, Any]:
+    """What summary.json holds."""
+    from dem_cli.motion.measures import strength
+    from dem_cli.output.summary import ordered
+
+    records, fits = [], []
+    for i, group in enumerate(groups):
+        for k, motion in enumerate(group.motions):
+            row: dict[str, Any] = {"name": motion.name, "file": f"{RECORDS}/{file_name(groups, i, k)}"}
+            row |= strength(motion)._asdict()
+            if group.fit is not None:
+                ratios = group.fit.ratios[k]
+                row |= {"least_ratio": ratios.min(), "mean_ratio": ratios.mean()}
+            records.append(row)
+        if group.fit is not None and group.target is not None:
+            fits.append(
+                {
+                    "target": group.target.title,
+                    "records": len(group.motions),
+                    "periods": [group.fit.periods[0], group.fit.periods[-1]],
+                    "mean_peak_ratio": group.fit.mean_peak,
+                    "least_mean_ratio": group.fit.least_mean,
+                    "meets_eurocode_8": group.fit.meets,
+                }
+            )
+    return ordered(
+        {
+            "title": loaded.case.title,
+            "kind": "motion",
+            "version": __version__,
+            "status": "ok",
+            "motions": records,
+            "suites": fits,
+            "warnings": loaded.warnings,
+        }
+    )
+
+
+def file_name(groups: Sequence[Group], i_group: int, k: int) -> str:
+    """`artificial-3.csv`; with the number of the table before it where there are several."""
+    name = re.sub(r"[^\w.]+", "-", groups[i_group].motions[k].name).strip("-") or "motion"
+    return f"{i_group + 1}-{name}.csv" if len(groups) > 1 else f"{name}.csv"
+
+
+def write(folder: Any, groups: Sequence[Group], summary: dict[str, Any]) -> None:
+    """CSV files, pictures, summary."""
+    from dem_cli.output.folder import write_error
+    from dem_cli.output.summary import write_summary
+
+    try:
+        (folder.path / RECORDS).mkdir()
+        for i, group in enumerate(groups):
+            for k, motion in enumerate(group.motions):
+                text = as_csv(motion)
+                path = folder.path / RECORDS / file_name(groups, i, k)
+                path.write_text(text, encoding="utf-8", newline="\n")
+        write_summary(folder.path, summary)
+        draw(folder.path, groups, summary["title"])
+    except OSError as error:
+        raise write_error(error, folder.final) from None
+
+
+def draw(folder: Path, groups: Sequence[Group], title: str) -> None:
+    """Both pictures; without matplotlib a remark."""
+    from dem_cli.post.spectra import Suite, draw_motions, draw_spectra
+
+    suites = [Suite(group.motions, group.target, group.chosen) for group in groups]
+    try:
+        draw_spectra(suites, folder / SPECTRA, title)
+        draw_motions(suites, folder / PICTURE, title)
+    except DemError as error:
+        console.note(f"no picture: {error}")
+
+
+def as_csv(motion: Motion) -> str:
+    """Samples as they are read again (`column = 2`), every digit kept."""
+    times = motion.samples()
+    columns = (times, motion.acceleration(times), motion.velocity(times), motion.displacement(times))
+    lines = [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns))]
+    return "\n".join([",".join(COLUMNS), *lines, ""])
+
+
+def answer(summary: dict[str, Any], folder: Path) -> str:
+    """The table of all records, what a suite fulfils, and what was written."""
+    from dem_cli.cli.run import file_names, shown
+
+    rows = [HEADINGS, *(cells(record) for record in summary["motions"])]
+    if not summary["suites"]:
+        rows = [row[:-1] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    lines = [summary["title"]]
+    for row in rows:
+        lines.append("  " + "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]))
+    for fit in summary["suites"]:
+        low, high = fit["periods"]
+        verdict = "meets" if fit["meets_eurocode_8"] else "DOES NOT MEET"
+        lines.append(
+            f"  {fit['target']}: mean of {fit['records']} is at least {fit['least_mean_ratio']:.3f} of it "
+            f"({low:.3g} to {high:.3g} s), mean peak {fit['mean_peak_ratio']:.3f} of the ground acceleration: "
+            f"{verdict} EN 1998-1 3.2.3.1.2(4)b, c"
+        )
+    return "\n".join([*lines, f"  written to {shown(folder)} ({', '.join(file_names(folder))})"])
+
+
+def cells(record: dict[str, Any]) -> tuple[str, ...]:
+    """One line of the table."""
+    ratio = f"≥ {record['least_ratio']:.2f}, mean {record['mean_ratio']:.2f}" if "least_ratio" in record else "–"
+    return (
+        record["name"],
+        f"{record['duration']:.3g} s",
+        f"{record['acceleration']:.3g} m/s2",
+        f"{record['velocity']:.3g} m/s",
+        console.metres(record["displacement"]),
+        f"{record['arias']:.3g} m/s",
+        f"{record['significant']:.3g} s",
+        ratio,
+    )
