@@ -23,7 +23,10 @@ STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of case
     "gravity": (500, 10_000),
     "pushover": (10_000, 200_000),
     "settlement": (20_000, 100_000),
+    "modes": (200, 10_000),
 }
+IN_SECONDS = ("time-history", "fragility")  # kinds that solve.estimate_shaking knows
+VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
 NANOSECONDS = {"fixed": 10, "large": 20}  # per contact point and step, one core (scripts/benchmark)
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
@@ -31,6 +34,8 @@ BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertica
 
 def describe(case: Case, model: Model) -> Rows:
     """Label and text of each line of `dem check` that needs joints."""
+    if case.analysis.kind in IN_SECONDS:
+        return _shaking(case, model)
     tilting = getattr(case.analysis, "pattern", None) == "tilt"
     scale = 1.0 if tilting else live_scale(model)
     properties = joint_properties(case, model, _ratio(case, model))
@@ -41,7 +46,8 @@ def describe(case: Case, model: Model) -> Rows:
         )
 
     wanted = case.analysis.kinematics
-    moving = "supports move visibly" if case.analysis.kind == "settlement" else why_moving(case, model)
+    moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
+    moving = why_moving(case, model) if moving is None else moving
     sim = simulation("fixed" if moving is None else "large")
     return [
         *_blocks(model, case.gravity),
@@ -51,6 +57,19 @@ def describe(case: Case, model: Model) -> Rows:
         ("time step", _time_step(sim)),
         ("cost", _cost(case, sim)),
         ("load", _load(case, model)),
+        ("monitors", _monitors(case)),
+    ]
+
+
+def _shaking(case: Case, model: Model) -> Rows:
+    from dem_cli.solve.estimate_shaking import describe_shaking, shaken
+
+    sim = shaken(case, model)
+    return [
+        *_blocks(model, case.gravity),
+        *_joints(case, sim),
+        *_stiffness(case, sim),
+        *describe_shaking(case, sim),
         ("monitors", _monitors(case)),
     ]
 
@@ -150,10 +169,10 @@ def _cost(case: Case, sim: Simulation) -> str:
         fewest, most = FOLLOW_STEPS
         seconds = [s + 1e-9 * n * points * NANOSECONDS["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
         basis += f", then {fewest:,} to {most:,} × {NANOSECONDS['large']} ns for the collapse"
-    return f"{_seconds(seconds[0])} to {_seconds(seconds[1])} on one core ({basis})"
+    return f"{duration(seconds[0])} to {duration(seconds[1])} on one core ({basis})"
 
 
-def _seconds(value: float) -> str:
+def duration(value: float) -> str:
     """Two figures are more than such an estimate is worth."""
     for limit, unit, name in ((0.1, 1e-3, "ms"), (120.0, 1.0, "s"), (7200.0, 60.0, "min")):
         if value < limit:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from dem_cli import api
+from dem_cli.errors import CaseError
 from dem_cli.solve import simulation
 from dem_cli.solve.estimate import describe
 
@@ -63,3 +64,67 @@ def test_a_named_block_limits_the_step():
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
 def test_every_case_is_described(path):
     assert {"joints", "time step", "cost", "load"} <= set(rows(path.stem))
+
+
+SHAKEN = """
+[materials.stone]
+density = 2000.0
+[joints.dry]
+friction = 0.6
+kn = 1e9
+ks = 1e9
+[[structure]]
+kind = "column"
+block = [1.0, 2.0]
+courses = 1
+base_extension = 1.0
+[motion]
+kind = "pulse"
+shape = "sine"
+amplitude = 3.0
+frequency = 0.5
+[analysis]
+kind = "time-history"
+duration = 5.0
+"""
+
+
+def shaken(tmp_path, *overrides: str) -> dict[str, str]:
+    path = tmp_path / "case.toml"
+    path.write_text(SHAKEN)
+    loaded = api.load_case(path, overrides)
+    return dict(describe(loaded.case, api.build_model(loaded)))
+
+
+def test_time_history(tmp_path, monkeypatch):
+    monkeypatch.setattr(simulation, "make_advance", None)
+    simulation.compiled_advance.cache_clear()
+    found = shaken(tmp_path)
+    # Sliding and rocking of one block (numerics.md): ω² of K/M are 2 ± √3.4, K/M = 1e9/4000.
+    highest, lowest = ((1e9 / 4000 * (2 + sign * 3.4**0.5)) ** 0.5 for sign in (1, -1))
+    assert found["highest frequency"] == f"'column-1' on 'column-base' vibrates at {highest / 6.283185307:.4g} Hz"
+    assert found["time step"].startswith(f"{1 / highest:.3g} s, 0.5 of the largest stable one, {2 / highest:.3g} s")
+    assert float(found["first frequency"].split()[0]) == pytest.approx(lowest / 6.283185307, rel=1e-3)
+    assert found["steps"] == f"{int(5.0 * highest) + 1:,}"
+    assert found["cost"].endswith(f"({found['steps']} steps × 2 points × 40 ns)")
+    assert found["motion"] == "5 s, peak 3 m/s²"
+    half = shaken(tmp_path, "analysis.margin=0.25")
+    assert half["time step"].startswith(f"{0.5 / highest:.3g} s, 0.25 of")
+
+
+def test_a_step_above_the_limit_is_refused_before_the_run(tmp_path):
+    with pytest.raises(CaseError, match=r"analysis\.time_step: 0\.01 s is above .* 'column-1' on 'column-base'"):
+        shaken(tmp_path, "analysis.time_step=0.01")
+
+
+def test_time_history_that_says_no_duration(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(SHAKEN.replace("duration = 5.0", "").replace('kind = "pulse"', 'kind = "none"'))
+    text = path.read_text()
+    for key in ("shape", "amplitude", "frequency"):
+        text = "\n".join(line for line in text.splitlines() if not line.startswith(key))
+    path.write_text(text)
+    loaded = api.load_case(path)
+    found = dict(describe(loaded.case, api.build_model(loaded)))
+    assert "analysis.duration is missing" in found["motion"]
+    assert "cost" not in found

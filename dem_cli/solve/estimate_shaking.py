@@ -1,0 +1,77 @@
+"""What a time history would do and cost, for `dem check`: frequencies, time step, steps, run time."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.model.model import Model
+from dem_cli.model.scales import origin_of, smallest_edge
+from dem_cli.motion.build import motions_of
+from dem_cli.solve.damping import damping_of
+from dem_cli.solve.estimate import duration
+from dem_cli.solve.frequencies import modes, system
+from dem_cli.solve.ground import GroundMotion
+from dem_cli.solve.joints import joint_properties, law_of
+from dem_cli.solve.modes import touching_points
+from dem_cli.solve.shaken import Shaken
+from dem_cli.solve.time_history import DYNAMIC_RATIO
+from dem_cli.solve.timestep import TimeStep, time_step
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+NANOSECONDS = 40  # per contact point and step, one core
+
+
+def shaken(case: Case, model: Model) -> Shaken:
+    """The simulation of a time history, before its first step; nothing is compiled for it."""
+    properties = joint_properties(case, model, DYNAMIC_RATIO)
+    bodies = bodies_at_rest(model, origin_of(model))
+    joints, _ = joints_of_start(model, bodies, properties, smallest_edge(model))
+    return Shaken(model, law_of(case), properties, damping_of(case, model, joints))
+
+
+def describe_shaking(case: Case, sim: Shaken) -> list[tuple[str, str]]:
+    """Lines of `dem check`. Raises CaseError where analysis.time_step is not stable."""
+    analysis = case.analysis
+    stiffer = math.sqrt(1.0 + sim.damping.elements[:, 0].sum())
+    step = time_step(sim, analysis.margin / stiffer, analysis.time_step)
+    return [
+        ("damping", sim.damping.words),
+        ("highest frequency", step.cause),
+        ("time step", _step(step)),
+        ("first frequency", _first(sim)),
+        *_cost(case, sim, step),
+    ]
+
+
+def _step(step: TimeStep) -> str:
+    if not math.isfinite(step.limit):
+        return "free: nothing limits it"
+    return f"{step.step:.3g} s, {step.step / step.limit:.2g} of the largest stable one, {step.limit:.3g} s"
+
+
+def _first(sim: Shaken) -> str:
+    found = modes(system(sim, touching_points(sim)), 1, sim.model.dimension, sim.model.n_blocks)
+    if not len(found.frequencies):
+        return "none: no joint holds any block"
+    return f'{found.frequencies[0]:.4g} Hz, all joints that touch closed; kind = "modes" has those under gravity'
+
+
+def _cost(case: Case, sim: Shaken, step: TimeStep) -> list[tuple[str, str]]:
+    ground = GroundMotion(motions_of(case), sim.model)
+    length, points = case.analysis.duration or ground.duration, len(sim.joints.kn)
+    if length <= 0.0:
+        return [("motion", "how long is not said: no [motion] does, and analysis.duration is missing")]
+    motion = ("motion", f"{length:g} s, peak {ground.peak:.4g} m/s²")
+    if not math.isfinite(step.step):
+        return [motion]
+    steps = math.ceil(length / step.step)
+    seconds = 1e-9 * NANOSECONDS * steps * points
+    return [
+        motion,
+        ("steps", f"{steps:,}"),
+        ("cost", f"{duration(seconds)} on one core ({steps:,} steps × {points:,} points × {NANOSECONDS} ns)"),
+    ]
