@@ -124,7 +124,7 @@ class Damping:
         return self.fraction > 0.0 or self.stiffness > 0.0 or len(self.elements) > 0
 
     def viscosities(self, model: Model, joints: Joints) -> np.ndarray:
-        """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M, M the reduced mass of its blocks."""
+        """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M with the reduced mass M."""
         found = np.full(len(joints.blocks), self.stiffness)
         if self.fraction > 0.0 and len(found):
             found += 2.0 * self.fraction / joint_frequencies(model, joints)

@@ -56,6 +56,17 @@ def set_initial(case: Case, sim: Simulation) -> None:
             _turn(sim, chosen, table.tilt, _pivot(sim, chosen, table.tilt))
         sim.bodies.positions[chosen] += table.displacement
         sim.bodies.velocities[chosen] = table.velocity
+    _find_faces(sim)
+
+
+def tilt(sim: Simulation, chosen: np.ndarray, angle: float) -> None:
+    """Turns blocks as one about the corner on which they then stand, counter-clockwise [rad]."""
+    _turn(sim, chosen, angle, _pivot(sim, chosen, angle))
+    _find_faces(sim)
+
+
+def _find_faces(sim: Simulation) -> None:
+    """Corners and faces where the blocks are now."""
     bodies = sim.bodies
     bodies.corners[:] = world_corners(sim.shape, bodies.positions, bodies.orientations)
     bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
