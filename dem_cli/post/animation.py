@@ -89,6 +89,10 @@ class _Scene:
         if self.strip and series is not None:
             self._draw_strip(rows[1, 0], series)
         style.headline(self.figure, results.summary)
+        self.show(frames[0])
+        for _ in range(2):  # the layout finds itself, and stays
+            self.figure.canvas.draw()
+        self.figure.set_layout_engine("none")
 
     def _corners(self, frame: Frame) -> np.ndarray:
         """Corners as drawn: displacements scaled, carried along by the ground [m], (n_vertices, 2)."""

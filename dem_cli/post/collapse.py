@@ -32,7 +32,7 @@ def draw_collapse(results: Results, path: Path) -> None:
         shown = measures.scaled(model, frame, scale)
         corners.append(placed_vertices(model, shown.positions, shown.orientations))
         drawn.append((name, frame, shown, scale))
-    low, high = _window(model, corners)
+    low, high = window(model, corners)
     width, height, rows, columns = _layout(high - low, len(panels))
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -95,7 +95,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
     return f"{name}: {instant}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
 
 
-def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """What all panels show: everything, with a margin; of the ground only what is near."""
     free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
     moving = np.concatenate([c[free] if free.any() else c for c in corners])
@@ -121,8 +121,8 @@ def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
 def _draw_panel(
     axis: Any, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray
 ) -> None:
-    _draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
-    _draw_rest(axis, model)
+    draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
+    draw_rest(axis, model)
     _draw_joints(axis, model, frame, scale)
     _draw_thrust(axis, model, frame)
     axis.set_aspect("equal")
@@ -135,7 +135,7 @@ def _polygons(model: Model, corners: np.ndarray) -> list[np.ndarray]:
     return [corners[a:b] for a, b in zip(model.part_starts, model.part_starts[1:])]
 
 
-def _draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
+def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
     from matplotlib.collections import PolyCollection
 
     fixed = model.fixed[model.part_blocks]
@@ -147,7 +147,7 @@ def _draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
     )
 
 
-def _draw_rest(axis: Any, model: Model) -> None:
+def draw_rest(axis: Any, model: Model) -> None:
     from matplotlib.collections import PolyCollection
 
     rest = _polygons(model, rest_vertices(model))

@@ -13,10 +13,12 @@ from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy
 from dem_cli.post.histories import draw_histories
+from dem_cli.post.modes import draw_modes, shapes
 
 PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "capacity.png": draw_capacity,
     "histories.png": draw_histories,
+    "modes.png": draw_modes,
     "collapse.png": draw_collapse,
     "energy.png": draw_energy,
 }
@@ -42,6 +44,10 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
 def _has_data(name: str, results: Results) -> bool:
     """Whether there is anything to draw; a capacity curve needs a load that changes."""
     no_rows = np.zeros(0)
+    if name == "modes.png":
+        return bool(shapes(results))
+    if results.kind == "modes":  # the way into gravity is no result
+        return False
     if name == "collapse.png":
         return len(results.frames) > 0
     if name == "histories.png":
