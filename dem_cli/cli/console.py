@@ -9,6 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+from dem_cli.cli.modes import mode_rows
+
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
 _LINE_EVERY = 10.0  # s
@@ -112,7 +114,8 @@ STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analys
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
     lines = [str(summary["title"])]
-    rows = [*_load_rows(summary), *_shaking_rows(summary), *_sureness_rows(summary), *_cost_rows(summary)]
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *mode_rows(summary)]
+    rows += [*_sureness_rows(summary), *_cost_rows(summary)]
     rows += [("warning", text) for text in summary.get("warnings", ())]
     if verbose:
         rows += [("skipped", text) for text in summary.get("skipped", ())]

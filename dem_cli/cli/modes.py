@@ -1,0 +1,51 @@
+"""What a user of `dem run` reads of natural frequencies: a table, and what to write into [joints]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+MOST = 20  # lines of the table
+
+
+def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of each line; none where the run is no modal analysis."""
+    frequencies = summary.get("frequencies")
+    if frequencies is None:
+        return []
+    total, masses = summary["total_mass"], summary["effective_masses"]
+    rows = []
+    for i, frequency in enumerate(frequencies[:MOST]):
+        shares = "  ".join(f"{axis} {100 * values[i] / total:5.1f} %" for axis, values in masses.items())
+        rows.append((f"mode {i + 1}", f"{frequency:10.4g} Hz   mass along {shares}"))
+    if len(frequencies) > MOST:
+        rows.append(("", f"and {len(frequencies) - MOST} more in summary.json"))
+    if not len(frequencies):
+        rows.append(("modes", "none: no joint holds any block"))
+    sums = "  ".join(f"{axis} {100 * sum(values) / total:5.1f} %" for axis, values in masses.items())
+    rows.append(("all of these", f"{'':13}   mass along {sums}"))
+    rows += _springs(summary)
+    return rows + _calibration(summary.get("calibration"))
+
+
+def _springs(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """How many contact points act, and what the others would change."""
+    springs, first = summary["springs"], summary["first_frequency"]
+    if springs["pressed"] == springs["touching"]:
+        return [("springs", f"all {springs['pressed']:,} contact points that touch are pressed together")]
+    values = {name: "–" if value is None else f"{value:.4g} Hz" for name, value in first.items()}
+    text = (
+        f"{springs['pressed']:,} of {springs['touching']:,} contact points that touch are pressed together; "
+        f"mode 1: {values['pressed']} with these, {values['touching']} with all"
+    )
+    return [("springs", text)]
+
+
+def _calibration(found: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    if not found:
+        return []
+    what = "calibrated" if found["met"] else "not met"
+    rows = [(what, f"mode {found['mode']} at {found['measured']:g} Hz: kn and ks times {found['factor']:.4g}; write")]
+    for name, values in found["joints"].items():
+        rows.append((f"[joints.{name}]", f"kn = {values['kn']:.5g}, ks = {values['ks']:.5g}"))
+    return rows
