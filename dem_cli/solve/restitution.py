@@ -1,7 +1,8 @@
 """What a rocking block loses when it lands: Housner's ratio, and the dashpot that gives a wanted one.
 
-With dashpots that do not pull, the ratio r of angular velocities after and before landing falls with the damping towards
-that of Housner's rigid block, from above. A wanted r is sought by rocking the block, alone on its joint, as the run does.
+With dashpots that do not pull, the ratio r of angular velocities after and before landing falls with the damping
+towards that of Housner's rigid block, from above. A wanted r is sought by rocking the block, alone on its joint, as
+the run does.
 """
 
 from __future__ import annotations
