@@ -6,6 +6,7 @@ to the base: samples are (n, n_watched, 3, n_dof).
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -22,82 +23,88 @@ if TYPE_CHECKING:
 OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
 
 
-class MaterialPoint(NamedTuple):
-    """A point that moves with a block; d = 2."""
+class Points(NamedTuple):
+    """Material points: they move with their blocks. All of a case at once, as a stretch of time is short."""
 
-    row: int  # of its block in the samples
-    start: np.ndarray  # centroid of its block, undeformed, as the samples count [m], (d,)
-    arm: np.ndarray  # from the centroid, undeformed [m], (d,)
-
-    def displacement(self, samples: np.ndarray) -> np.ndarray:
-        """From its undeformed place [m], (n, d)."""
-        place = samples[:, self.row, 0]
-        return place[:, :2] - self.start + turned(self.arm, place[:, 2]) - self.arm
-
-    def velocity(self, samples: np.ndarray) -> np.ndarray:
-        """v + ω × r, (n, d)."""
-        place, motion = samples[:, self.row, 0], samples[:, self.row, 1]
-        return motion[:, :2] + motion[:, 2:] * across(turned(self.arm, place[:, 2]))
-
-    def acceleration(self, samples: np.ndarray) -> np.ndarray:
-        """a + α × r − ω² r, (n, d)."""
-        place, motion, change = (samples[:, self.row, i] for i in range(3))
-        arm = turned(self.arm, place[:, 2])
-        return change[:, :2] + change[:, 2:] * across(arm) - motion[:, 2:] ** 2 * arm
+    rows: np.ndarray  # of their blocks in the samples, (n_points,)
+    starts: np.ndarray  # centroids of their blocks, undeformed, as the samples count [m], (n_points, d)
+    arms: np.ndarray  # from these centroids, undeformed [m], (n_points, d)
 
 
-class PairOfPoints(NamedTuple):
-    """Two material points that lay opposite each other across a joint."""
+class Motion:
+    """How all points move over a stretch of time."""
 
-    first: MaterialPoint
-    second: MaterialPoint
-    apart: np.ndarray  # from the first to the second, undeformed [m], (d,)
+    def __init__(self, points: Points, samples: np.ndarray):
+        self.points, self.samples = points, samples[:, points.rows]
+        angles = self.samples[:, :, 0, 2]
+        self.cosines, self.sines = np.cos(angles), np.sin(angles)
+        self.arms = self.turned(points.arms)
 
-    def distance(self, samples: np.ndarray) -> np.ndarray:
-        """From the first to the second [m], (n, d)."""
-        return self.apart + self.second.displacement(samples) - self.first.displacement(samples)
+    def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
+        c, s = self.cosines[:, which], self.sines[:, which]
+        x, y = vectors[:, 0], vectors[:, 1]
+        return np.stack([c * x - s * y, s * x + c * y], axis=2)
+
+    @cached_property
+    def displacement(self) -> np.ndarray:
+        """From the undeformed places [m], (n, n_points, d)."""
+        return self.samples[:, :, 0, :2] - self.points.starts + self.arms - self.points.arms
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """v + ω × r, (n, n_points, d)."""
+        motion = self.samples[:, :, 1]
+        return motion[:, :, :2] + motion[:, :, 2:] * across(self.arms)
+
+    @cached_property
+    def acceleration(self) -> np.ndarray:
+        """a + α × r − ω² r, (n, n_points, d)."""
+        spins, change = self.samples[:, :, 1, 2:], self.samples[:, :, 2]
+        return change[:, :, :2] + change[:, :, 2:] * across(self.arms) - spins**2 * self.arms
 
 
-class JointMonitor(NamedTuple):
-    """Opening or slip of a joint, in its undeformed frame, which turns with the first block."""
+class JointMonitors(NamedTuple):
+    """Pairs of points that lay opposite each other across joints: at its two ends for an opening, in the middle for a
+    slip. They are measured in the undeformed frame of the joint, which turns with the first block.
+    """
 
-    quantity: str
-    normal: np.ndarray  # from the first block to the second, undeformed, (d,)
-    ends: tuple[PairOfPoints, PairOfPoints]
-    middle: PairOfPoints
+    first: np.ndarray  # points on the first block, (n_pairs,)
+    second: np.ndarray  # and on the second
+    apart: np.ndarray  # from the first to the second, undeformed [m], (n_pairs, d)
+    axes: np.ndarray  # along which they are measured, undeformed: the normal, or the tangent for a slip, (n_pairs, d)
+    begins: np.ndarray  # first pair of each of these monitors, (n,)
+    columns: np.ndarray  # and its number among all, (n,)
 
-    def values(self, samples: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """Largest separation of the two ends, or displacement of the second block at the middle [m], (n,)."""
-        normal = turned(self.normal, samples[:, self.middle.first.row, 0, 2])
-        if self.quantity == "slip":
-            return (self.middle.distance(samples) * across(normal)).sum(axis=1)
-        return np.max([(pair.distance(samples) * normal).sum(axis=1) for pair in self.ends], axis=0)
+    def fill(self, out: np.ndarray, motion: Motion) -> None:
+        """The largest of the pairs of each monitor [m], into its column of out (n, n_monitors)."""
+        moved = motion.displacement
+        distances = self.apart + moved[:, self.second] - moved[:, self.first]
+        along = (distances * motion.turned(self.axes, self.first)).sum(axis=2)
+        out[:, self.columns] = np.maximum.reduceat(along, self.begins, axis=1)
 
 
 class PointMonitor(NamedTuple):
-    """A vector at a material point, its length or a component of it."""
+    """A vector at a material point, its length or a component of it; or how far the point's block has turned."""
 
-    point: MaterialPoint
+    column: int
+    point: int
     quantity: str
     component: str | None
     absolute: bool
 
-    def values(self, samples: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """(n,)"""
-        vectors = getattr(self.point, self.quantity)(samples)
+    def fill(self, out: np.ndarray, motion: Motion, base: np.ndarray) -> None:
+        """Its column of out (n, n_monitors)."""
+        if self.quantity == "rotation":
+            out[:, self.column] = motion.samples[:, self.point, 0, 2]
+            return
+        vectors = getattr(motion, self.quantity)[:, self.point]
         if self.absolute:
             vectors = vectors + base[:, OF_BASE[self.quantity]]
-        return np.hypot(*vectors.T) if self.component is None else vectors[:, "xy".index(self.component)]
-
-
-class RotationMonitor(NamedTuple):
-    """The angle of a block [rad]."""
-
-    row: int
-
-    def values(self, samples: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """(n,)"""
-        return samples[:, self.row, 0, 2]
+        if self.component is None:
+            out[:, self.column] = np.hypot(vectors[:, 0], vectors[:, 1])
+        else:
+            out[:, self.column] = vectors[:, "xy".index(self.component)]
 
 
 class Monitors:
@@ -112,7 +119,20 @@ class Monitors:
         self.watched = np.unique(np.array([b for pair in blocks for b in pair], np.int64))
         self.origin = origin_of(model)
         self._joints: StartJoints | None = None
-        self._monitors = [self._monitor(*pair) for pair in zip(self.tables, blocks, strict=True)]
+        self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
+        self._at_points: list[PointMonitor] = []
+        pairs: list[tuple] = []
+        for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
+            if table.between is None:
+                self._at_points.append(self._point_monitor(column, table, found[0]))
+            else:
+                pairs += self._pairs(column, table.quantity, *found)
+        self._at_joints: JointMonitors | None = None
+        if pairs:
+            first, second, apart, axes, columns = map(np.array, zip(*pairs, strict=True))
+            unique, begins = np.unique(columns, return_index=True)
+            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique)
+        self._points = self._all_points()
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
         """At this instant; velocities per unit of the solver's time."""
@@ -130,8 +150,14 @@ class Monitors:
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
         of the base at the same instants [m, s], (n, 3, d).
         """
-        columns = [monitor.values(samples, base) for monitor in self._monitors]
-        return np.stack(columns, axis=1) if columns else np.zeros((len(samples), 0))
+        out = np.zeros((len(samples), len(self.tables)))
+        if self.tables:
+            motion = Motion(self._points, samples)
+            for monitor in self._at_points:
+                monitor.fill(out, motion, base)
+            if self._at_joints is not None:
+                self._at_joints.fill(out, motion)
+        return out
 
     def _blocks(self, case: Case) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
@@ -141,49 +167,46 @@ class Monitors:
         found: list[tuple[int, ...]] = []
         for monitor in self.tables:
             if monitor.point is None:
-                found.append(tuple(names[name] for name in monitor.between or (monitor.block,)))
+                found.append(tuple(names[name] for name in monitor.between or (monitor.block,) if name is not None))
             else:
                 block = block_at(self.model, np.array(monitor.point))
                 assert block is not None  # model.validate
                 found.append((block,))
         return found
 
-    def _monitor(self, table: Monitor, blocks: tuple[int, ...]) -> JointMonitor | PointMonitor | RotationMonitor:
-        if table.between is not None:
-            return self._joint(table.quantity, *blocks)
-        if table.quantity == "rotation":
-            return RotationMonitor(int(np.searchsorted(self.watched, blocks[0])))
-        centroid = self.model.centroids[blocks[0]]
-        arm = np.zeros(self.model.dimension) if table.point is None else np.array(table.point) - centroid
-        return PointMonitor(self._point(blocks[0], arm), table.quantity, table.component, table.absolute)
+    def _point(self, block: int, arm: np.ndarray) -> int:
+        """Number of a new point."""
+        self._places.append((block, arm))
+        return len(self._places) - 1
 
-    def _joint(self, quantity: str, first: int, second: int) -> JointMonitor:
+    def _point_monitor(self, column: int, table: Monitor, block: int) -> PointMonitor:
+        centroid = self.model.centroids[block]
+        arm = np.zeros(self.model.dimension) if table.point is None else np.array(table.point) - centroid
+        return PointMonitor(column, self._point(block, arm), table.quantity, table.component, table.absolute)
+
+    def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:
+        """Of one monitor: first and second point, distance, axis and the number of the monitor."""
         from dem_cli.contact.between import StartJoints
 
         self._joints = self._joints or StartJoints(self.model)
         ends = self._joints.ends(first, second)
         assert ends is not None  # model.validate
-        centroids = self.model.centroids
+        places, axis = list(zip(ends.on_first, ends.on_second, strict=True)), ends.normal
+        if quantity == "slip":
+            places, axis = [(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))], across(ends.normal)
+        rows = []
+        for on_first, on_second in places:
+            apart = self.model.centroids[second] + on_second - self.model.centroids[first] - on_first
+            rows.append((self._point(first, on_first), self._point(second, on_second), apart, axis, column))
+        return rows
 
-        def pair(on_first: np.ndarray, on_second: np.ndarray) -> PairOfPoints:
-            apart = centroids[second] + on_second - centroids[first] - on_first
-            return PairOfPoints(self._point(first, on_first), self._point(second, on_second), apart)
-
-        low, high = (pair(*places) for places in zip(ends.on_first, ends.on_second, strict=True))
-        middle = pair(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))
-        return JointMonitor(quantity, ends.normal, (low, high), middle)
-
-    def _point(self, block: int, arm: np.ndarray) -> MaterialPoint:
-        row = int(np.searchsorted(self.watched, block))
-        return MaterialPoint(row, self.model.centroids[block] - self.origin, arm)
-
-
-def turned(vector: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """A vector (2,) turned by every angle, (n, 2)."""
-    cosines, sines = np.cos(angles), np.sin(angles)
-    return np.stack([cosines * vector[0] - sines * vector[1], sines * vector[0] + cosines * vector[1]], axis=1)
+    def _all_points(self) -> Points:
+        d = self.model.dimension
+        blocks = np.array([block for block, _ in self._places], np.int64)
+        arms = np.array([arm for _, arm in self._places]).reshape(-1, d)
+        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms)
 
 
 def across(vectors: np.ndarray) -> np.ndarray:
-    """Vectors turned by +90°, (n, 2): velocities of their tips at unit spin."""
-    return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
+    """Vectors turned by +90°, (..., 2): velocities of their tips at unit spin."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
