@@ -16,7 +16,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight
 from dem_cli.output.record import Frame, Observer
-from dem_cli.solve.equilibrium import stand
+from dem_cli.solve.equilibrium import Budget, stand
 from dem_cli.solve.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.solve.gravity import FALLS, settle
 from dem_cli.solve.run import Job, Outcome
@@ -31,6 +31,7 @@ PULL = 1e-6  # of the elastic displacement of a weight on a point, to see whethe
 VISIBLE, LARGEST_TURN = 0.06, 0.2  # of the size of the structure, and rad: how far the picture of a mode moves
 AXES = "xyz"
 AGREES, ROUNDS = 1e-4, 8  # of a frequency: how near a calibrated structure comes to the measured one; most attempts
+SINKS, MOST_STEPS = 0.05, 200_000  # of an attempt: overlap in smallest edges, and steps to stand
 
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
@@ -166,38 +167,51 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
     That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
     with the new stiffness, and the factor is corrected until the frequency is met.
     """
-    wanted, properties = job.case.analysis, sim.properties
-    factor, found, tried = 1.0, computed, []
+    wanted = job.case.analysis
+    factor, found, tried, sinks = 1.0, computed, [], sim.largest_overlap() / sim.smallest
     while len(tried) < ROUNDS and abs(found / wanted.measured - 1.0) > AGREES:
         factor *= (wanted.measured / found) ** 2
-        tables = {
-            name: job.case.joints[name].model_copy(update={"kn": float(factor * kn), "ks": float(factor * ks)})
-            for name, kn, ks in zip(properties.names, properties.kn, properties.ks, strict=True)
-        }
-        second = replace(job, case=job.case.model_copy(update={"joints": tables}))
-        again = _simulation(second)
-        stands = stand(again, job.budget).state == "equilibrium"
-        frequencies = _modes(again, _springs(again, wanted.contacts), wanted.mode).frequencies
-        if not stands or len(frequencies) < wanted.mode:
+        frequency = _frequency_with(job, sim, factor) if sinks / factor < SINKS else None
+        if frequency is None:
             job.warnings.append(
-                f"joints soft enough for {wanted.measured:g} Hz ({factor:.3g} times kn and ks) do not carry the "
+                f"joints as soft as {wanted.measured:g} Hz asks for ({factor:.3g} times kn and ks) do not carry the "
                 "structure: the measured frequency does not belong to this mode, or not to this structure"
             )
             break
-        found = float(frequencies[wanted.mode - 1])
+        found = frequency
         tried.append(found)
     met = abs(found / wanted.measured - 1.0) <= AGREES
-    if tried and not met and len(tried) == ROUNDS:
+    if not met and len(tried) == ROUNDS:
         job.warnings.append(f"the calibrated frequency is {found:.4g} Hz instead of {wanted.measured:g} Hz")
     return {
         "mode": wanted.mode,
         "measured": wanted.measured,
         "computed": computed,
         "factor": factor,
-        "joints": {
-            name: {"kn": float(factor * kn), "ks": float(factor * ks)}
-            for name, kn, ks in zip(properties.names, properties.kn, properties.ks, strict=True)
-        },
+        "joints": _scaled(sim, factor),
         "frequencies_tried": tried,
         "met": met,
     }
+
+
+def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
+    """kn and ks [Pa/m] of each named joint, times a factor."""
+    properties = sim.properties
+    return {
+        name: {"kn": float(factor * kn), "ks": float(factor * ks)}
+        for name, kn, ks in zip(properties.names, properties.kn, properties.ks, strict=True)
+    }
+
+
+def _frequency_with(job: Job, sim: Simulation, factor: float) -> float | None:
+    """The frequency of the measured mode [Hz] with stiffness scaled; None where the structure does not stand then."""
+    wanted = job.case.analysis
+    tables = {name: job.case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
+    again = _simulation(replace(job, case=job.case.model_copy(update={"joints": tables})))
+    try:
+        if stand(again, Budget(min(MOST_STEPS, wanted.max_steps))).state != "equilibrium":
+            return None
+    except SolverError:
+        return None
+    frequencies = _modes(again, _springs(again, wanted.contacts), wanted.mode).frequencies
+    return float(frequencies[wanted.mode - 1]) if len(frequencies) >= wanted.mode else None
