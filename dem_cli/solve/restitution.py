@@ -108,7 +108,7 @@ def rocked(case: Case, model: Model, reference: Reference, fraction: float) -> f
     sim = Shaken(pair, law_of(case), properties, Damping(fraction=fraction))
     stand(sim, Budget(200_000))
     rest = float(sim.bodies.positions[1, pair.dimension - 1])
-    dt = time_step(sim).step
+    dt = time_step(sim, case.analysis.margin).step
     sim.begin(dt)
     slender = np.arctan2(np.abs(reference.ends[:, 0]).min(), np.abs(reference.ends[:, 1]).max())
     tilt(sim, np.array([1]), TILT * slender)
