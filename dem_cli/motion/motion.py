@@ -77,16 +77,18 @@ class Motion:
         return replace(self, factor=self.factor * factor)
 
     def times(self, most: int = 1_000_000) -> np.ndarray:
-        """Even times from 0 to the end, at most the step of the shape apart unless these are too many [s], (n,)."""
-        count = int(min(most, np.ceil(self.duration / self.shape.step))) if self.duration > 0.0 else 1
-        return np.linspace(0.0, self.duration, max(count, 1) + 1)
+        """Even times from the start to the end, those of an even record, otherwise close enough to show it [s], (n,).
+
+        At most `most` steps.
+        """
+        steps = self.shape.duration / self.shape.step
+        return self.start + np.linspace(0.0, self.shape.duration, max(1, int(min(most, np.ceil(steps - 1e-6)))) + 1)
 
     def samples(self) -> np.ndarray:
-        """Times that the motion is made of: those of a record, otherwise even ones [s], (n,)."""
+        """Times from 0 that the motion is made of: those of a record, otherwise even ones [s], (n,)."""
         own = getattr(self.shape, "times", None)
-        if own is None:
-            return self.times()
-        return own if self.start == 0.0 else np.concatenate(([0.0], self.start + own))
+        times = self.times() if own is None else self.start + own
+        return times if self.start == 0.0 else np.concatenate(([0.0], times))
 
     @property
     def end_velocity(self) -> float:

@@ -7,6 +7,7 @@ spectrum. The scheme and its numbers: docs/motion.md.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,12 +19,14 @@ from dem_cli.motion.spectrum import Filter, oscillator, pseudo_accelerations
 if TYPE_CHECKING:
     from dem_cli.motion.table import ArtificialTable
 
+Return = Callable[[np.ndarray], np.ndarray]  # of histories (..., n) to rest
 LOWEST, HIGHEST = 0.10, 35.0  # Hz: sines of the motion
 EQUIVALENT = 10.0  # s: of stationary motion that the power spectrum is for
 QUANTILE = 0.5  # chance that the peak response stays below the spectrum
 CONTROLLED = (0.03, 4.0)  # s: periods at which the spectrum is corrected
 CONTROLS = 80
 LEAST = 0.92  # of the target: lower places count in the choice of the best iteration (Eurocode 8 allows 0.90)
+WAVELET = 6.0  # time steps: period of the wavelet that raises a peak
 END_LEVEL = 0.05  # of the envelope at the end of the decay
 
 
@@ -48,7 +51,7 @@ def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Record]:
 
 
 def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
-    """(t/rise)² up to `rise`, 1 for `plateau`, then an exponential down to 0.05 at the last of the times, (n,)."""
+    """(t/rise)² up to `rise`, 1 for `plateau`, then, if time is left, an exponential down to 0.05 at its end, (n,)."""
     end = rise + plateau
     decay = -np.log(END_LEVEL) / max(times[-1] - end, 1e-9)
     return np.where(times < end, np.minimum(times / rise, 1.0) ** 2, np.exp(-decay * np.maximum(times - end, 0.0)))
@@ -81,7 +84,7 @@ def accelerograms(
 
     Sines with the power of the target and random phases, times the envelope `shape` (n,). Then `iterations` times
     every amplitude is multiplied by the target over the spectrum reached at its frequency; the best of all is kept,
-    and where its peak is below that of the target it is raised to it as a whole.
+    and where its peak is below that of the target it is raised to it by a short wavelet.
     """
     step, n = times[1] - times[0], len(times) - 1
     orders = np.arange(int(np.ceil(LOWEST * times[-1])), int(HIGHEST * times[-1]) + 1)
@@ -102,8 +105,7 @@ def accelerograms(
         best[better], least[better] = histories[better], badness[better]
         if i < iterations:
             strengths = strengths / _at(omegas, controls, ratios)
-    peaks = np.abs(best).max(axis=1)
-    return best * np.maximum(1.0, target.ground / peaks)[:, None]
+    return np.stack([_raised(history, target.ground, times, rest) for history in best])
 
 
 def _controls(target: Target, step: float) -> tuple[np.ndarray, list[Filter], np.ndarray]:
@@ -121,7 +123,7 @@ def _sum_of_sines(coefficients: np.ndarray, orders: np.ndarray, n: int) -> np.nd
     return np.concatenate((one, one[:, :1]), axis=1)
 
 
-def _at_rest(times: np.ndarray, shape: np.ndarray):
+def _at_rest(times: np.ndarray, shape: np.ndarray) -> Return:
     """A function that takes from histories the two multiples of the envelope, plain and times t, that leave no
     velocity and no displacement at the end (of an acceleration that is linear between samples)."""
     step = times[1] - times[0]
@@ -136,11 +138,27 @@ def _at_rest(times: np.ndarray, shape: np.ndarray):
 
     def corrected(histories: np.ndarray) -> np.ndarray:
         for _ in range(2):  # the second time takes the rounding of the first
-            left = np.einsum("ij,kj->ik", histories, functionals)  # a matrix product would start threads for this
+            left = np.einsum("...j,kj->...k", histories, functionals)  # a matrix product would start threads for this
             histories = histories - left @ solve.T @ forms
         return histories
 
     return corrected
+
+
+def _raised(history: np.ndarray, ground: float, times: np.ndarray, rest: Return) -> np.ndarray:
+    """The history (n,) with a Ricker wavelet on its largest sample, so that this becomes `ground` [m/s2].
+
+    The wavelet is so short that it hardly moves an oscillator of longer period.
+    """
+    for _ in range(4):  # the return to rest takes a little of the peak again
+        top = np.abs(history).argmax()
+        missing = ground - abs(history[top])
+        if missing <= 0.0:
+            break
+        x = np.pi / WAVELET * np.arange(-top, len(times) - top)
+        wavelet = (1.0 - 2.0 * x * x) * np.exp(-x * x)
+        history = rest(history + 1.0001 * np.sign(history[top]) * missing * wavelet)
+    return history
 
 
 def _at(omegas: np.ndarray, controls: np.ndarray, ratios: np.ndarray) -> np.ndarray:
