@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.motion.build import motions_of
 from dem_cli.output.record import Energy, Observer, Samples
-from dem_cli.solve.audit import closure
+from dem_cli.solve.collapse import check_energy, check_finite
+from dem_cli.solve.collapse import fallen as fallen_block
 from dem_cli.solve.damping import Damping, damping_of
 from dem_cli.solve.equilibrium import stand
 from dem_cli.solve.gravity import FALLS
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
 ROWS = 400  # looks along the way: energies, collapse, whether all is well
-BLOW_UP = 0.2  # energy error over the largest energy from which a run is stopped
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
 GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a run warns
@@ -42,14 +42,6 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     job = Job.start(case, model, observer)
     history = TimeHistory(job, GroundMotion(motions_of(case), model))
     return history.run()
-
-
-class Fallen(NamedTuple):
-    """The first block that collapsed."""
-
-    block: str
-    time: float  # [s]
-    how: str
 
 
 class TimeHistory:
@@ -85,13 +77,19 @@ class TimeHistory:
 
     def run(self) -> Outcome:
         """Rest, first motion, shaking; the summary."""
+        if not self.start():
+            return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0})
+        return self._outcome(self._shake())
+
+    def start(self) -> bool:
+        """Rest under dead loads, then the first motion; False where there is no rest."""
         sim, case = self.sim, self.case
         if case.analysis.settle:
             self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
             if stand(sim, self.job.budget).state != "equilibrium":
                 self.track.write("gravity")
                 self.track.frame("gravity")
-                return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0})
+                return False
         sim.begin(self.step.step)
         if case.initial:
             set_initial(case, sim)
@@ -99,7 +97,7 @@ class TimeHistory:
             sim.start_moving()
         self.track.write("shaking")
         self.track.frame("shaking")
-        return self._outcome(self._shake())
+        return True
 
     def _shake(self) -> dict[str, Any]:
         """Stretches of the motion until its end, or until a collapse was followed long enough."""
@@ -120,7 +118,7 @@ class TimeHistory:
             done += n
             self._look()
             if fallen is None:
-                fallen = self._fallen()
+                fallen = fallen_block(sim, self.case.analysis)
                 if fallen is not None:
                     end = min(end, fallen.time + self.case.analysis.after_collapse)
                     self.track.frame("collapse")
@@ -143,7 +141,7 @@ class TimeHistory:
         n_dof = sim.bodies.velocities.shape[1]
         watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
         sim.shake(self.ground.stretch(start, n_steps, self.step.step), n_steps, watch)
-        _check_finite(sim)
+        check_finite(sim)
         times = start + self.step.step * every * np.arange(n_samples)
         base = self.ground.of_base(times)
         self.track.observer.samples(Samples(times, base, monitors.series(watch.samples, base)))
@@ -154,31 +152,7 @@ class TimeHistory:
         sim = self.sim
         self.track.write("shaking")
         self.overlap = max(self.overlap, sim.largest_overlap())
-        error = closure(sim)
-        if abs(error) > BLOW_UP and sim.energy().kinetic > sim.noticeable_energy:
-            block = sim.model.block_ids[_fastest(sim)]
-            raise SolverError(
-                f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "
-                f"fastest; the step {self.step.step:.3g} s is {self.step.step / self.step.limit:.0%} of the limit of "
-                "the joints of the start, lower analysis.margin"
-            )
-
-    def _fallen(self) -> Fallen | None:
-        """The first block that turned or sank so far that it has collapsed."""
-        sim, analysis, d = self.sim, self.case.analysis, self.job.model.dimension
-        free = sim.free
-        turned = np.abs(sim.bodies.orientations[free, 0])
-        sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
-        limit = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
-        for values, limits, word, unit in (
-            (np.degrees(turned), np.full(len(free), analysis.fallen_deg), "turned by", "°"),
-            (sank, limit, "sank by", " m"),
-        ):
-            over = values - limits
-            if len(over) and over.max() > 0.0:
-                k = int(over.argmax())
-                return Fallen(sim.model.block_ids[free[k]], sim.time, f"{word} {values[k]:.3g}{unit}")
-        return None
+        check_energy(sim, self.step)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """The summary, audited."""
@@ -216,18 +190,3 @@ def _duration(case: Case, ground: GroundMotion) -> float:
         message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"
         raise CaseError([CaseProblem(("analysis", "duration"), message)])
     return duration
-
-
-def _check_finite(sim: Shaken) -> None:
-    """Raises SolverError that names time and block where a number is no number."""
-    bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
-    if bad.any():
-        name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
-        raise SolverError(f"the motion of block '{name}' is not a number at {sim.time:.4g} s: lower analysis.margin")
-
-
-def _fastest(sim: Shaken) -> int:
-    """The block with the largest velocity of a corner."""
-    d = sim.model.dimension
-    speeds = np.sqrt((sim.bodies.velocities[:, :d] ** 2).sum(axis=1))
-    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, d:]).max(axis=1)).argmax())
