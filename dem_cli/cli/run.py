@@ -70,7 +70,7 @@ class Recorder:
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
 @click.option("-v", "--verbose", is_flag=True, help="Say what was skipped because the case does not need it.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
-@click.option("--plot/--no-plot", default=False, help="Draw capacity.png and collapse.png as well.")
+@click.option("--plot/--no-plot", default=False, help="Draw the pictures of `dem plot` as well.")
 def command(
     case: str,
     overrides: Sequence[str],
