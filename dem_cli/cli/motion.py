@@ -60,8 +60,8 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
     console.show(to_json(summary).rstrip() if as_json else answer(summary, place))
 
 
-def groups_of(loaded: LoadedCase) -> list[Group]:
-    """The records of every table. Raises UsageError for a case without motion."""
+def groups_of(loaded: LoadedCase, compare: bool = True) -> list[Group]:
+    """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
     from dem_cli.motion.build import suites_of
     from dem_cli.motion.measures import fit
     from dem_cli.motion.synthetic import target_of
@@ -78,7 +78,7 @@ def groups_of(loaded: LoadedCase) -> list[Group]:
         target = compared = None
         if table.kind == "artificial":
             target = target_of(table).scaled(abs(table.scale))
-            compared = fit(motions, target, table.first_period)
+            compared = fit(motions, target, table.first_period) if compare else None
         groups.append(Group(motions, target, compared, getattr(table, "number", 1) - 1))
     return groups
 
@@ -155,6 +155,31 @@ def draw(folder: Path, groups: Sequence[Group], title: str) -> None:
         draw_motions(suites, folder / PICTURE, title)
     except DemError as error:
         console.note(f"no picture: {error}")
+
+
+def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
+    """spectra.png of what shook a run, from its case.toml; nothing where nothing did, or where it is gone."""
+    from dem_cli import api
+    from dem_cli.post.spectra import Suite, draw_spectra
+
+    path = folder / "case.toml"
+    if not path.is_file():
+        return []
+    try:
+        loaded = api.load_case(path)
+        kind = loaded.case.analysis.kind
+        if kind not in ("time-history", "fragility") or all(table.kind == "none" for table in loaded.case.motion):
+            return []
+        groups = groups_of(loaded, compare=False)
+    except DemError as error:
+        console.note(f"no {SPECTRA}: {error}")
+        return []
+    suites = [
+        Suite(group.motions if kind == "fragility" else [group.motions[group.chosen]], group.target)
+        for group in groups
+    ]
+    draw_spectra(suites, output / SPECTRA, loaded.case.title)
+    return [output / SPECTRA]
 
 
 def as_csv(motion: Motion) -> str:

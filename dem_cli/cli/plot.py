@@ -16,7 +16,8 @@ from dem_cli.cli import console
 )
 @click.option("--animate", is_flag=True, help="Draw collapse.gif as well.")
 def command(folder: Path, output: Path | None, animate: bool) -> None:
-    """Draw capacity.png, histories.png, collapse.png and energy.png from the results in DIR: those that it has."""
+    """Draw what the results in DIR hold: capacity.png, histories.png, collapse.png, energy.png, spectra.png."""
+    from dem_cli.cli.motion import draw_spectra_of_run
     from dem_cli.output.folder import write_error
     from dem_cli.post.plots import draw_all
 
@@ -24,7 +25,7 @@ def command(folder: Path, output: Path | None, animate: bool) -> None:
     try:
         if output is not None:
             output.mkdir(parents=True, exist_ok=True)
-        written = draw_all(folder, target, animate)
+        written = draw_all(folder, target, animate) + draw_spectra_of_run(folder, target)
     except OSError as error:
         raise write_error(error, target) from None
     for path in written:
