@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.motion.build import motions_of
+from dem_cli.motion.build import motions_of, suites_of
 from dem_cli.solve.damping import damping_of
 from dem_cli.solve.estimate import duration
 from dem_cli.solve.frequencies import modes, system
@@ -61,17 +61,37 @@ def _first(sim: Shaken) -> str:
 
 
 def _cost(case: Case, sim: Shaken, step: TimeStep) -> list[tuple[str, str]]:
-    ground = GroundMotion(motions_of(case), sim.model)
-    length, points = case.analysis.duration or ground.duration, len(sim.joints.kn)
+    analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
+    length, points = analysis.duration or ground.duration, len(sim.joints.kn)
     if length <= 0.0:
-        return [("motion", "how long is not said: no [motion] does, and analysis.duration is missing")]
-    motion = ("motion", f"{length:g} s, peak {ground.peak:.4g} m/s²")
+        return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
+    runs, said = _runs(case)
+    peak = "" if analysis.kind == "fragility" else f", peak {ground.peak:.4g} m/s²"
+    rows = [("load", f"{length:g} s of motion{peak}"), *([("runs", said)] if said else [])]
     if not math.isfinite(step.step):
-        return [motion]
+        return rows
     steps = math.ceil(length / step.step)
-    seconds = 1e-9 * NANOSECONDS * steps * points
+    seconds = 1e-9 * NANOSECONDS * steps * points * runs
+    each = f"{runs:,} runs × " if runs > 1 else ""
     return [
-        motion,
+        *rows,
         ("steps", f"{steps:,}"),
-        ("cost", f"{duration(seconds)} on one core ({steps:,} steps × {points:,} points × {NANOSECONDS} ns)"),
+        ("cost", f"{duration(seconds)} on one core ({each}{steps:,} steps × {points:,} points × {NANOSECONDS} ns)"),
     ]
+
+
+def _runs(case: Case) -> tuple[int, str]:
+    """How many runs there are at most, and why; no words for one."""
+    analysis = case.analysis
+    repeats = 1 + analysis.repeats
+    words = f" × {repeats} with repeats" if repeats > 1 else ""
+    if analysis.kind != "fragility":
+        return repeats, f"{repeats} with repeats" if repeats > 1 else ""
+    records = sum(map(len, suites_of(case)))
+    if analysis.bisects:
+        parts = len(analysis.intensities or ()) or (analysis.highest - analysis.lowest) / analysis.resolution
+        levels, name = math.ceil(math.log2(max(parts, 1.0))) + 2, "steps of bisection"
+    else:
+        levels, name = len(analysis.intensities), "intensities"
+    runs = records * levels * repeats
+    return runs, f"{records} records × {levels} {name}{words}: {'about ' if analysis.bisects else ''}{runs:,}"

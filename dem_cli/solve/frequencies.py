@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from dem_cli.solve.simulation import Simulation
 
-DENSE = 90  # degrees of freedom up to which a full matrix is the faster way to the highest eigenvalue
-DENSE_MODES = 300  # the same, to the lowest ones
-ACCURATE = 1e-4  # of the highest eigenvalue: its residual
+DENSE = 30  # degrees of freedom up to which a full matrix is used; beyond, threads of BLAS may cost more than they give
+DENSE_SHARE = 0.5  # of all modes: from there on as well
+ACCURATE = 1e-6  # residual over the highest eigenvalue, whose error is of its square
 ZERO, SHIFT = 1e-12, 1e-10  # of the highest eigenvalue: no vibration below it; where the lowest ones are looked for
 EQUAL = 1e-6  # shares of energy that are no further apart are the same: the first block or joint is named
 
@@ -97,7 +97,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
 def highest_frequency(sim: Simulation) -> float:
     """Highest natural frequency ω [rad/s] with all contact points closed; 0 where there are none.
 
-    The largest eigenvalue to within 1e-4, or Gershgorin's bound above it where the iteration does not converge.
+    The largest eigenvalue to round-off, or Gershgorin's bound above it where the iteration does not converge.
     """
     return _largest(system(sim))[0]
 
@@ -173,7 +173,7 @@ def _lowest(matrix: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
     n = matrix.shape[0]
     largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
     while True:
-        if n <= DENSE_MODES:
+        if n <= DENSE or asked >= DENSE_SHARE * n:
             values, vectors = np.linalg.eigh(matrix.toarray())
         else:
             values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)

@@ -99,7 +99,7 @@ def shaken(tmp_path, *overrides: str) -> dict[str, str]:
 def test_time_history(tmp_path, monkeypatch):
     monkeypatch.setattr(simulation, "make_advance", None)
     simulation.compiled_advance.cache_clear()
-    found = shaken(tmp_path)
+    found = shaken(tmp_path, "analysis.margin=0.5")
     # Sliding and rocking of one block (numerics.md): ω² of K/M are 2 ± √3.4, K/M = 1e9/4000.
     highest, lowest = ((1e9 / 4000 * (2 + sign * 3.4**0.5)) ** 0.5 for sign in (1, -1))
     assert found["highest frequency"] == f"'column-1' on 'column-base' vibrates at {highest / 6.283185307:.4g} Hz"
@@ -107,7 +107,11 @@ def test_time_history(tmp_path, monkeypatch):
     assert float(found["first frequency"].split()[0]) == pytest.approx(lowest / 6.283185307, rel=1e-3)
     assert found["steps"] == f"{int(5.0 * highest) + 1:,}"
     assert found["cost"].endswith(f"({found['steps']} steps × 2 points × 40 ns)")
-    assert found["motion"] == "5 s, peak 3 m/s²"
+    assert found["load"] == "5 s of motion, peak 3 m/s²"
+    assert "runs" not in found
+    repeated = shaken(tmp_path, "analysis.margin=0.5", "analysis.repeats=9")
+    assert repeated["runs"] == "10 with repeats"
+    assert f"(10 runs × {found['steps']} steps" in repeated["cost"]
     half = shaken(tmp_path, "analysis.margin=0.25")
     assert half["time step"].startswith(f"{0.5 / highest:.3g} s, 0.25 of")
 
@@ -126,5 +130,25 @@ def test_time_history_that_says_no_duration(tmp_path):
     path.write_text(text)
     loaded = api.load_case(path)
     found = dict(describe(loaded.case, api.build_model(loaded)))
-    assert "analysis.duration is missing" in found["motion"]
+    assert "analysis.duration is missing" in found["load"]
     assert "cost" not in found
+
+
+@pytest.mark.parametrize(
+    ("levels", "runs"),
+    [
+        ("intensities = [1.0, 2.0, 3.0]", "4 records × 3 intensities: 12"),
+        ("lowest = 1.0\nhighest = 5.0\nresolution = 0.5", "4 records × 5 steps of bisection: about 20"),
+    ],
+)
+def test_fragility(tmp_path, levels, runs):
+    text = SHAKEN.replace("time-history", "fragility").replace("duration = 5.0", levels)
+    start, end = text.index("[motion]"), text.index("[analysis]")
+    motion = '[motion]\nkind = "artificial"\nspectrum = "EC8-1"\nsoil = "B"\nag = 2.0\nduration = 20.0\ncount = 4\n'
+    path = tmp_path / "case.toml"
+    path.write_text(text[:start] + motion + text[end:])
+    loaded = api.load_case(path)
+    found = dict(describe(loaded.case, api.build_model(loaded)))
+    assert found["runs"] == runs
+    assert found["load"] == "20 s of motion"
+    assert f"({int(runs.split()[-1])} runs × " in found["cost"]
