@@ -126,7 +126,7 @@ def execute(
         with interrupts.shielded():
             names = monitor_names(case.monitor)
             text, kind = case_text(case), case.analysis.kind
-            quantities = [monitor.quantity for monitor in case.monitor]
+            quantities = [("absolute " if m.absolute else "") + m.quantity for m in case.monitor]
             writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
         with abandoning(writer), console.Progress(quiet) as bar:
             recorder = Recorder(writer, bar, interrupts)

@@ -20,6 +20,7 @@ from dem_cli.output.columns import Columns
 from dem_cli.output.record import Samples
 
 UNITS = {"displacement": "m", "rotation": "rad", "opening": "m", "slip": "m", "velocity": "m/s", "acceleration": "m/s2"}
+UNITS |= {f"absolute {name}": UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
 _TEXT = h5py.string_dtype()

@@ -81,7 +81,7 @@ def _draw_panel(
         low, high = factor * min(0.0, shown.min()), factor * max(0.0, shown.max())
         margin = (_BEYOND - 1.0) * (high - low)
         axis.set_ylim(low - (margin or 1.0), high + (margin or 1.0))
-    axis.set_ylabel(f"{quantity}\n[{unit}]")
+    axis.set_ylabel("\n".join([*quantity.split(), f"[{unit}]"]))
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
 
 
