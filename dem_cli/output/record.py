@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -84,6 +85,19 @@ class Samples(NamedTuple):
     monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
 
 
+class RunRow(NamedTuple):
+    """What became of one of many runs."""
+
+    structure: int  # 0: that of the case; others are slightly different
+    record: str  # the ground motion
+    intensity: float
+    acceleration: float  # peak of the ground [m/s2]
+    collapsed: bool | None  # None: the run failed
+    time: float | None  # of the collapse [s]
+    how: str  # what collapsed and how, or why the run failed
+    peaks: tuple[float, ...]  # largest absolute values, in the order of the case's [[monitor]] tables
+
+
 class Observer(Protocol):
     """Who a solver reports to while it runs; all return at once and never change the state."""
 
@@ -98,3 +112,6 @@ class Observer(Protocol):
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """All runs of an analysis that consists of many, at its end."""

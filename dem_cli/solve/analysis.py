@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+
+Share = Annotated[float, Field(ge=0.0, le=0.2)]
 
 
 @dataclass(frozen=True)
@@ -89,27 +91,99 @@ class SettlementAnalysis(AnalysisBase):
     kind: Literal["settlement"] = "settlement"
 
 
-class TimeHistoryAnalysis(CaseModel):
-    """[analysis] with kind = "time-history": the motion of the structure while its supports move."""
+class Perturbation(CaseModel):
+    """analysis.perturb: relative standard deviations of what `repeats` change, each drawn from the seed of the case."""
 
-    kind: Literal["time-history"] = "time-history"
+    friction: Share = Field(default=0.02, description="of the friction coefficient, a factor per joint in [joints]")
+    geometry: Share = Field(
+        default=0.001,
+        description="of the size of blocks: mass and centre of mass of each change as by such errors, and the ground "
+        "leans by as many radians; joints stay closed",
+    )
+    motion: Share = Field(default=0.001, description="of the strength of the ground motion")
+
+
+class ShakingAnalysis(CaseModel):
+    """What analyses of structures that are shaken accept."""
+
     duration: float | None = Field(default=None, gt=0.0, description="[s]; default: that of the motion")
     time_step: float | None = Field(
         default=None, gt=0.0, description="[s]; default: margin × the largest stable one of joints that all touch"
     )
-    margin: float = Field(default=0.2, gt=0.0, le=0.95, description="time step over the largest stable one")
+    margin: float = Field(default=0.15, gt=0.0, le=0.95, description="time step over the largest stable one")
     settle: bool = Field(default=True, description="come to rest under dead loads first; false: start as drawn")
     fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed")
     dropped: float | None = Field(
         default=None, gt=0.0, description="a block that sank by so much has collapsed [m]; default: its least width"
     )
-    after_collapse: float = Field(default=0.5, ge=0.0, description="how long a collapse is followed [s]")
     max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
+    repeats: int = Field(default=0, ge=0, le=10_000, description="runs of slightly different structures beside it")
+    perturb: Perturbation = Field(default=Perturbation(), description="how different: { friction, geometry, motion }")
 
     @property
     def kinematics(self) -> str:
         """Geometry always moves."""
         return "large"
+
+
+class TimeHistoryAnalysis(ShakingAnalysis):
+    """[analysis] with kind = "time-history": the motion of the structure while its supports move."""
+
+    kind: Literal["time-history"] = "time-history"
+    after_collapse: float = Field(default=0.5, ge=0.0, description="how long a collapse is followed [s]")
+
+
+class FragilityAnalysis(ShakingAnalysis):
+    """[analysis] with kind = "fragility": which intensities of a set of records the structure survives.
+
+    Every record of an artificial suite and every other [[motion]] is one record of the set. Intensity is peak ground
+    acceleration over unit_acceleration.
+    """
+
+    kind: Literal["fragility"] = "fragility"
+    intensities: tuple[Positive, ...] | None = Field(
+        default=None, min_length=1, description="levels to run, increasing; or lowest, highest and resolution"
+    )
+    lowest: Positive | None = Field(default=None, description="bisection between two intensities: the lower one")
+    highest: Positive | None = Field(default=None, description="and the higher one")
+    resolution: Positive | None = Field(default=None, description="and how closely a collapse is found between them")
+    search: Literal["grid", "bisection"] | None = Field(
+        default=None,
+        description="grid: every record at every level (default with intensities); bisection: per record only the runs "
+        "that lead to one change from standing to collapse, which need not be the lowest",
+    )
+    unit_acceleration: Positive = Field(default=1.0, description="peak acceleration at intensity 1 [m/s2]")
+    coda: NonNegative = Field(
+        default=5.0, description="time after the motion in which a structure that still moves may fall [s]"
+    )
+    confidence: float = Field(default=0.9, gt=0.0, lt=1.0, description="of the band around the curve")
+
+    @model_validator(mode="after")
+    def _levels_or_range(self) -> FragilityAnalysis:
+        ends = {key: getattr(self, key) for key in ("lowest", "highest", "resolution")}
+        given = [key for key, value in ends.items() if value is not None]
+        if self.intensities is not None:
+            if given:
+                raise KeyProblem("not allowed beside intensities", given[0])
+            for i in range(1, len(self.intensities)):
+                if self.intensities[i] <= self.intensities[i - 1]:
+                    raise KeyProblem(f"{self.intensities[i]:g} is not allowed; intensities increase", "intensities", i)
+            return self
+        if len(given) < len(ends):
+            missing = next(key for key, value in ends.items() if value is None)
+            raise KeyProblem("missing; give intensities, or lowest, highest and resolution", missing)
+        if self.search == "grid":
+            raise KeyProblem("'grid' needs intensities", "search")
+        if not self.lowest < self.highest:  # type: ignore[operator]
+            raise KeyProblem(f"{self.highest:g} is not allowed; must be more than lowest", "highest")
+        if self.resolution > self.highest - self.lowest:  # type: ignore[operator]
+            raise KeyProblem(f"{self.resolution:g} is not allowed; is more than highest − lowest", "resolution")
+        return self
+
+    @property
+    def bisects(self) -> bool:
+        """Whether only some of the runs are done."""
+        return self.intensities is None or self.search == "bisection"
 
 
 class ModesAnalysis(AnalysisBase):

@@ -3,6 +3,7 @@
 from dem_cli.solve.analysis import (
     Analysis,
     CycleAnalysis,
+    FragilityAnalysis,
     GravityAnalysis,
     ModesAnalysis,
     PushoverAnalysis,
@@ -47,6 +48,12 @@ def _time_history():
     return run
 
 
+def _fragility():
+    from dem_cli.solve.fragility import run
+
+    return run
+
+
 ANALYSES: dict[str, Analysis] = {
     analysis.kind: analysis
     for analysis in (
@@ -55,6 +62,7 @@ ANALYSES: dict[str, Analysis] = {
         Analysis("gravity", GravityAnalysis, _gravity),
         Analysis("settlement", SettlementAnalysis, _settlement),
         Analysis("time-history", TimeHistoryAnalysis, _time_history),
+        Analysis("fragility", FragilityAnalysis, _fragility),
         Analysis("modes", ModesAnalysis, _modes),
     )
 }
