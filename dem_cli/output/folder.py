@@ -39,6 +39,7 @@ OWN_NAMES = frozenset(
         "records",
         "spectra.png",
         "motion.png",
+        "modes.png",
         "pvd",
     )
 )
