@@ -66,6 +66,8 @@ class SeriesWriter:
             self._remember(samples)
 
     def _remember(self, samples: Samples) -> None:
+        if not self.names:
+            return
         values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
         largest = np.abs(values).argmax(axis=0)
         for i, row in enumerate(largest.tolist()):
@@ -89,7 +91,8 @@ class SeriesWriter:
             times, base, monitors = (np.concatenate(parts) for parts in zip(*waiting, strict=True))
             for i, name in enumerate(BASE):
                 self._columns.append(f"base_{name}", base[:, i])
-            self._columns.append("monitors", monitors)
+            if self.names:
+                self._columns.append("monitors", monitors)
             self._columns.append("time", times)  # last: it counts
 
     def write_csv(self, path: Path) -> None:
@@ -121,6 +124,6 @@ def read_series(group: h5py.Group) -> Series:
         return Series(nothing, np.zeros((0, len(BASE), 2)), dict.fromkeys(names, nothing), dict(zip(names, quantities)))
     n = len(group["time"])
     base = np.stack([group[f"base_{name}"][:n] for name in BASE], axis=1)
-    values = group["monitors"][:n]
+    values = group["monitors"][:n] if names else np.zeros((n, 0))
     monitors = {name: values[:, i] for i, name in enumerate(names)}
     return Series(group["time"][:], base, monitors, dict(zip(names, quantities, strict=True)))

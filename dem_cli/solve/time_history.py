@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.track import Track
 
 DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
+LONGEST_LOOK = 0.05  # s from one look to the next, at most
 ROWS = 400  # looks along the way: energies, collapse, whether all is well
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
@@ -42,6 +43,18 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     job = Job.start(case, model, observer)
     history = TimeHistory(job, GroundMotion(motions_of(case), model))
     return history.run()
+
+
+class Frames:
+    """When snapshots are due: at even times from a start to an end, each once."""
+
+    def __init__(self, start: float, end: float, count: int):
+        self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
+
+    def due(self, time: float) -> bool:
+        """Whether a snapshot was due up to now since the last one."""
+        before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
+        return self.shown > before
 
 
 class TimeHistory:
@@ -109,11 +122,11 @@ class TimeHistory:
                 f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
                 f"({self.case.analysis.max_steps:,}): {self.step.cause}"
             )
-        stretch = every * math.ceil(total / ROWS / every)
-        frames = np.linspace(0.0, self.duration, max(output.frames, 2))[1:]
-        done, shown, fallen, end = 0, 0, None, self.duration
+        stretch = every * max(1, math.ceil(min(total / ROWS, LONGEST_LOOK / dt) / every))
+        done, fallen, end = 0, None, self.duration
+        frames = Frames(0.0, end, output.frames)
         while done < total and sim.time < end - 0.5 * dt:
-            n = min(stretch, total - done)
+            n = min(stretch, total - done, max(1, math.ceil((end - sim.time) / dt - 0.5)))
             self._stretch(n, every)
             done += n
             self._look()
@@ -121,10 +134,9 @@ class TimeHistory:
                 fallen = fallen_block(sim, self.case.analysis)
                 if fallen is not None:
                     end = min(end, fallen.time + self.case.analysis.after_collapse)
-                    self.track.frame("collapse")
-            if shown < len(frames) and sim.time >= frames[shown] - 0.5 * dt:
+                    frames = Frames(sim.time, end, max(output.frames // 2, 2))
+            if frames.due(sim.time + 0.5 * dt):
                 self.track.frame("collapse" if fallen else "shaking")
-                shown = int((frames <= sim.time + 0.5 * dt).sum())
             self.track.observer.progress(
                 "shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0)
             )
