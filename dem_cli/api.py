@@ -50,7 +50,7 @@ def build_model(loaded: LoadedCase) -> Model:
     from dem_cli.model import validate
     from dem_cli.model.assemble import assembly
 
-    found_odd = []
+    found_odd: list[str] = []
     try:
         made = assembly(loaded.case)
         if loaded.case.motion:

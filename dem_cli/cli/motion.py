@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 RECORDS, SPECTRA, PICTURE = "records", "spectra.png", "motion.png"
 COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
+SHAKEN = ("time-history", "fragility")  # kinds of runs that motions go into
 HEADINGS = ("record", "duration", "acceleration", "velocity", "displacement", "Arias", "5–95 %", "spectrum/target")
 
 
@@ -158,17 +159,21 @@ def draw(folder: Path, groups: Sequence[Group], title: str) -> None:
 
 
 def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
-    """spectra.png of what shook a run, from its case.toml; nothing where nothing did, or where it is gone."""
+    """spectra.png of what shook the run in `folder`; nothing where nothing did, or where a record is gone."""
+    from dem_cli.output.reader import read
+
+    kind = read(folder).kind
+    return draw_spectra_of_case(folder / "case.toml", kind, output) if kind in SHAKEN else []
+
+
+def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
+    """spectra.png of a case: of a fragility study the whole suite, otherwise the record that is used."""
     from dem_cli import api
     from dem_cli.post.spectra import Suite, draw_spectra
 
-    path = folder / "case.toml"
-    if not path.is_file():
-        return []
     try:
         loaded = api.load_case(path)
-        kind = loaded.case.analysis.kind
-        if kind not in ("time-history", "fragility") or all(table.kind == "none" for table in loaded.case.motion):
+        if all(table.kind == "none" for table in loaded.case.motion):
             return []
         groups = groups_of(loaded, compare=False)
     except DemError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,32 +65,33 @@ def _moving(case: Case) -> list[MotionTable]:
 
 def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
     """The records of one table, with its direction, blocks and start."""
-    factor = 1.0
-    shapes: list[Shape]
+    factor, titles, shapes = 1.0, [""], list[Shape]()
     if isinstance(table, PulseTable):
-        shapes, name = [_pulse(table)], table.shape
+        shapes, titles = [_pulse(table)], [table.shape]
     elif isinstance(table, HarmonicTable):
-        shapes, name = [_harmonic(table)], f"{table.frequency:g} Hz"
+        shapes, titles = [_harmonic(table)], [f"{table.frequency:g} Hz"]
     elif isinstance(table, RecordTable):
-        shape = _record(table, i_table)
-        shapes, name = [shape], Path(table.file).stem
-        factor = table.peak / shape.peak if table.peak is not None else table.scale or 1.0
-    else:
-        assert isinstance(table, ArtificialTable)
+        shapes, titles = [_record(table, i_table)], [Path(table.file).stem]
+        factor = table.peak / shapes[0].peak if table.peak is not None else table.scale or 1.0
+    elif isinstance(table, ArtificialTable):
         from dem_cli.motion.synthetic import suite
 
-        chosen = seed if table.seed is None else table.seed
-        shapes, name, factor = [*suite(table, chosen, i_table)], "artificial", table.scale
+        shapes = [*suite(table, seed if table.seed is None else table.seed, i_table)]
+        titles, factor = [f"artificial {k}" for k in range(1, table.count + 1)], table.scale
     along = _unit(table.direction)
-    motions = []
-    for k, shape in enumerate(shapes, 1):
-        title = f"{name} {k}" if isinstance(table, ArtificialTable) else name
-        motion = Motion(shape, along, table.blocks, table.start, factor, title)
-        warning = moving_at_the_end(motion) if isinstance(table, RecordTable) else ""
-        advice = "" if getattr(table, "baseline", False) is not False else "; baseline = true takes a drift out"
-        motions.append(Motion(shape, along, table.blocks, table.start, factor, title, (warning + advice,))
-                       if warning else motion)
-    return motions
+    motions = [
+        Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)
+    ]
+    return [_with_warning(motions[0], table)] if isinstance(table, RecordTable) else motions
+
+
+def _with_warning(motion: Motion, table: RecordTable) -> Motion:
+    """A record, which may leave the base moving."""
+    warning = moving_at_the_end(motion)
+    if not warning:
+        return motion
+    advice = "; baseline = true takes a drift out" if table.baseline is False else ""
+    return replace(motion, warnings=(warning + advice,))
 
 
 def _unit(direction: Pair) -> Pair:

@@ -50,13 +50,13 @@ class Wave:
     def _piece(self, t: np.ndarray) -> np.ndarray:
         return np.clip(np.searchsorted(self.knots, t, side="right") - 1, 0, len(self.knots) - 1)
 
-    def _first(self, t: np.ndarray, k: np.ndarray) -> np.ndarray:
+    def _first(self, t: np.ndarray, k: np.ndarray | int) -> np.ndarray:
         """∫ (c + s t) sin(ωt + φ) dt = −(c + s t) cos(ωt + φ)/ω + s sin(ωt + φ)/ω²"""
         w, angle = self.omega, self.omega * t + self.phase
         ramp = self.levels[k] + self.slopes[k] * t
         return self.amplitude * (-ramp * np.cos(angle) / w + self.slopes[k] * np.sin(angle) / w**2)
 
-    def _second(self, t: np.ndarray, k: np.ndarray) -> np.ndarray:
+    def _second(self, t: np.ndarray, k: np.ndarray | int) -> np.ndarray:
         """∫∫ (c + s t) sin(ωt + φ) dt² = −(c + s t) sin(ωt + φ)/ω² − 2 s cos(ωt + φ)/ω³"""
         w, angle = self.omega, self.omega * t + self.phase
         ramp = self.levels[k] + self.slopes[k] * t

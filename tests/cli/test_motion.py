@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from dem_cli.api import load_case, make_case_model
 from dem_cli.cli.main import main
-from dem_cli.cli.motion import draw_spectra_of_run
+from dem_cli.cli.motion import draw_spectra_of_case
 from dem_cli.motion.build import motions_of
 
 CASE = """
@@ -132,15 +132,20 @@ def test_a_bad_record_is_exit_code_2(tmp_path):
     assert dem("check", tmp_path / "case.toml").exit_code == 2
 
 
-def test_spectra_of_a_run(suite, tmp_path):
-    """`dem plot` draws them for a time history, and only remarks on a record that is gone."""
-    shaken = '[analysis]\nkind = "time-history"\nduration = 1.0\n'
-    (tmp_path / "case.toml").write_text(CASE + SUITE)
-    assert draw_spectra_of_run(tmp_path, tmp_path) == []  # a pushover
-    (tmp_path / "case.toml").write_text(CASE + shaken + SUITE)
-    assert draw_spectra_of_run(tmp_path, tmp_path) == [tmp_path / "spectra.png"]
-    (tmp_path / "case.toml").write_text(CASE + shaken + RECORD.format("gone.csv"))
-    assert draw_spectra_of_run(tmp_path, tmp_path) == []
+def test_spectra_of_what_shook_a_run(tmp_path):
+    """A record that is gone, and a case without motion, leave a remark or nothing."""
+    case = tmp_path / "case.toml"
+    case.write_text(CASE + SUITE)
+    pictures = []
+    for kind in ("time-history", "fragility"):
+        (tmp_path / kind).mkdir()
+        assert draw_spectra_of_case(case, kind, tmp_path / kind) == [tmp_path / kind / "spectra.png"]
+        pictures.append((tmp_path / kind / "spectra.png").read_bytes())
+    assert pictures[0] != pictures[1]  # the record that is used; all seven
+    case.write_text(CASE + RECORD.format("gone.csv"))
+    assert draw_spectra_of_case(case, "time-history", tmp_path) == []
+    case.write_text(CASE)
+    assert draw_spectra_of_case(case, "time-history", tmp_path) == []
 
 
 def test_editors_may_write_one_table_or_several():
