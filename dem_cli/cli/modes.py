@@ -21,7 +21,7 @@ def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     if len(frequencies) > MOST:
         rows.append(("", f"and {len(frequencies) - MOST} more in summary.json"))
     if not len(frequencies):
-        rows.append(("modes", "none: no joint holds any block"))
+        return [("modes", "none: no joint holds any block")]
     sums = "  ".join(f"{axis} {100 * sum(values) / total:5.1f} %" for axis, values in masses.items())
     rows.append(("all of these", f"{'':13}   mass along {sums}"))
     rows += _springs(summary)

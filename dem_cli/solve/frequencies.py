@@ -144,14 +144,14 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
     """
     n_free = len(found.blocks)
-    n_dof = len(found.masses) // max(n_free, 1)
+    n_dof = dimension * (dimension + 1) // 2
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)
     values, held_vectors = _lowest(found.matrix[held][:, held], count)
     vectors = np.zeros((len(values), n_free * n_dof))
     vectors[:, held] = held_vectors.T
-    vectors = vectors.reshape(-1, n_free, n_dof)
+    vectors = vectors.reshape(len(values), n_free, n_dof)
     still = values == 0.0
     loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > EQUAL).any(axis=0)
     masses = found.masses.reshape(n_free, n_dof)
