@@ -64,7 +64,9 @@ class Modes(NamedTuple):
     """The slowest vibrations of a structure, slowest first."""
 
     frequencies: np.ndarray  # [Hz], (n,)
-    shapes: np.ndarray  # scaled to φᵀ M φ = 1 kg m2 [m, rad]; zero for fixed blocks, (n, n_blocks, n_dof)
+    shapes: (
+        np.ndarray
+    )  # scaled to φᵀ M φ = 1 kg m2, translations [m], rotations [rad]; zero for fixed blocks, (n, n_blocks, n_dof)
     effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
     mechanisms: int  # motions of free blocks that no joint holds back: without a frequency, not among the above
     loose: np.ndarray  # blocks that take part in these, (n_loose,)
@@ -149,9 +151,9 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)
     values, held_vectors = _lowest(found.matrix[held][:, held], count)
-    vectors = np.zeros((len(values), n_free * n_dof))
-    vectors[:, held] = held_vectors.T
-    vectors = vectors.reshape(len(values), n_free, n_dof)
+    flat = np.zeros((len(values), n_free * n_dof))
+    flat[:, held] = held_vectors.T
+    vectors = flat.reshape(len(values), n_free, n_dof)
     still = values == 0.0
     loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > EQUAL).any(axis=0)
     masses = found.masses.reshape(n_free, n_dof)

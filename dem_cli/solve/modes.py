@@ -38,7 +38,8 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a modal analysis. Raises CaseError where the structure has no mode with the number asked for."""
     job = Job.start(case, model, observer)
     sim = _simulation(job)
-    track, found = job.track(sim), {}
+    track = job.track(sim)
+    found: dict[str, Any] = {}
     try:
         stands = settle(sim, track, job.budget).state == "equilibrium"
         found = {"status": "ok", **_answer(job, sim)} if stands else {"status": FALLS}
@@ -168,7 +169,8 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
     with the new stiffness, and the factor is corrected until the frequency is met.
     """
     wanted = job.case.analysis
-    factor, found, tried, sinks = 1.0, computed, [], sim.largest_overlap() / sim.smallest
+    tried: list[float] = []
+    factor, found, sinks = 1.0, computed, sim.largest_overlap() / sim.smallest
     while len(tried) < ROUNDS and abs(found / wanted.measured - 1.0) > AGREES:
         factor *= (wanted.measured / found) ** 2
         frequency = _frequency_with(job, sim, factor) if sinks / factor < SINKS else None
