@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+from dem_cli.cli.fragility import fragility_rows
 from dem_cli.cli.modes import mode_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
@@ -57,11 +59,12 @@ class Progress:
 
     def _say(self, now: float, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         drive = f"base {load:+.3f} g" if stage == "shaking" else f"load {load:.4f}"
-        where = f"{drive}, displacement {metres(displacement)}"
+        where = "" if math.isnan(load) else f"{drive}, displacement {metres(displacement)}"  # many runs: none of them
         if self.on_terminal:
             self._draw(stage, where, fraction)
         else:
-            print(f"{stage}: {where}{self._left(now, fraction)}", file=self.stream, flush=True)
+            says = f"{where}{self._left(now, fraction)}".removeprefix(", ")
+            print(f"{stage}: {says}", file=self.stream, flush=True)
 
     def _left(self, now: float, fraction: float | None) -> str:
         elapsed = now - self.start
@@ -114,7 +117,7 @@ STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analys
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
     lines = [str(summary["title"])]
-    rows = [*_load_rows(summary), *_shaking_rows(summary), *mode_rows(summary)]
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
     rows += [*_sureness_rows(summary), *_cost_rows(summary)]
     rows += [("warning", text) for text in summary.get("warnings", ())]
     if verbose:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -13,6 +14,7 @@ import click
 from dem_cli import __version__
 from dem_cli.cli import console
 from dem_cli.cli.interrupt import Interrupts
+from dem_cli.cli.many import Wish, batch_of, check, finish
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.errors import DemError, SolverError
 
@@ -21,8 +23,9 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case, Monitor
     from dem_cli.model.model import Model
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
+    from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
     from dem_cli.output.store import ResultWriter
+    from dem_cli.solve.batch import Batch
 
 
 class Outcome(Protocol):
@@ -35,6 +38,7 @@ class Outcome(Protocol):
 ANSWERS = {
     "pushover": ("failure_load", "failure_load_bracket", "failure_mode", "displacement_at_failure"),
     "time-history": ("collapsed", "collapse_time"),
+    "fragility": ("median", "dispersion", "collapse_intensities"),
 }
 
 Solve = Callable[["Case", "Model", "Observer"], Outcome]
@@ -58,6 +62,10 @@ class Recorder:
         with self.interrupts.shielded():
             self.writer.samples(samples)
 
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        with self.interrupts.shielded():
+            self.writer.runs(rows)
+
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         self.bar.update(stage, load, displacement, fraction)
 
@@ -70,6 +78,15 @@ class Recorder:
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
 @click.option("-v", "--verbose", is_flag=True, help="Say what was skipped because the case does not need it.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
+@click.option(
+    "-j",
+    "--threads",
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Runs side by side, of analyses that consist of many; default: all cores.",
+)
+@click.option("--resume", is_flag=True, help="Go on where an interrupted analysis of many runs stopped.")
 @click.option("--plot/--no-plot", default=False, help="Draw the pictures of `dem plot` as well.")
 def command(
     case: str,
@@ -79,6 +96,8 @@ def command(
     quiet: bool,
     verbose: bool,
     force: bool,
+    threads: int | None,
+    resume: bool,
     plot: bool,
 ) -> int:
     """Solve CASE and write its results to DIR."""
@@ -87,6 +106,8 @@ def command(
 
     started = time.perf_counter()
     loaded = api.load_case(case, overrides)
+    wish = Wish(threads, resume)
+    check(loaded.case, wish)
     model = api.build_model(loaded)
     summary, folder = execute(
         loaded,
@@ -96,6 +117,7 @@ def command(
         force=force,
         quiet=quiet,
         plot=plot,
+        wish=wish,
     )
     if as_json:
         console.show(to_json(summary).rstrip())
@@ -114,6 +136,7 @@ def execute(
     quiet: bool = False,
     plot: bool = False,
     solve: Solve | None = None,
+    wish: Wish | None = None,
 ) -> tuple[dict[str, Any], Path]:
     """Solve and write; returns the summary and where the results are. Nothing is left where it fails."""
     from dem_cli.case.writer import case_text
@@ -128,9 +151,13 @@ def execute(
             text, kind = case_text(case), case.analysis.kind
             quantities = [("absolute " if m.absolute else "") + m.quantity for m in case.monitor]
             writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
-        with abandoning(writer), console.Progress(quiet) as bar:
+        with (
+            abandoning(writer),
+            batch_of(case, text, folder, wish or Wish(), quiet) as batch,
+            console.Progress(quiet) as bar,
+        ):
             recorder = Recorder(writer, bar, interrupts)
-            found = solved(solve or load_solver(case), case, model, recorder)
+            found = solved(solve or load_solver(batch), case, model, recorder)
             interrupts.ignore()
             bar.stop()
             peaks = {"peaks": writer.peaks()} if writer.peaks() else {}
@@ -138,14 +165,17 @@ def execute(
             writer.close(summary)
             if plot:
                 draw(folder.path, quiet)
-            return summary, put_in_place(folder, summary, quiet)
+            place = put_in_place(folder, summary, quiet)
+            if batch is not None:
+                finish(batch, summary, quiet)
+            return summary, place
 
 
-def load_solver(case: Case) -> Solve:
+def load_solver(batch: Batch | None) -> Solve:
     """The solver, imported only when a case is ready to be solved."""
     from dem_cli.solve.run import run
 
-    return run
+    return run if batch is None else partial(run, batch=batch)
 
 
 def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:

@@ -34,6 +34,10 @@ OWN_NAMES = frozenset(
         "histories.png",
         "collapse.gif",
         "calibration.csv",
+        "fragility.csv",
+        "fragility.png",
+        "repeats.csv",
+        "repeats.png",
         "calibration.png",
         "calibrated.toml",
         "records",
@@ -45,6 +49,7 @@ OWN_NAMES = frozenset(
 )
 OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summary.json of ours has
 INTERRUPTED = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
+JOURNAL = ".dem-runs"  # suffix of the hidden file that keeps finished runs for --resume
 _LOCK = ".lock"
 _NEW, _OLD = "dem-new", "dem-old"
 _REASONS = {
@@ -92,7 +97,8 @@ def is_complete(folder: Path) -> bool:
 
 def foreign_names(folder: Path) -> list[str]:
     """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
-    names = sorted(n for n in os.listdir(folder) if not re.match(rf"\..*({_NEW}|{_OLD})-", n))
+    ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|{re.escape(JOURNAL)}$)")
+    names = sorted(n for n in os.listdir(folder) if not ours.match(n))
     names = [name for name in names if not (name.endswith(INTERRUPTED) and is_ours(folder / name))]
     return [name for name in names if name not in OWN_NAMES] if is_ours(folder) else names
 

@@ -25,7 +25,8 @@ from dem_cli.model.model import Model
 from dem_cli.output.columns import Columns
 from dem_cli.output.disk import HeldFile
 from dem_cli.output.folder import write_error
-from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, Samples
+from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, RunRow, Samples
+from dem_cli.output.runs import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
@@ -112,6 +113,11 @@ class ResultWriter:
         self._series.append(samples)
         if self._series.n_waiting >= _BUFFERED_SAMPLES:
             self._guarded(self._flush)
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """Keep the table of an analysis that consists of many runs."""
+        name = TABLES.get(self.kind, TABLES["time-history"])
+        self._guarded(lambda: write_runs(self.folder / name, rows, self.monitors))
 
     def peaks(self) -> dict[str, dict[str, float | str]]:
         """Peak, its time, last value and unit of each monitor of a time history so far, by name."""

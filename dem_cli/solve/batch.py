@@ -26,11 +26,11 @@ class Trial(NamedTuple):
 class Journal(Protocol):
     """Who keeps finished runs; what it has is not done again."""
 
-    def known(self) -> Mapping[Trial, Run]:
-        """Runs that were finished before."""
+    def known(self) -> Mapping[tuple, tuple]:
+        """Runs that were finished before: Trial and Run as plain tuples."""
 
-    def add(self, trial: Trial, run: Run) -> None:
-        """Keep a run; on disk when this returns."""
+    def add(self, key: tuple, values: tuple) -> None:
+        """Keep a run; a kill does not lose it."""
 
 
 class Batch(NamedTuple):
@@ -54,7 +54,8 @@ class Batcher:
 
     def __init__(self, structures: Sequence[Rested], motion: Callable[[Trial], Motion], batch: Batch):
         self.structures, self.motion, self.batch = structures, motion, batch
-        self.done: dict[Trial, Run] = dict(batch.journal.known()) if batch.journal else {}
+        known = batch.journal.known() if batch.journal else {}
+        self.done: dict[Trial, Run] = {Trial(*key): Run(*values) for key, values in known.items()}
         self.fresh = 0
         self._lock, self._cancelled = threading.Lock(), threading.Event()
 

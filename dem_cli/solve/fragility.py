@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.analysis import FragilityAnalysis
 
 MOST_LISTED = 5  # runs that one warning names
+FEW = 2  # intervals between levels that any narrow distribution fits
 
 
 def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
@@ -139,7 +140,7 @@ class Study:
             if survived_above(runs)
         ]
         answer["non_monotone"] = above
-        self._warn_about(answer)
+        self._warn_about(answer, len(np.unique(table.reshape(-1, 2), axis=0)))
         if len(structures) > 1:
             answer["repeats"] = {
                 "structures": structures[1:],
@@ -159,8 +160,13 @@ class Study:
         if failed:
             self.warnings.append(f"{len(failed)} of {len(self.batcher.done)} runs failed and are left out")
 
-    def _warn_about(self, answer: dict[str, Any]) -> None:
-        """What a reader of the curve must know."""
+    def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
+        """What a reader of the curve must know; intervals: different bounds of capacities."""
+        if answer["median"] is not None and intervals <= FEW:
+            self.warnings.append(
+                f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not resolved, "
+                "closer levels are needed"
+            )
         if self.analysis.bisects:
             self.warnings.append(
                 "bisection takes for granted that a structure that falls falls at every higher intensity too; rocking "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -29,6 +29,8 @@ from dem_cli.solve.track import Track
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.output.record import RunRow
+    from dem_cli.solve.batch import Batch
 
 NEAR = 1e-3  # gaps below this share of the smallest edge are meant: they may close
 
@@ -40,9 +42,13 @@ class Outcome:
     summary: dict[str, Any]
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
-    """Solve a case with the analysis that it names. Raises SolverError where the solver gives up."""
-    return ANALYSES[case.analysis.kind].load()(case, model, observer)
+def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+    """Solve a case with the analysis that it names. Raises SolverError where the solver gives up.
+
+    batch: how to do the runs of an analysis that consists of many.
+    """
+    solve = ANALYSES[case.analysis.kind].load()
+    return solve(case, model, observer) if batch is None else solve(case, model, observer, batch)
 
 
 class Clock:
@@ -69,6 +75,9 @@ class Clock:
         begun = time.perf_counter()
         self.observer.samples(samples)
         self.observing += time.perf_counter() - begun
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        self.observer.runs(rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         begun = time.perf_counter()

@@ -1,0 +1,86 @@
+"""What a user of `dem run` reads of many runs: the curve of a fragility study, the spread of repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+Rows = list[tuple[str, str]]
+MOST = 8  # levels, records or monitors that are listed
+
+
+def fragility_rows(summary: Mapping[str, Any]) -> Rows:
+    """Label and text of each line; nothing for other runs."""
+    if summary.get("kind") == "fragility":
+        return _study(summary) if summary.get("collapse_intensities") else []
+    return _repeats(summary["repeats"]) if summary.get("repeats") else []
+
+
+def _study(summary: Mapping[str, Any]) -> Rows:
+    unit = summary["unit_acceleration"]
+    rows = [("intensity", f"peak ground acceleration over {unit:g} m/s²")]
+    median = summary.get("median")
+    if median is None:
+        rows.append(("collapse", "no median: " + _why_no_median(summary)))
+    else:
+        sure = summary.get("confidence")
+        text = f"{median:.4g} ({median * unit:.3g} m/s²), dispersion {summary['dispersion']:.2g}"
+        if sure:
+            low, high = sure["median"]
+            text += f"; {100 * sure['level']:.0f} % confidence {low:.4g} to {high:.4g}"
+        rows.append(("median", text))
+    found = [value for value in summary["collapse_intensities"] if value is not None]
+    if found:
+        never = len(summary["collapse_intensities"]) - len(found)
+        text = f"{min(found):.4g} to {max(found):.4g}, mean {sum(found) / len(found):.4g}, {len(found)} records"
+        rows.append(("collapse at", text + (f"; {never} never collapsed" if never else "")))
+    rows += _shares(summary)
+    split = (summary.get("repeats") or {}).get("dispersion")
+    if split:
+        text = f"{split['records']:.2g} between records, {split['perturbation']:.2g} between perturbed structures"
+        rows.append(("dispersion", text))
+    rows += _non_monotone(summary["non_monotone"])
+    before = f", {summary['runs_done_before']:,} of them before" if summary["runs_done_before"] else ""
+    rows.append(("runs", f"{summary['runs']:,}{before}; {summary['seconds']:.3g} s of CPU"))
+    return rows
+
+
+def _why_no_median(summary: Mapping[str, Any]) -> str:
+    if all(value is None for value in summary["collapse_intensities"]):
+        return "nothing collapsed; higher intensities are needed"
+    return "every record collapsed at the lowest intensity; lower ones are needed"
+
+
+def _shares(summary: Mapping[str, Any]) -> Rows:
+    """How many collapsed at each level, of a grid."""
+    levels = list(zip(summary.get("levels") or (), summary.get("share") or ()))
+    if not levels:
+        return []
+    told = levels if len(levels) <= MOST else [p for p in levels if p[1] not in (0.0, 1.0)][:MOST]
+    text = ", ".join(f"{100 * share:.0f} % at {level:g}" for level, share in told if share is not None)
+    return [("share", text)] if text else []
+
+
+def _non_monotone(found: list[dict[str, Any]]) -> Rows:
+    """Records that a structure survived above a collapse."""
+    rows = []
+    for one in found[:MOST]:
+        who = one["record"] + (f", structure {one['structure']}" if one["structure"] else "")
+        survived = ", ".join(f"{level:g}" for level in one["survived"])
+        rows.append(("not monotone", f"{who}: collapsed at {one['collapsed']:g}, survived {survived}"))
+    if len(found) > MOST:
+        rows.append(("", f"and {len(found) - MOST} more in summary.json"))
+    return rows
+
+
+def _repeats(repeats: Mapping[str, Any]) -> Rows:
+    """The spread of the peaks over perturbed structures."""
+    rows = [("repeats", f"{repeats['collapsed']} of {repeats['runs']} perturbed structures collapsed")]
+    for name, spread in list(repeats["peaks"].items())[:MOST]:
+        if spread is None:
+            rows.append(("", f"{name}: none of them stood"))
+            continue
+        text = f"median {spread['median']:.3g}, 16 to 84 % {spread['p16']:.3g} to {spread['p84']:.3g}"
+        unit = spread["unit"]
+        rows.append(("", f"{name}: {text}, all {spread['min']:.3g} to {spread['max']:.3g} {unit}, of those that stood"))
+    return rows

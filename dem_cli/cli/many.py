@@ -1,0 +1,89 @@
+"""Analyses that consist of many runs: over how many threads, and what an interrupted one left."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from dem_cli.cli import console
+from dem_cli.cli.workers import usable_cores
+from dem_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.journal import Journal
+    from dem_cli.solve.batch import Batch
+
+
+class Wish(NamedTuple):
+    """What the user asked for."""
+
+    threads: int | None = None  # None: all cores
+    resume: bool = False
+
+
+def many(case: Case) -> bool:
+    """Whether the analysis of a case consists of many runs."""
+    return case.analysis.kind == "fragility" or getattr(case.analysis, "repeats", 0) > 0
+
+
+def check(case: Case, wish: Wish) -> None:
+    """Raises UsageError where there is nothing to resume."""
+    if wish.resume and not many(case):
+        raise UsageError(f"--resume: analysis.kind = '{case.analysis.kind}' is one run, which starts anew")
+
+
+@contextmanager
+def batch_of(case: Case, text: str, folder: OutputFolder, wish: Wish, quiet: bool) -> Iterator[Batch | None]:
+    """Threads and journal of the runs of a case; None where it is one run. Says what an interrupted one leaves.
+
+    text: the effective case. Raises UsageError where an earlier journal does not fit.
+    """
+    if not many(case):
+        yield None
+        return
+    from dem_cli.output.journal import Journal
+    from dem_cli.solve.batch import Batch
+
+    with Journal(folder.path.parent, folder.final.name, facts(case, text), wish.resume) as journal:
+        try:
+            yield Batch(wish.threads or usable_cores(), journal)
+        except KeyboardInterrupt:
+            left(journal, quiet)
+            raise
+
+
+def finish(batch: Batch, summary: dict[str, Any], quiet: bool) -> None:
+    """Once the results are in place: the journal goes, or it is said that it stays."""
+    from dem_cli.output.journal import Journal
+
+    assert isinstance(batch.journal, Journal)
+    if summary["status"] == "interrupted":
+        left(batch.journal, quiet)
+    else:
+        batch.journal.remove()
+
+
+def left(journal: Journal, quiet: bool) -> None:
+    """What an interrupted analysis leaves."""
+    if journal.count:
+        console.note(f"{journal.count:,} runs are kept; go on with --resume", quiet)
+
+
+def facts(case: Case, text: str) -> dict[str, str]:
+    """What must be the same for runs to be comparable: the case, the records that it names, and the program."""
+    from dem_cli.kernels.jit import cache_folder
+    from dem_cli.output.provenance import provenance
+
+    files = [Path(table.file) for table in case.motion if getattr(table, "file", None)]
+    records = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files))
+    program = " ".join([*(f"{name} {version}" for name, version in provenance().items()), cache_folder().name])
+    return {
+        "the case": hashlib.sha256(text.encode()).hexdigest(),
+        "a record": records.hexdigest(),
+        "the program": program,
+    }
