@@ -64,9 +64,7 @@ class Modes(NamedTuple):
     """The slowest vibrations of a structure, slowest first."""
 
     frequencies: np.ndarray  # [Hz], (n,)
-    shapes: (
-        np.ndarray
-    )  # scaled to φᵀ M φ = 1 kg m2, translations [m], rotations [rad]; zero for fixed blocks, (n, n_blocks, n_dof)
+    shapes: np.ndarray  # [m, rad], scaled to φᵀ M φ = 1 kg m2; zero for fixed blocks, (n, n_blocks, n_dof)
     effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
     mechanisms: int  # motions of free blocks that no joint holds back: without a frequency, not among the above
     loose: np.ndarray  # blocks that take part in these, (n_loose,)
