@@ -49,7 +49,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
         joints.frames, joints.levers, contacts.normal, contacts.memory, contacts.slip
     )  # fmt: skip
     viscosity, elements, rates, gains = dampers.viscosity, dampers.elements, dampers.rates, dampers.gains
-    states, seen, first = dampers.states, dampers.slips, dampers.first
+    states, seen, shares, first = dampers.states, dampers.slips, dampers.shares, dampers.first
     d, n_elements = len(like), elements.shape[0]
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
@@ -63,6 +63,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                     for k in range(first, memory.shape[1]):
                         memory[point, k] = 0.0
                 continue
+            met = states[point] == OPEN
             states[point] = STICKS if slips[point] == seen[point] else SLIPS
             seen[point] = slips[point]
             frame = load_frame(frames, point, like)
@@ -72,13 +73,16 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             opening, sliding = _rates(frame, levers_a, levers_b, relative, spin_a, spin_b)
             rates[point, 0] = opening
             store(rates, point, 1, sliding)
+            shares[point] = 1.0
+            if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
+                shares[point] = 0.5 + min(-normals[point] / (kns[point] * opening * dt), 1.0)
             masses = inverse_masses[a, 0] + inverse_masses[b, 0]
             turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
             for k in range(d):
                 stiffness = kns[point] if k == 0 else kss[point]
                 inverse = masses
                 inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
-                gains[point, k] = 1.0 / (1.0 + half * stiffness * inverse)
+                gains[point, k] = 1.0 / (1.0 + shares[point] * half * stiffness * inverse)
             if n_elements > 0:
                 stiffness = (kns[point], kss[point])
                 _relax(memory, rates, elements, states[point], normals[point], stiffness, dt, point, first, d)
@@ -119,8 +123,8 @@ def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backward
     """One sweep over all impulses; warm: puts on those of the step before as they are."""
     blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
     frames, levers, normals, memory = joints.frames, joints.levers, contacts.normal, contacts.memory
-    viscosity, rates, gains, states, first = (
-        dampers.viscosity, dampers.rates, dampers.gains, dampers.states, dampers.first
+    viscosity, rates, gains, states, shares, first = (
+        dampers.viscosity, dampers.rates, dampers.gains, dampers.states, dampers.shares, dampers.first
     )  # fmt: skip
     d, n = len(like), blocks.shape[0]
     for i in range(n):
@@ -148,9 +152,10 @@ def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backward
             new, new_along = push, along
             if not warm:
                 opening, sliding = _rates(frame, levers_a, levers_b, axpy(-1.0, va, vb), spin_a, spin_b)
-                new -= (half * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
+                weight = half * shares[point]
+                new -= (weight * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
                 mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
-                error = axpy(half * kss[point], mean, along)
+                error = axpy(weight * kss[point], mean, along)
                 new_along = axpy(-gains[point, 1], error, along)
             if normals[point] >= 0.0:
                 new = max(new, -normals[point] * dt)

@@ -91,6 +91,7 @@ class Dampers(NamedTuple):
     elements: np.ndarray  # Maxwell elements: stiffness over that of the joint [-] and rate [1/s], (n_elements, 2)
     rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
     gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
+    shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, (n_points,) int8
 

@@ -91,6 +91,7 @@ class Shaken(Simulation):
             elements=self.damping.elements,
             rates=np.zeros((n, d)),
             gains=np.ones((n, d)),
+            shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=(contacts.normal != 0.0).astype(np.int8),
         )
