@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -87,3 +87,14 @@ def facts(case: Case, text: str) -> dict[str, str]:
         "a record": records.hexdigest(),
         "the program": program,
     }
+
+
+def with_names(found: dict[str, Any], names: Sequence[str], quantities: Sequence[str]) -> dict[str, Any]:
+    """The summary of a solver, with the peaks of repeats by the names of monitors and with units."""
+    repeats = found.get("repeats")
+    if not repeats or "peaks" not in repeats:
+        return found
+    from dem_cli.output.series import UNITS
+
+    spreads = [spread and spread | {"unit": UNITS[q]} for spread, q in zip(repeats["peaks"], quantities, strict=True)]
+    return found | {"repeats": repeats | {"peaks": dict(zip(names, spreads, strict=True))}}

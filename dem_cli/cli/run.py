@@ -14,7 +14,7 @@ import click
 from dem_cli import __version__
 from dem_cli.cli import console
 from dem_cli.cli.interrupt import Interrupts
-from dem_cli.cli.many import Wish, batch_of, check, finish
+from dem_cli.cli.many import Wish, batch_of, check, finish, with_names
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.errors import DemError, SolverError
 
@@ -161,6 +161,8 @@ def execute(
             interrupts.ignore()
             bar.stop()
             peaks = {"peaks": writer.peaks()} if writer.peaks() else {}
+            if batch is not None:
+                found = with_names(found, names, quantities)
             summary = completed(found | peaks, loaded, model, started)
             writer.close(summary)
             if plot:

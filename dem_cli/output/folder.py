@@ -37,7 +37,6 @@ OWN_NAMES = frozenset(
         "fragility.csv",
         "fragility.png",
         "repeats.csv",
-        "repeats.png",
         "calibration.png",
         "calibrated.toml",
         "records",

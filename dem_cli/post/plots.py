@@ -12,6 +12,7 @@ from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy
+from dem_cli.post.fragility import draw_fragility, has_curve
 from dem_cli.post.histories import draw_histories
 from dem_cli.post.modes import draw_modes, shapes
 
@@ -19,6 +20,7 @@ PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "capacity.png": draw_capacity,
     "histories.png": draw_histories,
     "modes.png": draw_modes,
+    "fragility.png": draw_fragility,
     "collapse.png": draw_collapse,
     "energy.png": draw_energy,
 }
@@ -44,6 +46,8 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
 def _has_data(name: str, results: Results) -> bool:
     """Whether there is anything to draw; a capacity curve needs a load that changes."""
     no_rows = np.zeros(0)
+    if name == "fragility.png":
+        return has_curve(results)
     if name == "modes.png":
         return bool(shapes(results))
     if results.kind == "modes":  # the way into gravity is no result

@@ -52,8 +52,8 @@ class Batcher:
     fresh  how many of them were computed here
     """
 
-    def __init__(self, structures: Sequence[Rested], motion: Callable[[Trial], Motion], batch: Batch):
-        self.structures, self.motion, self.batch = structures, motion, batch
+    def __init__(self, structures: Sequence[Rested], motions: Callable[[Trial], Sequence[Motion]], batch: Batch):
+        self.structures, self.motions, self.batch = structures, motions, batch
         known = batch.journal.known() if batch.journal else {}
         self.done: dict[Trial, Run] = {Trial(*key): Run(*values) for key, values in known.items()}
         self.fresh = 0
@@ -64,7 +64,7 @@ class Batcher:
         found = self.done.get(trial)
         if found is not None:
             return found
-        run = self.structures[trial.structure].shaken(self.motion(trial), self._cancelled.is_set)
+        run = self.structures[trial.structure].shaken(self.motions(trial), self._cancelled.is_set)
         with self._lock:
             if self.batch.journal is not None:
                 self.batch.journal.add(trial, run)

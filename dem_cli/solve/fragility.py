@@ -22,7 +22,7 @@ from dem_cli.solve.capacities import Bounds, bounds_of, distribution, outcomes, 
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.perturb import Variant
 from dem_cli.solve.run import Outcome
-from dem_cli.solve.trial import Rested
+from dem_cli.solve.trial import OnlyProgress, Rested
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -36,17 +36,6 @@ FEW = 2  # intervals between levels that any narrow distribution fits
 def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
     """Outcome of all runs. Raises CaseError without any record, SolverError where no run has a result."""
     return Study(case, model, observer, batch or Batch()).run()
-
-
-class OnlyProgress:
-    """An observer of structures that come to rest: nothing of them is kept."""
-
-    def __init__(self, observer: Observer):
-        self.progress = observer.progress
-
-    def frame(self, *_: Any) -> None: ...
-    def row(self, *_: Any) -> None: ...
-    def samples(self, *_: Any) -> None: ...
 
 
 class Study:
@@ -88,8 +77,8 @@ class Study:
             self.warnings.append(f"{len(fell)} of {len(found) - 1} perturbed structures do not stand: left out")
         return found
 
-    def _motion(self, trial: Trial) -> Motion:
-        return scaled(self.records[trial.record], trial.intensity, self.analysis)
+    def _motion(self, trial: Trial) -> list[Motion]:
+        return [scaled(self.records[trial.record], trial.intensity, self.analysis)]
 
     def _plan(self, pairs: Sequence[tuple[int, int]]) -> tuple[list[Task], int]:
         """Tasks, and how many runs they will ask for (of a bisection: at most)."""
@@ -103,7 +92,7 @@ class Study:
         """All runs in the order of records, structures and intensities, whatever the order in which they came."""
         rows = []
         for trial in sorted(self.batcher.done, key=lambda t: (t.record, t.structure, t.intensity)):
-            run, peak = self.batcher.done[trial], self._motion(trial).peak
+            run, peak = self.batcher.done[trial], self._motion(trial)[0].peak
             acceleration = peak * self.rested[trial.structure].variant.motion
             rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
                                run.collapsed, run.time, run.how, run.peaks))  # fmt: skip
@@ -164,8 +153,8 @@ class Study:
         """What a reader of the curve must know; intervals: different bounds of capacities."""
         if answer["median"] is not None and intervals <= FEW:
             self.warnings.append(
-                f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not resolved, "
-                "closer levels are needed"
+                f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
+                "resolved, closer levels are needed"
             )
         if self.analysis.bisects:
             self.warnings.append(

@@ -43,7 +43,7 @@ def _modes():
 
 
 def _time_history():
-    from dem_cli.solve.time_history import run
+    from dem_cli.solve.repeats import run
 
     return run
 

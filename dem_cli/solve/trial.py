@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from copy import deepcopy
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from dem_cli.solve.run import Job
 from dem_cli.solve.time_history import TimeHistory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from dem_cli.motion.motion import Motion
     from dem_cli.output.record import Observer
@@ -48,10 +48,21 @@ class Cancelled(Exception):
     """Nobody waits for this run any more."""
 
 
+class OnlyProgress:
+    """An observer of structures that come to rest: nothing of them is kept."""
+
+    def __init__(self, observer: Observer):
+        self.progress = observer.progress
+
+    def frame(self, *_: Any) -> None: ...
+    def row(self, *_: Any) -> None: ...
+    def samples(self, *_: Any) -> None: ...
+
+
 class Rested:
     """A structure that has come to rest, from which any number of motions start."""
 
-    def __init__(self, variant: Variant, records: list[Motion], observer: Observer):
+    def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer):
         self.variant, self.case = variant, variant.case
         job = Job.start(variant.case, variant.model, observer)
         history = TimeHistory(job, GroundMotion(records, variant.model))
@@ -64,14 +75,14 @@ class Rested:
         self.stretch = self.every * max(1, round(LOOK / (self.every * dt)))
         self.coda = getattr(variant.case.analysis, "coda", 0.0)
 
-    def shaken(self, motion: Motion, cancelled: Callable[[], bool] = lambda: False) -> Run:
-        """A copy of the structure under a motion, times the factor of the variant; ends with a collapse.
+    def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> Run:
+        """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
 
         Raises Cancelled.
         """
         begun = time.thread_time()
         sim = deepcopy(self.sim)
-        ground = GroundMotion([motion.scaled(self.variant.motion)], self.variant.model)
+        ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
         peaks, found, how = np.zeros(len(self.case.monitor)), None, ""
         try:
             found = self._shake(sim, ground, peaks, cancelled)
