@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from dem_cli.solve.damping import DampingTable
 
 HOUSNER_FRACTION = 2.0  # of critical: within 3e-4 of Housner's ratio for h/b from 2 to 5 (docs/rocking.md)
-MOST, LEAST = 4.0, 0.01  # fractions of critical between which a ratio is sought
+MOST, LEAST = 4.0, 0.1  # fractions of critical between which a ratio is sought; with less, landings are many bounces
 TILT = 0.3  # of the angle at which the block would fall
-CLOSE = 1e-4  # to the wanted ratio
+LANDED = 0.05  # of the first tilt: beyond it on the other side the block has landed and does not chatter any more
+LOOK = 2e-3  # share of the longest possible time between two looks
 
 
 class Reference(NamedTuple):
@@ -111,24 +112,22 @@ def rocked(case: Case, model: Model, reference: Reference, fraction: float) -> f
     dt = time_step(sim, case.analysis.margin).step
     sim.begin(dt)
     slender = np.arctan2(np.abs(reference.ends[:, 0]).min(), np.abs(reference.ends[:, 1]).max())
-    tilt(sim, np.array([1]), TILT * slender)
+    angle = float(TILT * slender)
+    tilt(sim, np.array([1]), angle)
     sim.start_moving()
     start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
     ground = GroundMotion([], pair)
     radius = float(np.sqrt((reference.ends**2).sum(axis=1)).max())
     longest = 20.0 * np.sqrt(radius / max(case.gravity, 1e-9))
-    turned, highest = False, 0.0
+    n, highest = max(1, int(LOOK * longest / dt)), 0.0
+    watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
     while sim.time < longest:
-        n = 200
-        watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
         sim.shake(ground.stretch(sim.time, n, dt), n, watch)
-        angles, heights = watch.samples[:, 0, 0, pair.dimension], watch.samples[:, 0, 0, pair.dimension - 1] - rest
-        turned = turned or bool((angles < 0.0).any())
-        if turned:
-            here = heights[angles < 0.0].max(initial=0.0)
-            if here < highest:
-                break
-            highest = max(highest, float(here))
+        place, speed = watch.samples[:, 0, 0], watch.samples[:, 0, 1]
+        beyond = place[:, pair.dimension] < -LANDED * angle
+        highest = max(highest, float((place[beyond, pair.dimension - 1] - rest).max(initial=0.0)))
+        if (beyond & (speed[:, pair.dimension] > 0.0)).any():
+            break
     return float(np.sqrt(highest / start))
 
 

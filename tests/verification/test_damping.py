@@ -179,7 +179,7 @@ def measured_ratio(angles: np.ndarray, height: float) -> float:
     return math.sqrt(second / first)
 
 
-@pytest.mark.parametrize(("wanted", "height"), [("housner", 1.0), (0.8, 1.0), (0.9, 1.45)])
+@pytest.mark.parametrize(("wanted", "height"), [("housner", 1.0), (0.8, 1.0), (0.88, 1.45)])
 def test_a_block_loses_what_was_wanted(wanted, height):
     summary, records = engine.solve(rocking({"restitution": wanted}, height))
     rigid = 1.0 - 1.5 * math.sin(math.atan2(0.5, height)) ** 2
@@ -191,5 +191,5 @@ def test_a_block_loses_what_was_wanted(wanted, height):
 
 
 def test_a_restitution_out_of_reach_is_refused():
-    with pytest.raises(CaseError, match=r"0.6 is not allowed for block 'b': .* give 0.70\d\d to 0.9\d\d\d"):
+    with pytest.raises(CaseError, match=r"0.6 is not allowed for block 'b': .* give 0.70\d\d to 0.83\d\d"):
         engine.solve(rocking({"restitution": 0.6}))
