@@ -91,7 +91,9 @@ def relax(
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < tolerance else 0
         if calm == 2:
-            break
+            if _rests(sim, tolerance, slot.FIRE):
+                break
+            calm = 0
     sim.rest()
     sim.use(CREEP_SAFETY)
     if calm < 2:
@@ -137,14 +139,23 @@ def settle_or_fail(
             budget.spend(CHUNK, doing)
             done += CHUNK
             calm = calm + 1 if sim.unbalanced < tolerance else 0
+            if calm == 2 and not _rests(sim, tolerance, slot.HOLD_LOAD):
+                calm = 0
             if calm == 2:
-                sim.rest()
                 return _at_rest(sim, since, scale)
         check_finite(sim)
         failing = motion.look()
         if failing is not None:
             return Verdict("failure", sim.unbalanced, *failing)
     raise AssertionError("a count has no end")
+
+
+def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
+    """Stops all blocks, and whether forces balance where they stand: they may only have passed by an equilibrium."""
+    sim.rest()
+    sim.advance(1, mode)
+    sim.rest()
+    return sim.unbalanced < tolerance
 
 
 def _limit_falls(sim: Simulation) -> None:
