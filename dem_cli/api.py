@@ -51,14 +51,12 @@ def build_model(loaded: LoadedCase) -> Model:
     from dem_cli.model.assemble import assembly
 
     found_odd: list[str] = []
-    try:
+    with loaded.located():
         made = assembly(loaded.case)
         if loaded.case.motion:
             from dem_cli.motion.build import check
 
             found_odd += map(loaded.render, check(loaded.case))
-    except CaseError as error:
-        raise CaseError(error.problems, loaded.render) from None
     found = validate.problems(loaded.case, made.model, made.blocks)
     if found:
         raise CaseError(found, loaded.render)

@@ -10,6 +10,7 @@ from dem_cli.errors import CaseProblem
 
 LIGHTEST, HEAVIEST = 100.0, 25000.0  # kg/m3: cork and osmium, about
 STEEPEST = 5.0  # tan(79°)
+SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in time
 
 
 def doubts(case: Case) -> Iterator[CaseProblem]:
@@ -29,5 +30,8 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         yield CaseProblem(("gravity",), "0 leaves the blocks without weight")
     elif not 0.5 <= case.gravity <= 30.0:
         yield CaseProblem(("gravity",), f"{show(case.gravity)} m/s2 is unusual; on Earth it is 9.81")
+    for table in () if case.analysis.kind in SHAKES else ("motion", "damping", "initial"):
+        if getattr(case, table):
+            yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     if case.sweep is not None:
         yield CaseProblem(("sweep",), "not used here; one case is solved, as written above")

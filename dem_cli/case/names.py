@@ -141,6 +141,8 @@ def check_names(
             message = f"block {show(table.block)} is not fixed; only a fixed block can be moved"
             found.append(CaseProblem(("settlement", i, "block"), message))
     found += _initial_problems(case, blocks, fixed)
+    if case.damping is not None and case.damping.block is not None and case.damping.block not in blocks:
+        found.append(CaseProblem(("damping", "block"), unknown_name("block", case.damping.block, list(blocks))))
     for i, table in enumerate(case.motion):
         supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
         for k, name in enumerate(table.blocks):

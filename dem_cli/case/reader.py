@@ -6,6 +6,7 @@ import copy
 import datetime
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
@@ -52,6 +53,14 @@ class Source:
         """A key path without the number of a table that is not written as a list: motion.0.file -> motion.file."""
         alone = path[:1] == ("motion",) and path[1:2] == (0,) and path[:2] not in self.places.values
         return path[:1] + path[2:] if alone else path
+
+    @contextmanager
+    def located(self) -> Iterator[None]:
+        """Gives mistakes that are found later, in what the case describes, their place in the file."""
+        try:
+            yield
+        except CaseError as error:
+            raise CaseError(error.problems, self.render) from None
 
     def render(self, problem: CaseProblem) -> str:
         """`case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""

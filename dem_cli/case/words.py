@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 
 MANY = 24  # names beyond this are not listed
 # Kinds that are part of the format, but not of this version.
-LATER = ("fragility", "mohr-coulomb", "coursed-wall", "voronoi-wall")
+LATER = ("coursed-wall", "voronoi-wall")
 NUMBERS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
 WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
 SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}

@@ -27,7 +27,8 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
     warn(loaded)
     found = rows(loaded.case, model)
     if find_spec("dem_cli.solve.estimate"):
-        found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)
+        with loaded.located():
+            found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))

@@ -153,6 +153,7 @@ def execute(
             writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
         with (
             abandoning(writer),
+            loaded.located(),
             batch_of(case, text, folder, wish or Wish(), quiet) as batch,
             console.Progress(quiet) as bar,
         ):
