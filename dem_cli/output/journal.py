@@ -32,6 +32,7 @@ class Journal:
     def __init__(self, folder: Path, name: str, what: Mapping[str, str], resume: bool):
         self.path = folder / f".{name}{JOURNAL}"
         self.what, self._known, self._added = dict(what), {}, 0
+        self._ours = False  # whether it may be deleted
         try:
             self._file = os.open(self.path, os.O_CREAT | os.O_RDWR, 0o644)
         except OSError as error:
@@ -71,11 +72,13 @@ class Journal:
                 f"an interrupted run of this case left {len(rows):,} runs in {self.path}: "
                 "go on with --resume, or delete that file to start anew"
             )
+        self._ours = not rows
         self._known = {tuple(row[0]): _tuples(row[1]) for row in rows}
         os.ftruncate(self._file, sum(len(line) + 1 for line in whole))
         os.lseek(self._file, 0, os.SEEK_END)
 
     def _begin(self) -> None:
+        self._ours = True
         os.ftruncate(self._file, 0)
         os.lseek(self._file, 0, os.SEEK_SET)
         self._write({"format": FORMAT, "what": self.what})
@@ -105,7 +108,7 @@ class Journal:
     def close(self) -> None:
         """Leave it for `--resume`; nothing stays of one without runs."""
         if self._file >= 0:
-            if not self.count:
+            if self._ours and not self.count:
                 self.path.unlink(missing_ok=True)
             os.close(self._file)
             self._file = -1
