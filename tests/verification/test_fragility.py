@@ -108,7 +108,7 @@ def test_the_same_bytes_whatever_the_threads():
 
 
 def test_repeats_of_a_time_history_spread_as_their_perturbation():
-    """A rigid displacement of the spread of the motion: peaks of blocks that stay close to rest differ by it."""
+    """Without any perturbation all are the same; with the default one the run itself lies among them."""
     base = ["motion.amplitude=3.0", "analysis.repeats=6", "analysis.duration=1.5"]
     none = study(*base, "analysis.perturb={friction=0.0, geometry=0.0, motion=0.0}", kind="time-history",
                  solve=repeated)[1]  # fmt: skip
