@@ -11,6 +11,7 @@ from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.motion.build import motions_of, suites_of
 from dem_cli.solve.damping import damping_of
 from dem_cli.solve.estimate import duration
+from dem_cli.solve.fragility import runs_per_record
 from dem_cli.solve.frequencies import modes, system
 from dem_cli.solve.ground import GroundMotion
 from dem_cli.solve.joints import joint_properties, law_of
@@ -88,10 +89,7 @@ def _runs(case: Case) -> tuple[int, str]:
     if analysis.kind != "fragility":
         return repeats, f"{repeats} with repeats" if repeats > 1 else ""
     records = sum(map(len, suites_of(case)))
-    if analysis.bisects:
-        parts = len(analysis.intensities or ()) or (analysis.highest - analysis.lowest) / analysis.resolution
-        levels, name = math.ceil(math.log2(max(parts, 1.0))) + 2, "steps of bisection"
-    else:
-        levels, name = len(analysis.intensities), "intensities"
+    levels = runs_per_record(analysis)
+    name = "steps of bisection" if analysis.bisects else "intensities"
     runs = records * levels * repeats
-    return runs, f"{records} records × {levels} {name}{words}: {'about ' if analysis.bisects else ''}{runs:,}"
+    return runs, f"{records} records × {levels} {name}{words}: {'at most ' if analysis.bisects else ''}{runs:,}"

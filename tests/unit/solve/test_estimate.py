@@ -138,7 +138,7 @@ def test_time_history_that_says_no_duration(tmp_path):
     ("levels", "runs"),
     [
         ("intensities = [1.0, 2.0, 3.0]", "4 records × 3 intensities: 12"),
-        ("lowest = 1.0\nhighest = 5.0\nresolution = 0.5", "4 records × 5 steps of bisection: about 20"),
+        ("lowest = 1.0\nhighest = 5.0\nresolution = 0.5", "4 records × 5 steps of bisection: at most 20"),
     ],
 )
 def test_fragility(tmp_path, levels, runs):
