@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.contact.detect import Faces
 from dem_cli.contact.layout import Layout, draw
-from dem_cli.geometry import profile
+from dem_cli.geometry import polygon, profile
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import Bodies, Contacts, Joints
@@ -109,7 +109,9 @@ def build_joints(
         points=np.zeros((n_points, d)),
         edges=faces.edges,
         profile=profiles,
-        scales=np.ascontiguousarray(np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest)])),
+        scales=np.ascontiguousarray(
+            np.column_stack([lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest), _cotangents(model)[faces.edges]])
+        ),
         kn=(properties.kn[named] * area)[owner] * shares,
         ks=(properties.ks[named] * area)[owner] * shares,
         law=np.ascontiguousarray(properties.law[named]),
@@ -118,6 +120,17 @@ def build_joints(
     measure_points(joints, contacts, bodies)
     contacts.stale[-1] = 0  # faces that are the wrong ones already need not ask: the right ones are in the list
     return joints, contacts
+
+
+def _cotangents(model: Model) -> np.ndarray:
+    """Cotangent of the inner angle at each corner, (n_vertices,); 2D."""
+    after = polygon.following(model.part_starts)
+    leaving = model.vertices[after] - model.vertices
+    arriving = np.empty_like(leaving)
+    arriving[after] = leaving
+    turn = arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0]
+    size = np.sqrt((arriving**2).sum(axis=1) * (leaving**2).sum(axis=1))
+    return -(arriving * leaving).sum(axis=1) / np.maximum(turn, 1e-9 * size)
 
 
 def measure_points(joints: Joints, contacts: Contacts, bodies: Bodies) -> None:

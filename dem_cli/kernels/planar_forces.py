@@ -13,7 +13,7 @@ import numpy as np
 
 from dem_cli.kernels.contact_forces import make_press
 from dem_cli.kernels.jit import inline, named
-from dem_cli.kernels.planar_geometry import overlap_of, place_end
+from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
@@ -45,7 +45,7 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False)
             )
             first = np.uint64(starts[joint])
             second = first + np.uint64(1)
-            if overlap <= 0.0 or min(gap_low, gap_high) <= -overlap:
+            if apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
                 if stale[joint] == 0 and (overlap > 0.0 or normals[first] + normals[second] > 0.0):
                     stale[joint] = 1
                     stale[-1] = 1

@@ -63,6 +63,39 @@ def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
     return overlap, gap_low, gap_high, share_low, share_high, ta, tb
 
 
+@always_inline
+def _other_depth(inside, along, cotangent):
+    """Depth behind the next edge of a corner, from the depth behind this edge and the way along it from the corner."""
+    return max((along - inside * cotangent) / math.sqrt(1.0 + cotangent * cotangent), 0.0)
+
+
+@always_inline
+def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
+    """Whether two edges have nothing to do with each other: no overlap, or deeper inside than they overlap.
+
+    Where two corners are inside each other two pairs of edges could push them apart, and the one with the smaller
+    sum of squares of both depths does: one of the two whatever the direction, and as the elastic energies are the
+    same where one takes over from the other, none is made.
+    """
+    deepest = min(gap_low, gap_high)
+    if overlap <= 0.0:
+        return True
+    if deepest > -0.3 * overlap:
+        return False
+    length_b = 1.0 / scales[joint, 2]
+    low = (a1[0] - b0[0]) * tb[0] + (a1[1] - b0[1]) * tb[1]
+    high = length_b - ((a0[0] - b0[0]) * tb[0] + (a0[1] - b0[1]) * tb[1])
+    along_b = length_b - max(low, 0.0) - max(high, 0.0)
+    if low >= 0.0 and high < 0.0:  # corner a1 inside b, b1 inside a
+        cot_a, cot_b, behind_a, behind_b = scales[joint, 5], scales[joint, 7], gap_low, gap_high
+    elif low < 0.0 and high >= 0.0:  # corner a0 inside b, b0 inside a
+        cot_a, cot_b, behind_a, behind_b = scales[joint, 4], scales[joint, 6], gap_high, gap_low
+    else:
+        return deepest <= -overlap
+    other = _other_depth(-behind_a, overlap, cot_a) ** 2 + _other_depth(-behind_b, along_b, cot_b) ** 2
+    return min(behind_a, 0.0) ** 2 + min(behind_b, 0.0) ** 2 >= other
+
+
 @kernel
 def measure(joints, contacts, bodies):
     """Frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
@@ -83,7 +116,7 @@ def measure(joints, contacts, bodies):
         overlap, gap_low, gap_high, share_low, share_high, ta, tb = overlap_of(
             a0, a1, b0, b1, scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
         )
-        if overlap <= 0.0 or min(gap_low, gap_high) <= -overlap:
+        if apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
             if stale[joint] == 0 and (overlap > 0.0 or normals[first] + normals[second] > 0.0):
                 stale[joint] = 1
                 stale[-1] = 1

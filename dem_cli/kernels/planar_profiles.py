@@ -16,7 +16,7 @@ import numpy as np
 
 from dem_cli.kernels.contact_forces import make_press
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.planar_geometry import place_end
+from dem_cli.kernels.planar_geometry import apart, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
@@ -102,8 +102,8 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
             on_high = _vertex(b1, tb, profile[m, 0], profile[m, 1])
             gap_low, share_low = _end(low, blend, a0, corner_low, ta, side_low, on_low)
             gap_high, share_high = _end(high, blend, a1, corner_high, ta, side_high, on_high)
-            apart = overlap <= 0.0 or min(gap_low, gap_high) <= -overlap
-            if apart:
+            wrong = apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint)
+            if wrong:
                 loaded = False
                 for p in range(first, last + 1):
                     loaded = loaded or normals[p] != 0.0
@@ -112,7 +112,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
                     stale[-1] = 1
                 sunk[joint] = np.inf
             offset = 0.0
-            if sunk[joint] > 0.0 and not apart:
+            if sunk[joint] > 0.0 and not wrong:
                 offset = min(sunk[joint], max(-min(gap_low, gap_high), 0.0))
                 sunk[joint] = offset
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -136,7 +136,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
                         gap = max(gap, 0.0)
                 gap += offset
-                if apart:
+                if wrong:
                     gap = max(gap, 0.0)
                 before = gaps[point]
                 gaps[point] = gap

@@ -45,7 +45,8 @@ class Joints(NamedTuple):
     points: np.ndarray  # where the points are [m], (n_points, d)
     edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
     profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are planar
-    scales: np.ndarray  # 2D: length of edge a [m]; 1/length of a, of b, of normal blending [1/m], (n_joints, 4)
+    scales: np.ndarray  # 2D: length of edge a [m]; 1/length of a, of b, of normal blending [1/m]; cotangents of the
+    # inner angles at the corners of `edges`, (n_joints, 8)
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)

@@ -58,6 +58,7 @@ def twin(sim: Simulation) -> Twin:
         turns=sim.bodies.turns.copy(),
         means=np.zeros(6 * len(sim.bodies.positions)),
         drags=np.zeros(6 * len(sim.bodies.positions)),
+        pulled=np.zeros(6 * len(sim.bodies.positions)),
         travel=sim.bodies.travel.copy(),
     )
     loads = Loads(*(in_space(field) for field in sim.loads))
