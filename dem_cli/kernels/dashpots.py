@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from dem_cli.kernels.jit import always_inline, inline
-from dem_cli.kernels.records import DASHPOT, MAXWELL
+from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
 from dem_cli.kernels.vec import (
     add_at,
     add_torques,
@@ -43,14 +43,20 @@ def _rates(frame, levers_a, levers_b, relative, spin_a, spin_b):
 
 @inline
 def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation):
-    """States, rates and gains of all points before the kick; adds the forces of Maxwell elements to `forces`."""
+    """States, rates and gains of all points before the kick.
+
+    Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
+    elements to `forces`.
+    """
     blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
     frames, levers, normals, memory, slips = (
         joints.frames, joints.levers, contacts.normal, contacts.memory, contacts.slip
     )  # fmt: skip
     viscosity, elements, rates, gains = dampers.viscosity, dampers.elements, dampers.rates, dampers.gains
     states, seen, shares, first = dampers.states, dampers.slips, dampers.shares, dampers.first
-    d, n_elements = len(like), elements.shape[0]
+    pushes = dampers.pushes
+    pushes[:] = 0.0
+    d, n_elements, none = len(like), elements.shape[0], scale(0.0, like_rotation)
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -83,6 +89,18 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                 inverse = masses
                 inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
                 gains[point, k] = 1.0 / (1.0 + shares[point] * half * stiffness * inverse)
+            push, along = memory[point, first], load(memory, point, first + 1, sliding)
+            if normals[point] >= 0.0:
+                push = max(push, -normals[point] * dt)
+                memory[point, first] = push
+            if states[point] == SLIPS:
+                along = scale(0.0, along)
+                store(memory, point, first + 1, along)
+            force = compose(frame, push, along, scale(0.0, like))
+            add_at(pushes, a, 0, force, -1.0)
+            add_at(pushes, b, 0, force, 1.0)
+            add_at(pushes, a, d, add_torques(levers_a, push, along, none), -1.0)
+            add_at(pushes, b, d, add_torques(levers_b, push, along, none), 1.0)
             if n_elements > 0:
                 stiffness = (kns[point], kss[point])
                 _relax(memory, rates, elements, states[point], normals[point], stiffness, dt, point, first, d)
@@ -92,7 +110,6 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                     normal += memory[point, column]
                     shear = axpy(1.0, load(memory, point, column + 1, sliding), shear)
                 force = compose(frame, normal, shear, scale(0.0, like))
-                none = scale(0.0, like_rotation)
                 add_at(forces, a, 0, force, -1.0)
                 add_at(forces, b, 0, force, 1.0)
                 add_at(forces, a, d, add_torques(levers_a, normal, shear, none), -1.0)
@@ -119,8 +136,8 @@ def _relax(memory, rates, elements, state, pressed, stiffness, dt, point, first,
 
 
 @inline
-def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backwards, warm, like, like_rotation):
-    """One sweep over all impulses; warm: puts on those of the step before as they are."""
+def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards, like, like_rotation):
+    """One sweep over all impulses."""
     blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
     frames, levers, normals, memory = joints.frames, joints.levers, contacts.normal, contacts.memory
     viscosity, rates, gains, states, shares, first = (
@@ -149,22 +166,19 @@ def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backward
             frame = load_frame(frames, point, like)
             levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
             push, along = memory[point, first], load(memory, point, first + 1, like[1:])
-            new, new_along = push, along
-            if not warm:
-                opening, sliding = _rates(frame, levers_a, levers_b, axpy(-1.0, va, vb), spin_a, spin_b)
-                weight = half * shares[point]
-                new -= (weight * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
-                mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
-                error = axpy(weight * kss[point], mean, along)
-                new_along = axpy(-gains[point, 1], error, along)
+            opening, sliding = _rates(frame, levers_a, levers_b, axpy(-1.0, va, vb), spin_a, spin_b)
+            weight = half * shares[point]
+            new = push - (weight * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
+            mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
+            error = axpy(weight * kss[point], mean, along)
+            new_along = axpy(-gains[point, 1], error, along)
             if normals[point] >= 0.0:
                 new = max(new, -normals[point] * dt)
             if state == SLIPS:
                 new_along = scale(0.0, along)
             memory[point, first] = new
             store(memory, point, first + 1, new_along)
-            if not warm:
-                new, new_along = new - push, axpy(-1.0, along, new_along)
+            new, new_along = new - push, axpy(-1.0, along, new_along)
             force = compose(frame, new, new_along, scale(0.0, like))
             va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
             none = scale(0.0, spin_a)
@@ -179,22 +193,23 @@ def _turn_on(joints, contacts, velocities, inverse_masses, dampers, dt, backward
 
 @inline
 def resist(joints, contacts, velocities, inverse_masses, dampers, dt, like, like_rotation):
-    """The impulses of all dashpots on the velocities after the kick."""
-    for sweep in range(3):
-        _turn_on(
-            joints, contacts, velocities, inverse_masses, dampers, dt, sweep == 2, sweep == 0, like, like_rotation
-        )  # fmt: skip
+    """The impulses of all dashpots on the velocities after the kick, from those of the step before."""
+    pushes = dampers.pushes
+    for block in range(velocities.shape[0]):
+        for k in range(velocities.shape[1]):
+            velocities[block, k] += inverse_masses[block, k] * pushes[block, k]
+    _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, False, like, like_rotation)
+    _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, True, like, like_rotation)
 
 
 @inline
-def book_dampers(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation):
-    """What dashpots and Maxwell elements took in this step, by the mean rates over it."""
+def book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation):
+    """What Maxwell elements took in this step, by the mean rates over it."""
     blocks, starts, frames, levers, memory = (
         joints.blocks, joints.starts, joints.frames, joints.levers, contacts.memory
     )  # fmt: skip
     rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, dampers.elements.shape[0]
-    d = len(like)
-    by_dashpots = by_elements = 0.0
+    d, taken = len(like), 0.0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -205,14 +220,39 @@ def book_dampers(joints, contacts, velocities, dampers, dt, ledger, like, like_r
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
-            opening, sliding = _rates(
-                load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b
-            )  # fmt: skip
+            opening, sliding = _rates(load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b)
             opening = 0.5 * (opening + rates[point, 0])
             sliding = scale(0.5, axpy(1.0, load(rates, point, 1, sliding), sliding))
-            by_dashpots -= memory[point, first] * opening + dot(load(memory, point, first + 1, sliding), sliding)
             for e in range(n_elements):
                 column = first + d * (e + 1)
-                by_elements -= memory[point, column] * opening + dot(load(memory, point, column + 1, sliding), sliding)
-    ledger[DASHPOT] += by_dashpots
-    ledger[MAXWELL] += dt * by_elements
+                taken -= memory[point, column] * opening + dot(load(memory, point, column + 1, sliding), sliding)
+    ledger[MAXWELL] += dt * taken
+
+
+@inline
+def book_supports(joints, contacts, velocities, old, inverse_masses, dampers, ledger, like, like_rotation):
+    """Work of moving supports through dashpots: theirs, and lost there. old: velocities before the step."""
+    blocks, starts, frames, levers, memory = (
+        joints.blocks, joints.starts, joints.frames, joints.levers, contacts.memory
+    )  # fmt: skip
+    states, first, d, work = dampers.states, dampers.first, len(like), 0.0
+    for number in range(blocks.shape[0]):
+        joint = np.uint64(number)
+        a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        if inverse_masses[a, 0] != 0.0 and inverse_masses[b, 0] != 0.0:
+            continue
+        support = a if inverse_masses[a, 0] == 0.0 else b
+        moved = axpy(1.0, load(old, support, 0, like), load(velocities, support, 0, like))
+        turned = axpy(1.0, load(old, support, d, like_rotation), load(velocities, support, d, like_rotation))
+        none = scale(0.0, turned)
+        relative = scale(-0.5 if support == a else 0.5, moved)
+        spin_a, spin_b = (scale(0.5, turned), none) if support == a else (none, scale(0.5, turned))
+        for p in range(starts[joint], starts[number + 1]):
+            point = np.uint64(p)
+            if states[point] == OPEN:
+                continue
+            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            opening, sliding = _rates(load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b)
+            work -= memory[point, first] * opening + dot(load(memory, point, first + 1, sliding), sliding)
+    ledger[SUPPORT] += work
+    ledger[DASHPOT] += work

@@ -83,8 +83,10 @@ class Ground(NamedTuple):
 
 
 class Dampers(NamedTuple):
-    """Viscous joints of time histories. Their impulses and Maxwell forces are columns of Contacts.memory, from `first`
-    on: d impulses [N s], then d forces of each Maxwell element [N].
+    """Masses and viscous joints of time histories.
+
+    Impulses and Maxwell forces of the joints are columns of Contacts.memory, from `first` on: d impulses [N s], then d
+    forces of each Maxwell element [N].
     """
 
     first: int
@@ -95,6 +97,8 @@ class Dampers(NamedTuple):
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, (n_points,) int8
+    masses: np.ndarray  # and moments of inertia; 0 of supports, (n_blocks, n_dof)
+    pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 
 
 class Watch(NamedTuple):

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dem_cli.kernels.advance import _drag
-from dem_cli.kernels.dashpots import book_dampers, meet, resist
-from dem_cli.kernels.jit import inline, kernel, named
+from dem_cli.kernels.dashpots import book_elements, book_supports, meet, resist
+from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.records import (
     CONTACT,
     DAMP,
     DAMPING,
+    DASHPOT,
     EXTERNAL,
     FRICTION,
     MASS,
@@ -25,55 +26,56 @@ from dem_cli.kernels.records import (
 )
 
 
-@inline
-def _kick(velocities, forces, unbalanced, dead_loads, inverse_masses, old, drags, base, damp, rate, dt, d):
+@always_inline
+def _kick(
+    velocities, forces, unbalanced, dead_loads, inverse_masses, masses, old, drags, pulled, base, damp, rate, dt, d
+):  # fmt: skip
     """Velocities from forces, loads and the acceleration of the base; leaves the old ones and the drag of each.
 
-    rate: mass-proportional damping, −rate·m·v at the mean velocity of the step. damp: local damping.
+    rate: mass-proportional damping, −rate·m·v at the mean velocity of the step. damp: local damping. Without branches.
     """
     n_dof = velocities.shape[1]
+    keep, gain = (1.0 - 0.5 * rate * dt) / (1.0 + 0.5 * rate * dt), dt / (1.0 + 0.5 * rate * dt)
     for block in range(velocities.shape[0]):
         for k in range(n_dof):
             i = block * n_dof + k
             before, inverse = velocities[block, k], inverse_masses[block, k]
-            old[i] = before
-            if inverse == 0.0:
-                drags[i] = 0.0
-                continue
-            applied = dead_loads[block, k] - (base[k] / inverse if k < d else 0.0)
-            unbalanced[block, k] = forces[block, k] + applied
-            drags[i] = _drag(unbalanced[block, k], 0.0, before, damp, 0.0)
-            pushed = (1.0 - 0.5 * rate * dt) * before + dt * inverse * (unbalanced[block, k] - drags[i])
-            velocities[block, k] = pushed / (1.0 + 0.5 * rate * dt)
+            total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if k < d else 0.0)
+            drag = _drag(total, 0.0, before, damp, 0.0)
+            old[i], unbalanced[block, k], drags[i] = before, total, drag
+            new = keep * before + gain * inverse * (total - drag)
+            velocities[block, k] = new
+            pulled[i] = new
 
 
-@inline
-def _book(velocities, forces, unbalanced, inverse_masses, old, pulled, drags, rate, dt, carried, ledger):
+@always_inline
+def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, drags, rate, dt, ledger):
     """Work of one step into the ledger; turns `old` velocities into means.
 
-    pulled: velocities before the dashpots, whose mean with the old ones is what mass damping acted on.
+    pulled: velocities before the dashpots, whose mean with the old ones is what mass damping acted on; what came
+    after them is impulse of the dashpots. Supports have their own velocity, and what they push is their work.
     """
     n_dof = velocities.shape[1]
-    contact = external = local = mass = support = 0.0
+    contact = external = local = drained = support = dashpots = 0.0
     for block in range(velocities.shape[0]):
         for k in range(n_dof):
             i = block * n_dof + k
-            before, inverse = old[i], inverse_masses[block, k]
-            mean = 0.5 * (before + velocities[block, k])
+            before, after, force = old[i], velocities[block, k], forces[block, k]
+            free = 1.0 if inverse_masses[block, k] > 0.0 else 0.0
+            mean = 0.5 * (before + after)
             old[i] = mean
-            if inverse == 0.0:
-                support -= forces[block, k] * mean
-                continue
-            contact += forces[block, k] * mean
-            external += (unbalanced[block, k] - forces[block, k]) * mean
-            local += drags[i] * mean
-            mass += rate * 0.5 * (before + pulled[i]) / inverse * mean
+            contact += free * force * mean
+            support -= (1.0 - free) * force * mean
+            external += free * (unbalanced[block, k] - force) * mean
+            local += free * drags[i] * mean
+            drained += masses[block, k] * (before + pulled[i]) * mean
+            dashpots += masses[block, k] * (after - pulled[i]) * mean
     ledger[CONTACT] += dt * contact
     ledger[EXTERNAL] += dt * external
     ledger[DAMPING] += dt * local
-    ledger[MASS] += dt * mass
-    if carried:
-        ledger[SUPPORT] += dt * support
+    ledger[MASS] += 0.5 * rate * dt * drained
+    ledger[DASHPOT] -= dashpots
+    ledger[SUPPORT] += dt * support
 
 
 @inline
@@ -111,21 +113,23 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
             if damped:
                 meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
-                velocities, forces, unbalanced, dead_loads, inverse_masses, means, drags,
+                velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, means, drags, pulled,
                 ground.accelerations[step], damp, rate, dt, d,
             )  # fmt: skip
             for j in range(n_moving):
                 for k in range(n_dof):
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
-            if rate != 0.0:
-                for block in range(velocities.shape[0]):
-                    for k in range(n_dof):
-                        pulled[block * n_dof + k] = velocities[block, k]
             if damped:
                 resist(joints, contacts, velocities, inverse_masses, dampers, dt, like, like_rotation)
-                book_dampers(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation)
+                if dampers.elements.shape[0] > 0:
+                    book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation)
+                if n_moving > 0:
+                    old = means.reshape(velocities.shape)
+                    book_supports(
+                        joints, contacts, velocities, old, inverse_masses, dampers, ledger, like, like_rotation
+                    )  # fmt: skip
             _book(
-                velocities, forces, unbalanced, inverse_masses, means, pulled, drags, rate, dt, n_moving > 0, ledger
+                velocities, forces, unbalanced, inverse_masses, dampers.masses, means, pulled, drags, rate, dt, ledger
             )  # fmt: skip
             if step % watch.every == 0:
                 _sample(step, dt, bodies.positions, bodies.orientations, velocities, means, drags, watch)

@@ -41,6 +41,7 @@ class Shaken(Simulation):
     def __init__(self, model: Model, law: Law, properties: JointProperties, damping: Damping):
         self.damping = damping
         self.real, self.dt = False, 1.0
+        self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
         n_damped = model.dimension * (1 + len(damping.elements)) if damping.in_joints else 0
         super().__init__(model, law, properties, "large", n_damped=n_damped, skin=WIDE_SKIN)
 
@@ -51,8 +52,7 @@ class Shaken(Simulation):
         model = self.model
         self.rest()
         self.real, self.dt, self.time = True, dt, 0.0
-        masses = np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
-        self.loads.inverse_masses[:] = np.where(model.fixed[:, None], 0.0, 1.0 / masses)
+        self.loads.inverse_masses[:] = np.where(model.fixed[:, None], 0.0, 1.0 / _masses(model))
         self.loads.speed_limits[:] = np.inf
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
         self.control[slot.MASS_RATE] = self.damping.mass
@@ -94,6 +94,8 @@ class Shaken(Simulation):
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=(contacts.normal != 0.0).astype(np.int8),
+            masses=self.masses,
+            pushes=np.zeros_like(self.bodies.velocities),
         )
 
     # -- stepping ----------------------------------------------------------------------------------
@@ -195,6 +197,11 @@ class Shaken(Simulation):
     def frame(self, stage: str) -> Frame:
         """A snapshot."""
         return super().frame(stage)._replace(time=self.time)
+
+
+def _masses(model: Model) -> np.ndarray:
+    """Masses and moments of inertia of all blocks [kg, kg m²], (n_blocks, n_dof)."""
+    return np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
 
 
 def _no_watch(sim: Simulation) -> Watch:
