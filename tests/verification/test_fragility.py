@@ -10,6 +10,8 @@ from oracle.base_motion import pulse
 from oracle.housner import Block, overturns
 
 from dem_cli import api
+from dem_cli.errors import SolverError
+from dem_cli.solve import trial
 from dem_cli.solve.batch import Batch
 from dem_cli.solve.fragility import run
 from dem_cli.solve.repeats import run as repeated
@@ -120,3 +122,31 @@ def test_repeats_of_a_time_history_spread_as_their_perturbation():
     assert summary["repeats"]["collapsed"] == 0
     assert spread["min"] < none[0].peaks[0] < spread["max"]
     assert spread["max"] / spread["min"] < 1.2
+
+
+def failing(n_runs):
+    """A look at the motion that finds it broken as often as said; each run ends with the first such look."""
+    left = [n_runs]
+
+    def check(sim):
+        if left[0] > 0:
+            left[0] -= 1
+            raise SolverError("the motion of block 'block' is not a number at 1 s")
+
+    return check
+
+
+def test_a_run_that_fails_is_told_and_left_out(monkeypatch):
+    monkeypatch.setattr(trial, "check_finite", failing(1))
+    summary, rows = study("analysis.intensities=[4.2, 4.3, 4.45]", *SMALL)
+    assert [row.collapsed for row in rows] == [None, False, True]
+    assert "not a number" in rows[0].how
+    assert summary["collapse_intensities"] == [4.45]
+    assert "sine at 4.2: the motion of block 'block' is not a number at 1 s" in summary["warnings"]
+    assert "1 of 3 runs failed and are left out" in summary["warnings"]
+
+
+def test_a_study_whose_runs_all_fail_has_no_answer(monkeypatch):
+    monkeypatch.setattr(trial, "check_finite", failing(9))
+    with pytest.raises(SolverError, match="no run has a result; the first: the motion of block"):
+        study("analysis.intensities=[4.2, 4.3]", *SMALL)
