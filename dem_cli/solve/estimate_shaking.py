@@ -11,11 +11,11 @@ from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.motion.build import motions_of, suites_of
 from dem_cli.solve.damping import damping_of
 from dem_cli.solve.estimate import duration
-from dem_cli.solve.fragility import runs_per_record
 from dem_cli.solve.frequencies import modes, system
 from dem_cli.solve.ground import GroundMotion
 from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.modes import touching_points
+from dem_cli.solve.search import runs_per_record
 from dem_cli.solve.shaken import Shaken
 from dem_cli.solve.time_history import DYNAMIC_RATIO
 from dem_cli.solve.timestep import TimeStep, time_step

@@ -8,20 +8,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.motion.build import suites_of
 from dem_cli.output.record import Observer, RunRow
-from dem_cli.solve.batch import Answer, Batch, Batcher, Task, Trial, each
+from dem_cli.solve.audit import CLOSURE
+from dem_cli.solve.batch import Batch, Batcher, Task, Trial, each
 from dem_cli.solve.capacities import Bounds, bounds_of, distribution, outcomes, split, survived_above
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.perturb import Variant
 from dem_cli.solve.run import Outcome
+from dem_cli.solve.search import bisection, records_of, runs_per_record, scaled, unique
 from dem_cli.solve.trial import OnlyProgress, Rested
 
 if TYPE_CHECKING:
@@ -166,6 +167,9 @@ class Study:
                 "each run hangs on chance: rocking is ill-conditioned, and structures that differ by 0.1 % fall at "
                 "other intensities; repeats = 5 shows by how much"
             )
+        worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
+        if worst is not None and abs(worst) > CLOSURE:
+            self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")
         if answer["never_collapsed"] and answer["median"] is not None:
             highest = self._levels()[-1]
             self.warnings.append(f"{answer['never_collapsed']} collapse intensities are above {highest:g}: not known")
@@ -196,69 +200,14 @@ class Study:
             "steps": sum(run.steps for run in done),
             "seconds": sum(run.seconds for run in done),
             "threads": self.batch.threads,
-            "energy_closure": max((run.closure for run in done if run.closure is not None), key=abs, default=None),
+            "energy_closure": _worst(run.closure for run in done if run.collapsed is False),
+            "energy_closure_of_collapses": _worst(run.closure for run in done if run.collapsed),
         }
 
 
-def records_of(case: Case) -> list[Motion]:
-    """Every record of every [[motion]]. Raises CaseError where there is none, or one that does not move."""
-    records = [motion for suite in suites_of(case) for motion in suite]
-    if not records:
-        message = "missing; kind = 'fragility' needs a [[motion]]: its set of records"
-        raise CaseError([CaseProblem(("motion",), message)])
-    return records
-
-
-def scaled(record: Motion, intensity: float, analysis: FragilityAnalysis) -> Motion:
-    """A record with the peak acceleration of an intensity."""
-    return record.scaled(intensity * analysis.unit_acceleration / record.peak)
-
-
-def unique(names: Sequence[str]) -> list[str]:
-    """The same names, with a number where one comes again."""
-    found: list[str] = []
-    for name in names:
-        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)
-        found.append(name if count == 1 else f"{name} #{count}")
-    return found
-
-
-def runs_per_record(analysis: FragilityAnalysis) -> int:
-    """How many runs a record takes at most."""
-    if not analysis.bisects:
-        return len(analysis.intensities)
-    if analysis.intensities is not None:
-        return math.ceil(math.log2(len(analysis.intensities) + 1))
-    return 2 + math.ceil(math.log2((analysis.highest - analysis.lowest) / analysis.resolution) - 1e-9)
-
-
-def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
-    """A task that finds an intensity survived and a higher one that was not, next to each other."""
-
-    def falls(answer: Answer, intensity: float) -> bool | None:
-        return answer(Trial(structure, record, intensity)).collapsed
-
-    def among_levels(answer: Answer) -> None:
-        low, high = -1, len(analysis.intensities)
-        while high - low > 1:
-            middle = (low + high) // 2
-            fell = falls(answer, analysis.intensities[middle])
-            if fell is None:
-                return
-            low, high = (low, middle) if fell else (middle, high)
-
-    def between(answer: Answer) -> None:
-        low, high = analysis.lowest, analysis.highest
-        if not falls(answer, high) or falls(answer, low) is not False:
-            return
-        for _ in range(runs_per_record(analysis) - 2):
-            middle = 0.5 * (low + high)
-            fell = falls(answer, middle)
-            if fell is None:
-                return
-            low, high = (low, middle) if fell else (middle, high)
-
-    return between if analysis.intensities is None else among_levels
+def _worst(closures: Iterable[float | None]) -> float | None:
+    """The largest of the energy errors."""
+    return max((closure for closure in closures if closure is not None), key=abs, default=None)
 
 
 def _upper(bounds: Bounds | None) -> float | None:

@@ -92,7 +92,8 @@ def test_files_and_keys(straight):
     for key in ("collapse_intensities", "median", "dispersion", "confidence", "share", "non_monotone", "seconds"):
         assert key in summary
     assert 0.0 < summary["median"] < 0.9
-    assert abs(summary["energy_closure"]) < 0.05
+    assert abs(summary["energy_closure"]) < 0.01
+    assert abs(summary["energy_closure_of_collapses"]) < 0.1
     fell = [row for row in rows if row["collapsed"] == "1"]
     assert fell
     assert all(row["collapse_time"] and row["what"] for row in fell)

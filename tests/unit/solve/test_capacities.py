@@ -11,7 +11,7 @@ from dem_cli.errors import CaseError
 from dem_cli.solve.analysis import FragilityAnalysis
 from dem_cli.solve.batch import Trial
 from dem_cli.solve.capacities import bounds_of, outcomes, split, survived_above
-from dem_cli.solve.fragility import bisection, runs_per_record, unique
+from dem_cli.solve.search import bisection, runs_per_record, unique
 from dem_cli.solve.trial import Run
 
 

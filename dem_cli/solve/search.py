@@ -1,0 +1,77 @@
+"""Which runs a fragility study asks for: its records, how strong they are, and where a bisection looks next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.motion.build import suites_of
+from dem_cli.solve.batch import Answer, Task, Trial
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.motion.motion import Motion
+    from dem_cli.solve.analysis import FragilityAnalysis
+
+
+def records_of(case: Case) -> list[Motion]:
+    """Every record of every [[motion]]. Raises CaseError where there is none, or one that does not move."""
+    records = [motion for suite in suites_of(case) for motion in suite]
+    if not records:
+        message = "missing; kind = 'fragility' needs a [[motion]]: its set of records"
+        raise CaseError([CaseProblem(("motion",), message)])
+    return records
+
+
+def scaled(record: Motion, intensity: float, analysis: FragilityAnalysis) -> Motion:
+    """A record with the peak acceleration of an intensity."""
+    return record.scaled(intensity * analysis.unit_acceleration / record.peak)
+
+
+def unique(names: Sequence[str]) -> list[str]:
+    """The same names, with a number where one comes again."""
+    found: list[str] = []
+    for name in names:
+        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)
+        found.append(name if count == 1 else f"{name} #{count}")
+    return found
+
+
+def runs_per_record(analysis: FragilityAnalysis) -> int:
+    """How many runs a record takes at most."""
+    if not analysis.bisects:
+        return len(analysis.intensities)
+    if analysis.intensities is not None:
+        return math.ceil(math.log2(len(analysis.intensities) + 1))
+    return 2 + math.ceil(math.log2((analysis.highest - analysis.lowest) / analysis.resolution) - 1e-9)
+
+
+def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
+    """A task that finds an intensity survived and a higher one that was not, next to each other."""
+
+    def falls(answer: Answer, intensity: float) -> bool | None:
+        return answer(Trial(structure, record, intensity)).collapsed
+
+    def among_levels(answer: Answer) -> None:
+        low, high = -1, len(analysis.intensities)
+        while high - low > 1:
+            middle = (low + high) // 2
+            fell = falls(answer, analysis.intensities[middle])
+            if fell is None:
+                return
+            low, high = (low, middle) if fell else (middle, high)
+
+    def between(answer: Answer) -> None:
+        low, high = analysis.lowest, analysis.highest
+        if not falls(answer, high) or falls(answer, low) is not False:
+            return
+        for _ in range(runs_per_record(analysis) - 2):
+            middle = 0.5 * (low + high)
+            fell = falls(answer, middle)
+            if fell is None:
+                return
+            low, high = (low, middle) if fell else (middle, high)
+
+    return between if analysis.intensities is None else among_levels
