@@ -38,7 +38,7 @@ def test_commands(commands, tmp_path):
             assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
 
 
-@pytest.mark.parametrize("text", CASES, ids=["column", "wall"])
+@pytest.mark.parametrize("text", CASES, ids=["column", "shaken column", "wall"])
 def test_shown_case_is_valid(text, tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
