@@ -31,7 +31,8 @@ class Journal:
 
     def __init__(self, folder: Path, name: str, what: Mapping[str, str], resume: bool):
         self.path = folder / f".{name}{JOURNAL}"
-        self.what, self._known, self._added = dict(what), {}, 0
+        self.what, self._added = dict(what), 0
+        self._known: dict[Key, Values] = {}
         self._ours = False  # whether it may be deleted
         try:
             self._file = os.open(self.path, os.O_CREAT | os.O_RDWR, 0o644)

@@ -181,6 +181,19 @@ class FragilityAnalysis(ShakingAnalysis):
         return self
 
     @property
+    def levels(self) -> tuple[float, ...]:
+        """The intensities that were given; the ends of a range."""
+        return self.intensities or self.range[:2]
+
+    @property
+    def range(self) -> tuple[float, float, float]:
+        """Lowest, highest and resolution, of a case without intensities."""
+        assert self.lowest is not None
+        assert self.highest is not None
+        assert self.resolution is not None
+        return self.lowest, self.highest, self.resolution
+
+    @property
     def bisects(self) -> bool:
         """Whether only some of the runs are done."""
         return self.intensities is None or self.search == "bisection"

@@ -85,7 +85,7 @@ class Study:
         """Tasks, and how many runs they will ask for (of a bisection: at most)."""
         analysis = self.analysis
         if not analysis.bisects:
-            trials = [Trial(s, r, a) for s, r in pairs for a in analysis.intensities]
+            trials = [Trial(s, r, a) for s, r in pairs for a in analysis.levels]
             return [*each(trials)], len(trials)
         return [bisection(analysis, s, r) for s, r in pairs], len(pairs) * runs_per_record(analysis)
 
@@ -110,7 +110,7 @@ class Study:
             raise SolverError(f"no run has a result; the first: {next(iter(self.batcher.done.values())).how}")
         self._warn_failed()
         table = np.array([[bounds[s, r] for s in structures] for r in complete], float)
-        levels = self._levels()
+        levels = list(self.analysis.levels)
         answer: dict[str, Any] = {
             "status": "ok",
             "records": self.names,
@@ -138,10 +138,6 @@ class Study:
                 "dispersion": split(table),
             }
         return answer
-
-    def _levels(self) -> list[float]:
-        analysis = self.analysis
-        return list(analysis.intensities or (analysis.lowest, analysis.highest))  # type: ignore[arg-type]
 
     def _warn_failed(self) -> None:
         failed = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
@@ -171,7 +167,7 @@ class Study:
         if worst is not None and abs(worst) > CLOSURE:
             self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")
         if answer["never_collapsed"] and answer["median"] is not None:
-            highest = self._levels()[-1]
+            highest = self.analysis.levels[-1]
             self.warnings.append(f"{answer['never_collapsed']} collapse intensities are above {highest:g}: not known")
 
     # -- how it was obtained -----------------------------------------------------------------------

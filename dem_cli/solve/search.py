@@ -42,10 +42,11 @@ def unique(names: Sequence[str]) -> list[str]:
 def runs_per_record(analysis: FragilityAnalysis) -> int:
     """How many runs a record takes at most."""
     if not analysis.bisects:
-        return len(analysis.intensities)
+        return len(analysis.levels)
     if analysis.intensities is not None:
-        return math.ceil(math.log2(len(analysis.intensities) + 1))
-    return 2 + math.ceil(math.log2((analysis.highest - analysis.lowest) / analysis.resolution) - 1e-9)
+        return math.ceil(math.log2(len(analysis.levels) + 1))
+    lowest, highest, resolution = analysis.range
+    return 2 + math.ceil(math.log2((highest - lowest) / resolution) - 1e-9)
 
 
 def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
@@ -55,16 +56,16 @@ def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
         return answer(Trial(structure, record, intensity)).collapsed
 
     def among_levels(answer: Answer) -> None:
-        low, high = -1, len(analysis.intensities)
+        low, high = -1, len(analysis.levels)
         while high - low > 1:
             middle = (low + high) // 2
-            fell = falls(answer, analysis.intensities[middle])
+            fell = falls(answer, analysis.levels[middle])
             if fell is None:
                 return
             low, high = (low, middle) if fell else (middle, high)
 
     def between(answer: Answer) -> None:
-        low, high = analysis.lowest, analysis.highest
+        low, high, _ = analysis.range
         if not falls(answer, high) or falls(answer, low) is not False:
             return
         for _ in range(runs_per_record(analysis) - 2):

@@ -57,6 +57,7 @@ class OnlyProgress:
     def frame(self, *_: Any) -> None: ...
     def row(self, *_: Any) -> None: ...
     def samples(self, *_: Any) -> None: ...
+    def runs(self, *_: Any) -> None: ...
 
 
 class Rested:
@@ -92,8 +93,8 @@ class Rested:
         else:
             collapsed, at = found is not None, found and found.time
             how = f"'{found.block}' {found.how}" if found else ""
-        steps, error = sim.steps - self.sim.steps, None if collapsed is None else closure(sim)
-        return Run(collapsed, at, how, tuple(peaks.tolist()), steps, error, time.thread_time() - begun)
+        steps, balance = sim.steps - self.sim.steps, None if collapsed is None else closure(sim)
+        return Run(collapsed, at, how, tuple(peaks.tolist()), steps, balance, time.thread_time() - begun)
 
     def _shake(self, sim: Shaken, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]):
         """The first block that collapsed; None where all come through the motion, and the time after it."""
