@@ -118,17 +118,17 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
 
 @inline
 def _relax(memory, rates, elements, state, pressed, stiffness, dt, point, first, d):
-    """Forces of the Maxwell elements of a point after a step at constant rates; with the joint's own they do not pull.
-    """
+    """Forces of the Maxwell elements of a point after a step at constant rates; with its own they do not pull."""
     total = 0.0
     for e in range(elements.shape[0]):
         share, rate = elements[e, 0], elements[e, 1]
         keep = math.exp(-rate * dt)
-        gain = share * (1.0 - keep) / rate
+        gain = -share * math.expm1(-rate * dt) / rate
         column = first + d * (e + 1)
         for k in range(d):
-            fed = 0.0 if k > 0 and state == SLIPS else rates[point, k]
-            memory[point, column + k] = keep * memory[point, column + k] - gain * stiffness[min(k, 1)] * fed
+            held = keep * memory[point, column + k] - gain * stiffness[min(k, 1)] * rates[point, k]
+            # Friction carries what slips: an element that held on to its force could push it on.
+            memory[point, column + k] = 0.0 if k > 0 and state == SLIPS else held
         total += memory[point, column]
     if total < -pressed and pressed >= 0.0:
         for e in range(elements.shape[0]):

@@ -35,11 +35,11 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
 
 
 def closure(sim: Simulation) -> float:
-    """Energy error over the largest energy in the ledger: 0 where the books balance."""
+    """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance."""
     e = sim.energy()
     taken = e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
     error = e.kinetic + e.elastic + e.gravity + taken - e.external - e.supports
-    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken)
+    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken, sim.most_kinetic)
     return float(error / largest) if largest > 0.0 else 0.0
 
 

@@ -44,6 +44,7 @@ def fallen(sim: Shaken, analysis: ShakingAnalysis) -> Fallen | None:
 
 def check_energy(sim: Shaken, step: TimeStep) -> None:
     """Raises SolverError where the motion makes energy."""
+    sim.most_kinetic = max(sim.most_kinetic, sim.centred_kinetic_energy())
     error = closure(sim)
     if abs(error) > BLOW_UP and sim.energy().kinetic > sim.noticeable_energy:
         block = sim.model.block_ids[_fastest(sim)]

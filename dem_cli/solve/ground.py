@@ -49,8 +49,10 @@ class GroundMotion:
     def stretch(self, start: float, n_steps: int, dt: float) -> Ground:
         """The ground over n_steps steps from the time `start` [s]: the frame is accelerated by as much as it gains
         in velocity over each step, so that no impulse is lost between samples.
+
+        Times are counted in steps: where a stretch starts changes no bit of the motion.
         """
-        times = start + dt * np.arange(n_steps + 1)
+        times = dt * (round(start / dt) + np.arange(n_steps + 1))
         gained = np.diff(self._sum(self.base, "velocity", times - 0.5 * dt), axis=0)
         velocities = np.zeros((n_steps, len(self.moving), self.n_dof))
         if len(self.moving):

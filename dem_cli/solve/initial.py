@@ -8,12 +8,16 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, Pair
-from dem_cli.contact.detect import world_corners
+from dem_cli.contact.detect import find_joints, world_corners
+from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.assemble import assembly
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.solve.simulation import Simulation
+
+
+INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
 
 
 class Initial(CaseModel):
@@ -49,7 +53,7 @@ class Initial(CaseModel):
 
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
-    names = assembly(case).block_map
+    names, rest = assembly(case).block_map, sim.largest_overlap()
     for table in case.initial:
         chosen = np.array([names[name] for name in table.names])
         if table.tilt:
@@ -57,6 +61,7 @@ def set_initial(case: Case, sim: Simulation) -> None:
         sim.bodies.positions[chosen] += table.displacement
         sim.bodies.velocities[chosen] = table.velocity
     _find_faces(sim)
+    _check_apart(case, sim, rest)
 
 
 def tilt(sim: Simulation, chosen: np.ndarray, angle: float) -> None:
@@ -71,6 +76,23 @@ def _find_faces(sim: Simulation) -> None:
     bodies.corners[:] = world_corners(sim.shape, bodies.positions, bodies.orientations)
     bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
     sim.detect()
+
+
+def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
+    """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
+    model, names = sim.model, assembly(case).block_map
+    faces = find_joints(model, sim.bodies.corners, 0.0, sim.inner)
+    for number in np.flatnonzero(faces.separation < -2.0 * rest - INSIDE * sim.smallest):
+        pair = model.part_blocks[faces.parts[number]].tolist()
+        tables = [i for i, t in enumerate(case.initial) if {names[name] for name in t.names} & set(pair)]
+        if not tables:
+            continue
+        a, b = (model.block_ids[i] for i in pair)
+        message = (
+            f"puts blocks '{a}' and '{b}' {-faces.separation[number]:.3g} m into each other; move what is in the way "
+            "as well (blocks = [...])"
+        )
+        raise CaseError([CaseProblem(("initial", tables[-1]), message)])
 
 
 def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:

@@ -63,12 +63,12 @@ class Shaken(Simulation):
         self.bodies.means[:] = 0.0
 
     def start_moving(self) -> None:
-        """Takes the velocities, which are those of time 0, half a step back; their energy counts as given."""
-        self.ledger[slot.EXTERNAL] = self.elastic_energy() + self.kinetic_energy()
-        saved, before = self.save(), self.bodies.velocities.copy()
+        """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
+        kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
         self._run(0, 1, self._still(1), _no_watch(self))
-        change = (self.bodies.velocities - before)[self.free]
+        change, elastic = (self.bodies.velocities - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
+        self.ledger[slot.EXTERNAL] = elastic + kinetic
         self._new_dampers()
         self.bodies.velocities[self.free] -= 0.5 * change
 
@@ -108,24 +108,24 @@ class Shaken(Simulation):
         self._run(0, 0, self._still(0), _no_watch(self))
         self.control[:] = control
 
-    def shake(self, ground: Ground, n_steps: int, watch: Watch) -> None:
-        """n_steps steps over a stretch of ground motion, with detection when it is due.
+    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0) -> None:
+        """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
         The books are closed in the middle of the last step, where places, velocities and forces are of one time.
         """
-        step = 0
-        while step < n_steps:
-            last = step == n_steps - 1
+        step, end = first, first + n_steps
+        while step < end:
+            last = step == end - 1
             if last:
                 before = self.ledger.copy()
-            step += self._run(step, 1 if last else n_steps - 1 - step, ground, watch)
+            step += self._run(step, 1 if last else end - 1 - step, ground, watch)
             if last:
                 self.centred = 0.5 * (before + self.ledger)
                 self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]
             if self._detection_due():
                 self.detect()
         self.steps += n_steps
-        self.time += n_steps * self.dt
+        self.time = self.dt * (round(self.time / self.dt) + n_steps)
 
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""

@@ -112,6 +112,7 @@ class Simulation:
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
         self.detections = 0
+        self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
         self._detect_first()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
@@ -125,16 +126,12 @@ class Simulation:
         model, n_memory = self.model, self.n_memory
         self.chains: Chains | None = None
         if self.kinematics == "fixed":
-            self.joints, self.contacts = joints_of_start(
-                model, self.bodies, self.properties, self.smallest, n_memory
-            )
+            self.joints, self.contacts = joints_of_start(model, self.bodies, self.properties, self.smallest, n_memory)
         else:
             faces = find_joints(model, self.bodies.corners, self.skin * self.smallest, self.inner)
             if self.properties.profiled:
                 self.chains = chains_of_start(model, faces, self.bodies, self.properties)
-            self.joints, self.contacts = build_joints(
-                model, faces, self.bodies, self.properties, n_memory, self.chains
-            )
+            self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory, self.chains)
             close_touching(self.contacts, self.smallest)
             bond_touching(model, self.joints, self.contacts, self.properties)
         self._after_detection()

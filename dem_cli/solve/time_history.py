@@ -17,7 +17,7 @@ from dem_cli.output.record import Energy, Observer, Samples
 from dem_cli.solve.collapse import check_energy, check_finite
 from dem_cli.solve.collapse import fallen as fallen_block
 from dem_cli.solve.damping import Damping, damping_of
-from dem_cli.solve.equilibrium import stand
+from dem_cli.solve.equilibrium import Budget, stand
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.ground import GroundMotion
 from dem_cli.solve.initial import set_initial
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
 LONGEST_LOOK = 0.05  # s from one look to the next, at most
+SETTLING = 4_000_000  # steps to come to rest, at most
 ROWS = 400  # looks along the way: energies, collapse, whether all is well
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
@@ -81,7 +82,7 @@ class TimeHistory:
 
         sim = self.job.clock.compiled(lambda: make(math.inf))
         stiffer = math.sqrt(1.0 + self.damping.elements[:, 0].sum())
-        found = time_step(sim, analysis.margin / stiffer, analysis.time_step)
+        found = time_step(sim, analysis.margin, analysis.time_step, stiffer)
         if not math.isfinite(found.step):
             found = found._replace(step=min(1e-4, 1e-3 * self.duration))
         if any(law.rates for law in laws_of(self.case)):
@@ -99,7 +100,7 @@ class TimeHistory:
         sim, case = self.sim, self.case
         if case.analysis.settle:
             self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
-            if stand(sim, self.job.budget).state != "equilibrium":
+            if self._stands() != "equilibrium":
                 self.track.write("gravity")
                 self.track.frame("gravity")
                 return False
@@ -112,6 +113,17 @@ class TimeHistory:
         self.track.frame("shaking")
         return True
 
+    def _stands(self) -> str:
+        """State under dead loads. Raises SolverError where neither equilibrium nor a fall is found."""
+        steps = min(self.case.analysis.max_steps, SETTLING)
+        try:
+            return stand(self.sim, Budget(steps)).state
+        except SolverError as error:
+            raise SolverError(
+                f"no rest under dead loads was found in {steps:,} steps before the motion: soften the joints, make "
+                f"weights more alike, or start as drawn (analysis.settle = false); {error}"
+            ) from error
+
     def _shake(self) -> dict[str, Any]:
         """Stretches of the motion until its end, or until a collapse was followed long enough."""
         sim, output, dt = self.sim, self.case.output, self.step.step
@@ -122,7 +134,7 @@ class TimeHistory:
                 f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
                 f"({self.case.analysis.max_steps:,}): {self.step.cause}"
             )
-        stretch = every * max(1, math.ceil(min(total / ROWS, LONGEST_LOOK / dt) / every))
+        stretch = max(1, math.ceil(min(total / ROWS, LONGEST_LOOK / dt)))  # whatever the rate of samples
         done, fallen, end = 0, None, self.duration
         frames = Frames(0.0, end, output.frames)
         while done < total and sim.time < end - 0.5 * dt:
@@ -137,9 +149,7 @@ class TimeHistory:
                     frames = Frames(sim.time, end, max(output.frames // 2, 2))
             if frames.due(sim.time + 0.5 * dt):
                 self.track.frame("collapse" if fallen else "shaking")
-            self.track.observer.progress(
-                "shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0)
-            )
+            self.track.observer.progress("shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0))
         found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
         found["collapse_time"] = None if fallen is None else fallen.time
         if fallen is not None:
@@ -147,16 +157,20 @@ class TimeHistory:
         return found
 
     def _stretch(self, n_steps: int, every: int) -> None:
-        """n_steps of motion, sampled every so many steps."""
-        sim, monitors, start = self.sim, self.job.monitors, self.sim.time
-        n_samples = -(-n_steps // every)
+        """n_steps of motion, sampled every so many steps since the start of the run."""
+        sim, monitors, dt = self.sim, self.job.monitors, self.step.step
+        done = round(sim.time / dt)
+        since = done % every  # steps since the last sample was due, which the stretch begins with
+        n_samples = -(-(since + n_steps) // every)
         n_dof = sim.bodies.velocities.shape[1]
         watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
-        sim.shake(self.ground.stretch(start, n_steps, self.step.step), n_steps, watch)
+        sim.shake(self.ground.stretch((done - since) * dt, since + n_steps, dt), n_steps, watch, since)
         check_finite(sim)
-        times = start + self.step.step * every * np.arange(n_samples)
-        base = self.ground.of_base(times)
-        self.track.observer.samples(Samples(times, base, monitors.series(watch.samples, base)))
+        new = slice(1 if since else 0, None)  # the first sample of a stretch that begins between two is none
+        times = (dt * (done - since + every * np.arange(n_samples)))[new]
+        if len(times):
+            base = self.ground.of_base(times)
+            self.track.observer.samples(Samples(times, base, monitors.series(watch.samples[new], base)))
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
 
     def _look(self) -> None:

@@ -32,14 +32,15 @@ class TimeStep(NamedTuple):
         return f"{named} vibrates at {'' if self.exact else 'no more than '}{self.highest / (2 * math.pi):.4g} Hz"
 
 
-def time_step(sim: Simulation, margin: float = MARGIN, forced: float | None = None) -> TimeStep:
+def time_step(sim: Simulation, margin: float = MARGIN, forced: float | None = None, stiffer: float = 1.0) -> TimeStep:
     """The step to use: `forced` [s] where it is given, else margin · 2/ω_max.
 
-    Dashpots do not come into it: they are implicit (docs/numerics.md). All contact points in the list count as
+    stiffer: what Maxwell elements multiply frequencies by. Dashpots do not come into it: they are implicit
+    (docs/numerics.md). All contact points in the list count as
     closed. Both times are infinite where no joint holds any block. Raises CaseError where `forced` is not stable.
     """
     highest = limiting(sim)
-    limit = 2.0 / highest.frequency if highest.frequency > 0.0 else math.inf
+    limit = 2.0 / (stiffer * highest.frequency) if highest.frequency > 0.0 else math.inf
     names: tuple[str, ...] = ()
     if highest.block >= 0:
         a, b = sim.joints.blocks[highest.joint].tolist()

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, tables, turned
 
+from dem_cli.errors import CaseError, SolverError
+
 PULSE = {"kind": "pulse", "shape": "sine", "amplitude": 7.0, "frequency": 2.0}
 GROUND = block("base", rectangle(-3, -1, 3, 0), fixed=True)
 
@@ -59,3 +61,86 @@ def test_an_arch_that_falls_makes_no_energy(fraction):
     ]  # fmt: skip
     assert summary["largest_displacement"] > 0.5
     assert np.diff(errors).max() < 0.03 * max(abs(e.gravity) for e in energies)
+
+
+# -- what a run answers must not depend on what is looked at ----------------------------------------
+
+
+@pytest.mark.parametrize("output", [{"rate": 50.0}, {"rate": 3333.0}, {"rate": 1e5}, {"rate": 500.0, "frames": 40}])
+def test_looking_changes_no_bit(output):
+    """Collapse time, energies and places, whatever rate and frames: the samples that both have are the same."""
+    analysis = {"kind": "time-history", "duration": 0.7, "fallen_deg": 20.0}
+    monitor = [{"block": "v3", "quantity": "rotation"}]
+    plain, more = (
+        engine.solve(shaken(*arch(), analysis=analysis, monitor=monitor, output={"frames": 0, **o}))
+        for o in ({"rate": 500.0}, output)
+    )
+    for key in ("collapse_time", "largest_displacement", "energy_closure", "energy_shares", "steps"):
+        assert plain[0][key] == more[0][key]
+    assert plain[0]["collapsed"]
+    first, second = plain[1].history, more[1].history
+    assert (np.diff(second.times) > 0.0).all()
+    _, i, j = np.intersect1d(first.times, second.times, return_indices=True)
+    assert len(i) >= 2
+    assert (first.monitors[i] == second.monitors[j]).all()
+
+
+# -- dampers and joints ------------------------------------------------------------------------------
+
+
+def test_maxwell_elements_take_energy_where_joints_slip():
+    """They do not hold on to a force that would push on what slips."""
+    elements = [{"ratio": 0.49, "frequency": 1.0}]
+    summary, records = engine.solve(shaken(*column(), damping={"maxwell": elements}))
+    lost = [row.energy.maxwell for row in records.rows]
+    assert summary["energy_shares"]["friction"] > 0.3
+    assert min(lost) > -1e-3 * max(lost)
+    assert abs(summary["energy_closure"]) < 1e-3
+
+
+def test_the_limit_of_a_step_knows_maxwell_elements():
+    plain = engine.solve(shaken(*column(), motion={"kind": "none"}))[0]["largest_time_step"]
+    case = shaken(
+        *column(), damping={"maxwell": [{"ratio": 0.4, "frequency": 1.0}]},
+        analysis={"kind": "time-history", "duration": 0.1, "time_step": 0.9 * plain},
+    )  # fmt: skip
+    with pytest.raises(CaseError, match="above the largest stable step"):
+        engine.solve(case)
+
+
+def test_books_without_gravity():
+    """Blocks that float, and stand still relative to the base when it does: no energy is left, and none is missing."""
+    summary, _ = engine.solve(shaken(*column(), gravity=0.0))
+    assert summary["status"] == "ok"
+    assert abs(summary["energy_closure"]) < 1e-12
+
+
+def test_joints_too_stiff_for_rest_are_given_up_early():
+    case = shaken(*column(), kn=1e15)
+    case["analysis"]["max_steps"] = 200_000
+    with pytest.raises(SolverError, match="no rest under dead loads was found in 200,000 steps before the motion"):
+        engine.solve(case)
+
+
+# -- starts ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("start", "pair"),
+    [
+        ({"block": "b3", "displacement": [0.0, -0.01]}, "'b2' and 'b3' 0.01 m"),
+        ({"block": "b3", "displacement": [0.0, -0.3]}, "'b2' and 'b3' 0.3 m"),
+        ({"block": "b0", "tilt": 0.1}, "'b0' and 'b1' 0.0484 m"),
+    ],
+)
+def test_a_start_inside_another_block_is_refused(start, pair):
+    with pytest.raises(CaseError, match=f"puts blocks {pair} into each other"):
+        engine.solve(shaken(*column(), initial=[start]))
+
+
+@pytest.mark.parametrize("kn", [1e6, 1e9])
+def test_a_start_that_touches_is_not_refused(kn):
+    """Soft joints are inside each other at rest already."""
+    summary, _ = engine.solve(shaken(*column(), kn=kn, initial=[{"blocks": ["b2", "b3"], "tilt": 0.02}]))
+    assert summary["status"] == "ok"
+    assert abs(summary["energy_closure"]) < 1e-2
