@@ -94,11 +94,15 @@ def _pairs(rows: Sequence[Row]) -> list[str]:
 
 def _slides(rows: Sequence[Row]) -> list[str]:
     cells = [
-        (row["name"], f"{1e3 * row['exact']:.3f} mm", f"{1e3 * row['path']:.1f} mm", f"{1e3 * row['slip']:.3f} mm",
+        (row["name"], _mm(row["exact"]), f"{1e3 * row['path']:.1f} mm", _mm(row["slip"]),
          percent(row["slip"] / row["exact"] - 1.0), percent((row["slip"] - row["exact"]) / row["path"]))
         for row in rows
     ]  # fmt: skip
     return lines_of(("motion", "exact final slip", "way", "dem", "error", "error over the way"), cells)
+
+
+def _mm(metres: float) -> str:
+    return f"{1e3 * metres:.3f} mm".replace("-", "−")
 
 
 def _stacks(rows: Sequence[Row]) -> list[str]:
@@ -128,11 +132,10 @@ def _bounces(rows: Sequence[Row]) -> list[str]:
 def _energy(rows: Sequence[Row]) -> list[str]:
     cells = []
     for name in dict.fromkeys(row["damping"] for row in rows):
-        here = [np.abs(row["closures"]) for row in rows if row["damping"] == name]
-        means = [float(np.sqrt((c**2).mean())) for c in here]
-        orders = [f"{np.log2(a / b):.2f}" for a, b in zip(means[:-1], means[1:])]
-        cells.append(
-            [name, *(f"{mean:.1e} (at most {c.max():.1e})" for mean, c in zip(means, here)), ", ".join(orders)]
-        )
+        here = [row for row in rows if row["damping"] == name]
+        errors = [np.abs(row["closures"]) for row in here]
+        means = [float(np.sqrt((e**2).mean())) for e in errors]
+        order = np.log(means[0] / means[-1]) / np.log(here[0]["margin"] / here[-1]["margin"])
+        cells.append([name, *(f"{m:.1e} ({e.max():.1e})" for m, e in zip(means, errors)), f"{order:.2f}"])
     margins = [f"margin {row['margin']:g}" for row in rows if row["damping"] == rows[0]["damping"]]
     return lines_of(("damping", *margins, "order"), cells)

@@ -15,7 +15,7 @@ from rockingtable import free, pulses
 from rockingtable.ensembles import CHANGE, FALLS
 
 Row = Mapping[str, Any]
-FINER, HIGHER = 60, 90  # cells of the shaded picture across and up
+FINER, HIGHER = 150, 240  # cells of the shaded picture across and up
 
 
 def free_rocking(path: Path, rows: Sequence[Row]) -> None:
@@ -75,7 +75,7 @@ def ensembles(path: Path, rows: Sequence[Row]) -> None:
             xlabel="peak |θ| / α (2: overturned)", ylabel="share of pairs", xlim=(0.0, FALLS + 0.05), ylim=(0.0, 1.0)
         )
         left.set_title(f"{len(exact)} pairs")
-        left.legend(loc="lower right")
+        left.legend(loc="lower right", bbox_to_anchor=(0.94, 0.0))
         for name, marker in (("changed", "x"), ("dem", "o")):
             right.plot(
                 exact, [row[name] for row in rows], marker, ms=4, alpha=0.7, color=others[name], label=names[name]
@@ -83,4 +83,4 @@ def ensembles(path: Path, rows: Sequence[Row]) -> None:
         right.plot([0.0, FALLS], [0.0, FALLS], color=style.GREY, lw=0.8, zorder=0)
         right.set(xlabel="peak |θ| / α of the oracle", ylabel="peak |θ| / α", xlim=(0.0, 2.05), ylim=(0.0, 2.05))
         right.set_title("Pair by pair")
-        right.legend(loc="upper left")
+        right.legend(loc="lower right", bbox_to_anchor=(0.95, 0.0))

@@ -12,7 +12,7 @@ from rockingtable import ensembles, free, others, pulses
 
 FINE = {"output": {"rate": 2000.0}}
 SOFT = 1e5  # kn h / W of "auto" joints in time histories
-MARGINS = (0.5, 0.25, 0.125)
+MARGINS = (0.5, 0.35, 0.25, 0.18, 0.125)
 ENERGY = {"none": {"none": True}, "0.35 of critical": {"contact_fraction": 0.35}, "housner": {"restitution": "housner"}}
 SEEDS = range(5)
 BOUNCES = ((0.0, (0.5, 0.25, 0.1, 0.02)), (0.2, (0.5, 0.25, 0.1, 0.02)))  # ζ, margins
