@@ -1,0 +1,197 @@
+"""pulses.md and its pictures are made from pulses.json alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from reference import result, value
+
+from dem_cli.bench.machine import sentence
+from dem_cli.bench.table import lines_of, percent
+from pulsetable import column, picture, words
+from pulsetable.picture import BOOK, NAMES, VAULT_BOOK
+
+Row = Mapping[str, Any]
+SIDES = {-1: "−", 1: "+"}
+THEIR_FREE = {"elastic_s5": (11.08, 0.0505), "elastic_mx5": (12.57, 0.0520)}  # [Hz], -: read from their series
+
+
+def write(folder: Path, table: Mapping[str, Any]) -> None:
+    """Page and pictures into `folder`."""
+    (folder / "pulses.md").write_text(render(table), encoding="utf-8")
+    picture.overturning(folder / "pulses_column.png", table)
+    picture.histories(folder / "pulses_arch.png", table["vault"])
+    picture.points(folder / "pulses_points.png", table["vault"])
+
+
+def render(table: Mapping[str, Any]) -> str:
+    """The page of what is in pulses.json."""
+    vault, ranges = table["vault"], _again(table["column"])
+    said = words.COLUMN.format(lasts=column.LASTS, margin=column.MARGIN)
+    after = words.COLUMN_AFTER.format(first=ranges[0][0], last=ranges[-1][0]) if ranges else ""
+    lines = [words.HEAD, "", words.STATIC, "", *_static(table), "", said, "", *_domain(table), "", after, ""]
+    lines += [*lines_of(("tp [s]", "falls from … to [g]", "stands up to", "falls again from"), map(_said, ranges)), ""]
+    lines += [words.FINE.format(fine=column.FINE, coarse=column.MARGIN), "", *_fine(table["fine"]), ""]
+    lines += [words.BUTTRESSES, "", *_buttresses(table["buttresses"]["rows"]), ""]
+    theirs = THEIR_FREE["elastic_s5"]
+    case = vault["variants"][0]
+    lines += [words.VAULT.format(
+        their_f=theirs[0], their_r=100 * theirs[1], our_f=case["frequencies"][0], pressed=vault["pressed"][0]
+    ), ""]  # fmt: skip
+    lines += [*_peaks(case), "", words.POINTS, "", *_variants(vault["variants"]), "", words.POINTS_AFTER, ""]
+    lines += [*_edges(table["edges"]), ""]
+    lines += [words.ELEMENTS, "", *_elements(vault["elements"]), "", words.ELEMENTS_AFTER, ""]
+    lines += [*_free(table["free"]), ""]
+    lines += [words.SPREAD.format(count=len(table["spread"]["eq10_s5"])), "", *_spread(table["spread"]), ""]
+    return "\n".join([*lines, f"Machine: {sentence(table['machine'])}."]) + "\n"
+
+
+def _static(table: Row) -> list[str]:
+    rows = []
+    for name, found, theirs in (
+        ("column", table["column_static"], value(BOOK, "col_static")),
+        ("arch on buttresses", table["buttresses"]["static"], value(BOOK, "arch_static")),
+        ("arch of 17 voussoirs", table["vault"]["static"], value(VAULT_BOOK, "static")),
+    ):
+        low, high = found["bracket"]
+        exact = found["limit"]["associated"]
+        error = percent(0.5 * (low + high) / theirs - 1.0)
+        rows.append((name, f"{theirs:.4f}", f"{low:.4f} to {high:.4f}", error, f"{exact:.4f}"))
+    return lines_of(("structure", "data book", "bracket", "error", "limit analysis, associated"), rows)
+
+
+def _domain(table: Row) -> list[str]:
+    udec, lmgc = (dict(zip(book["tp_s"], book["value"])) for book in _series())
+    others = {name: {row["tp"]: row for row in rows} for name, rows in table["others"].items()}
+    rigid = {row["tp"]: row["least"] for row in table["rigid"]}
+    rows = []
+    for row in table["column"]:
+        tp, least = row["tp"], row["least"]
+        cells = [f"{tp:g}", _bound(row)]
+        cells += [f"{book[tp]:g} ({percent(least / book[tp] - 1.0)})" if tp in book else "" for book in (udec, lmgc)]
+        cells += [_bound(rows_of[tp]) if tp in rows_of else "" for rows_of in others.values()]
+        rows.append([*cells, f"{rigid[tp]:.3f}" if rigid[tp] else "none"])
+    head = ("tp [s]", f"dem, {column.MAIN} [g], side", "UDEC", "LMGC90", *(f"dem, {name}" for name in others), "rigid")
+    return lines_of(head, rows)
+
+
+def _series() -> tuple[Row, Row]:
+    return result(BOOK, "col_domain_udec"), result(BOOK, "col_domain_lmgc")
+
+
+def _bound(row: Row) -> str:
+    fall = row["fall"]
+    return f"{row['least']:.3f}, {SIDES[fall['side']]}" if fall["collapsed"] else f"{row['least']:.3f}"
+
+
+def _again(rows: Sequence[Row]) -> list[tuple[float, float, float, float, float | None]]:
+    """tp, amplitudes of the grid between which it falls, the highest that stands again, the next that falls."""
+    found = []
+    for row in rows:
+        answers = row["answers"]
+        first = next((k for k, (_, falls) in enumerate(answers) if falls), len(answers))
+        stands = [k for k in range(first, len(answers)) if not answers[k][1]]
+        if stands:
+            again = next((answers[k][0] for k in range(stands[0], len(answers)) if answers[k][1]), None)
+            last = max(k for k in stands if again is None or answers[k][0] < again)
+            found.append((row["tp"], row["least"], answers[stands[0] - 1][0], answers[last][0], again))
+    return found
+
+
+def _said(row: tuple[float, float, float, float, float | None]) -> list[str]:
+    tp, least, until, stands, again = row
+    return [f"{tp:g}", f"{least:.3f} … {until:.3f}", f"{stands:.3f}", f"{again:.3f}" if again else "not tried"]
+
+
+def _fine(rows: Sequence[Row]) -> list[str]:
+    head = ("tp [s]", f"least at {column.MARGIN:g} [g]", f"at {column.FINE:g} [g]", "difference")
+    cells = [
+        (f"{r['tp']:g}", f"{r['coarse']:.4f}", f"{r['fine']:.4f}", percent(r["fine"] / r["coarse"] - 1.0)) if r["fine"]
+        else (f"{r['tp']:g}", f"{r['coarse']:.4f}", "elsewhere", "more than 4 %")
+        for r in rows
+    ]  # fmt: skip
+    return lines_of(head, cells)
+
+
+def _buttresses(rows: Sequence[Row]) -> list[str]:
+    names = list(dict.fromkeys(row["damping"] for row in rows))
+    found = {(row["damping"], row["tp"]): row["least"] for row in rows}
+    cells = [
+        [f"{tp:g}", *(f"{found[name, tp]:.3f}" if found[name, tp] else "none up to 8" for name in names)]
+        for tp in dict.fromkeys(row["tp"] for row in rows)
+    ]
+    return lines_of(("tp [s]", *(f"least amplitude, {name} [g]" for name in names)), cells)
+
+
+def _peaks(case: Row) -> list[str]:
+    rows = []
+    for name, title in NAMES.items():
+        book = result(VAULT_BOOK, f"pulse_{name}")
+        theirs, at = np.atleast_1d(book["value"]), np.atleast_1d(book["time_s"])
+        for k in range(len(theirs)):
+            ours, when = case[name]["values"][k], case[name]["times"][k]
+            rows.append((
+                title if k == 0 else "– to the other side", f"{1e3 * theirs[k]:.4f} mm, {at[k]:.4f} s",
+                f"{1e3 * ours:.4f} mm, {when:.4f} s", percent(ours / theirs[k] - 1.0), percent(when / at[k] - 1.0),
+            ))  # fmt: skip
+    return lines_of(("run", "3DEC", "dem", "error of the peak", "of its time"), rows)
+
+
+def _variants(rows: Sequence[Row]) -> list[str]:
+    first = rows[0]
+    cells = []
+    for row in rows:
+        said = []
+        for name in NAMES:
+            ours = row[name]["values"][0]
+            change = "" if row is first else f" ({percent(ours / first[name]['values'][0] - 1.0)})"
+            said.append("falls" if ours > 0.1 else f"{1e3 * ours:.3f}{change}")
+        cells.append([row["group"] or "the case", row["label"], f"{row['frequencies'][0]:.2f}", *said])
+    return lines_of(("what", "how", "Hz", *NAMES.values()), cells)
+
+
+def _edges(rows: Sequence[Row]) -> list[str]:
+    stiffnesses = list(dict.fromkeys(row["kn"] for row in rows))
+    found = {(row["label"], row["kn"]): row["peak"] for row in rows}
+    cells = [
+        [label, *("falls" if found[label, kn] > 0.1 else f"{1e3 * found[label, kn]:.2f}" for kn in stiffnesses)]
+        for label in dict.fromkeys(row["label"] for row in rows)
+    ]
+    return lines_of(("points across the ring", *(f"kn = ks = {kn:.0e} Pa/m" for kn in stiffnesses)), cells)
+
+
+def _elements(rows: Sequence[Sequence[float]]) -> list[str]:
+    head = ("mode on the springs alone", "damping ratio", "frequency", "higher by")
+    return lines_of(head, [(f"{f:g} Hz", f"{100 * r:.2f} %", f"{g:.3f} Hz", percent(g / f - 1.0)) for f, r, g in rows])
+
+
+def _free(found: Mapping[str, Row]) -> list[str]:
+    rows = []
+    for name in ("elastic_s5", "elastic_mx5"):
+        (frequency, ratio), ours = THEIR_FREE[name], found[name]
+        rows.append((
+            NAMES[name], f"{frequency:.2f} Hz, {100 * ratio:.2f} %",
+            f"{ours['frequency']:.2f} Hz, {100 * ours['ratio']:.2f} %", percent(ours["frequency"] / frequency - 1.0),
+        ))  # fmt: skip
+    ratios = [f"{theirs:.3f}" for theirs in (
+        THEIR_FREE["elastic_mx5"][0] / THEIR_FREE["elastic_s5"][0],
+        found["elastic_mx5"]["frequency"] / found["elastic_s5"]["frequency"],
+    )]  # fmt: skip
+    rows.append(("frequency, Maxwell over stiffness", *ratios, ""))
+    return lines_of(("run", "3DEC", "dem", "error of the frequency"), rows)
+
+
+def _spread(found: Mapping[str, Sequence[float | None]]) -> list[str]:
+    rows = []
+    for name, peaks in found.items():
+        stood = 1e3 * np.array([p for p in peaks if p is not None])
+        theirs = 1e3 * value(VAULT_BOOK, name)
+        below = int((stood < theirs).sum())
+        rows.append((
+            name, f"{theirs:.2f}", f"{np.median(stood):.2f}", f"{stood.min():.2f} to {stood.max():.2f}",
+            f"{below} of {len(stood)}", str(len(peaks) - len(stood)),
+        ))  # fmt: skip
+    return lines_of(("run", "3DEC", "our median", "range", "records below theirs", "fell"), rows)

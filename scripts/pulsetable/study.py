@@ -1,0 +1,22 @@
+"""All parts of docs/pulses.md."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pulsetable import buttresses, column, spread, vault
+
+Say = Callable[[str], None]
+PARTS: dict[str, Callable[[Say], Any]] = {
+    "column_static": lambda say: column.static(),
+    "rigid": column.rigid,
+    "column": column.main_domain,
+    "others": column.others,
+    "fine": column.fine,
+    "vault": vault.study,
+    "free": vault.free,
+    "edges": vault.edges,
+    "buttresses": buttresses.study,
+    "spread": spread.study,
+}
