@@ -10,7 +10,7 @@ import numpy as np
 from pulsetable import column, domain
 
 CASE, BOOK_CASE = "dimitri_arch", "arch_on_buttresses"
-DURATIONS = (0.3, 0.5, 0.75, 1.0, 1.5, 2.0)
+DURATIONS = (0.5, 1.0, 2.0)
 LASTS, MARGIN = 12.0, 0.5
 LOWEST, RATIO, HIGHEST = 0.12, 1.1, 8.0  # g, -, g
 

@@ -8,7 +8,7 @@ from typing import Any
 from pulsetable import vault
 from pulsetable.domain import Shaker, changed, table_of
 
-RECORDS, LENGTH, MARGIN = 10, 15.0, 0.5  # -, s, -
+RECORDS, LENGTH, MARGIN = 7, 15.0, 0.5  # -, s, -
 PEAKS = {"eq10": 0.10, "eq20": 0.20}  # g
 GRAVITY = 10.0
 SUITE = {

@@ -86,5 +86,5 @@ SPREAD = """\
 ### Earthquakes: a plausibility check only
 
 Theirs: one synthetic record, scaled to 0.10 g and 0.20 g (its file is in the named repository; it is not copied
-here). Ours: {count} artificial records, Eurocode 8 type 2, ground A, 15 s, each scaled to the same peak; ground type and
-spectrum are a guess. Largest |displacement| of the crown [mm]."""
+here). Ours: {count} artificial records, Eurocode 8 type 2, ground A, 15 s, each scaled to the same peak; ground type
+and spectrum are a guess. Largest |displacement| of the crown [mm]."""
