@@ -19,7 +19,7 @@ for folder in (ROOT, ROOT / "scripts"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from stresses import invariance, proportions, steady, stiffness, table  # noqa: E402
+from stresses import invariance, proportions, shaking, steady, stiffness, table  # noqa: E402
 from stresses.records import WRONG, Record  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "stress.md"
@@ -44,6 +44,7 @@ AXES: dict[str, Callable[[bool], Iterator[Record]]] = {
     "work": steady.work_identity,
     "state": steady.state_closure,
     "bytes": invariance.same_bytes,
+    "shaking": shaking.shaken,
 }
 
 
