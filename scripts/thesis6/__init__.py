@@ -1,0 +1,1 @@
+"""Thesis chapter 6, section by section."""
