@@ -46,7 +46,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
     """States, rates and gains of all points before the kick.
 
     Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
-    elements to `forces`.
+    elements to `forces`. Returns how many points have met.
     """
     blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
     frames, levers, normals, memory, slips = (
@@ -57,6 +57,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
     pushes = dampers.pushes
     pushes[:] = 0.0
     d, n_elements, none = len(like), elements.shape[0], scale(0.0, like_rotation)
+    n_met = 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -80,8 +81,9 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             rates[point, 0] = opening
             store(rates, point, 1, sliding)
             shares[point] = 1.0
+            n_met += met
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
-                shares[point] = 0.5 + min(-normals[point] / (kns[point] * opening * dt), 1.0)
+                shares[point] = 0.5 + min(max(contacts.gaps[point] / (opening * dt), 0.0), 1.0)
             masses = inverse_masses[a, 0] + inverse_masses[b, 0]
             turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
             for k in range(d):
@@ -114,6 +116,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                 add_at(forces, b, 0, force, 1.0)
                 add_at(forces, a, d, add_torques(levers_a, normal, shear, none), -1.0)
                 add_at(forces, b, d, add_torques(levers_b, normal, shear, none), 1.0)
+    return n_met
 
 
 @inline
@@ -192,14 +195,18 @@ def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards,
 
 
 @inline
-def resist(joints, contacts, velocities, inverse_masses, dampers, dt, like, like_rotation):
-    """The impulses of all dashpots on the velocities after the kick, from those of the step before."""
+def resist(joints, contacts, velocities, inverse_masses, dampers, dt, turns, like, like_rotation):
+    """The impulses of all dashpots on the velocities after the kick, from those of the step before.
+
+    turns: pairs of sweeps, to and fro. One is enough where the step before is a good guess.
+    """
     pushes = dampers.pushes
     for block in range(velocities.shape[0]):
         for k in range(velocities.shape[1]):
             velocities[block, k] += inverse_masses[block, k] * pushes[block, k]
-    _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, False, like, like_rotation)
-    _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, True, like, like_rotation)
+    for _ in range(turns):
+        _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, False, like, like_rotation)
+        _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, True, like, like_rotation)
 
 
 @inline

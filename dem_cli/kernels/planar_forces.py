@@ -11,16 +11,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_forces import make_press
+from dem_cli.kernels.contact_forces import make_press, meeting
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
-def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False) -> Callable:
+def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False, meets: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
+    meets: points close and open without a loss of energy (`meeting`), in time histories.
     """
     press = make_press(law, bonded)
 
@@ -54,6 +55,8 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False)
             opened_low, opened_high = gap_low - gaps[first], gap_high - gaps[second]
             gaps[first] = gap_low
             gaps[second] = gap_high
+            if meets and not bonded:
+                gap_low, gap_high = meeting(gap_low, opened_low), meeting(gap_high, opened_high)
             on_low = bonded or gap_low < 0.0 or normals[first] != 0.0
             on_high = bonded or gap_high < 0.0 or normals[second] != 0.0
             if not (on_low or on_high):
@@ -106,4 +109,4 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False)
             add_at(forces, b, d, torque_b, 1.0)
         return friction_work
 
-    return named(planar_forces, law, "bonded" if bonded else "", "keeps" if keeps else "")
+    return named(planar_forces, law, "bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "")

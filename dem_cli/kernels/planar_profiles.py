@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_forces import make_press
+from dem_cli.kernels.contact_forces import make_press, meeting
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
@@ -47,7 +47,9 @@ def _end(inside, blend, corner_a, corner_b, ta, ts, on_side):
     return gap, share
 
 
-def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = False, places: bool = False) -> Callable:
+def make_profiled_forces(
+    law: Callable, bonded: bool = False, keeps: bool = False, places: bool = False, meets: bool = False
+) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
@@ -140,6 +142,9 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
                     gap = max(gap, 0.0)
                 before = gaps[point]
                 gaps[point] = gap
+                opened = gap - before
+                if meets and not bonded:
+                    gap = meeting(gap, opened)
                 if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, side, corner_a, corner_b)
@@ -152,7 +157,7 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
                     continue
                 loaded = True
                 normal, shear, path, work = press(
-                    gap, gap - before, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
+                    gap, opened, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
                     load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
                 )  # fmt: skip
                 if path > 0.0:
@@ -170,7 +175,8 @@ def make_profiled_forces(law: Callable, bonded: bool = False, keeps: bool = Fals
                 add_at(forces, b, d, torque_b, 1.0)
         return lost
 
-    return named(profiled_forces, law, "bonded" if bonded else "", "keeps" if keeps else "", "places" if places else "")
+    flags = ("bonded" if bonded else "", "keeps" if keeps else "", "places" if places else "", "meets" if meets else "")
+    return named(profiled_forces, law, *flags)
 
 
 @inline

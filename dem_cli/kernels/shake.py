@@ -25,6 +25,8 @@ from dem_cli.kernels.records import (
     UNBALANCED,
 )
 
+TURNS_OF_IMPACT = 6  # pairs of sweeps where points have met, which have no impulse of the step before to start from
+
 
 @always_inline
 def _kick(
@@ -111,7 +113,7 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
             forces[:] = 0.0
             ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
             if damped:
-                meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
+                met = meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
                 velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, means, drags, pulled,
                 ground.accelerations[step], damp, rate, dt, d,
@@ -120,7 +122,8 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
                 for k in range(n_dof):
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
-                resist(joints, contacts, velocities, inverse_masses, dampers, dt, like, like_rotation)
+                turns = TURNS_OF_IMPACT if met > 0 else 1
+                resist(joints, contacts, velocities, inverse_masses, dampers, dt, turns, like, like_rotation)
                 if dampers.elements.shape[0] > 0:
                     book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation)
                 if n_moving > 0:

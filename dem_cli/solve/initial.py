@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, Pair
 from dem_cli.contact.detect import find_joints, world_corners
+from dem_cli.contact.start import TOUCH
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.assemble import assembly
 
@@ -60,7 +61,7 @@ def set_initial(case: Case, sim: Simulation) -> None:
             _turn(sim, chosen, table.tilt, _pivot(sim, chosen, table.tilt))
         sim.bodies.positions[chosen] += table.displacement
         sim.bodies.velocities[chosen] = table.velocity
-    _find_faces(sim)
+        _find_faces(sim)
     _check_apart(case, sim, rest)
 
 
@@ -99,7 +100,7 @@ def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
     """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
     record = sim.contact_record()
     ours = np.isin(record.blocks, chosen)
-    between = (ours.sum(axis=1) == 1) & (record.normal_force > 0.0)
+    between = (ours.sum(axis=1) == 1) & (record.gap <= TOUCH * sim.smallest)
     points = record.points[between] - sim.origin
     if not len(points):  # nothing holds them: about their lowest corner on that side
         mine = np.isin(sim.shape.corner_blocks, chosen)

@@ -29,7 +29,7 @@ WIDE_SKIN = 0.15  # blocks that rock move far: fewer detections are worth more j
 def compiled_shake(law: Law, profiled: bool, damped: bool):
     """The stepping loop of time histories for one law and one kind of joints; compiled at its first call."""
     make = make_profiled_forces if profiled else make_planar_forces
-    return make_shake(make(law.function, law.bonded, keeps=damped), drift_corners, damped)
+    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), drift_corners, damped)
 
 
 class Shaken(Simulation):

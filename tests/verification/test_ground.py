@@ -143,3 +143,19 @@ def test_free_fall():
     assert np.abs(y - (1.0 - 0.5 * 9.81 * t**2)).max() < 1e-9
     assert np.abs(a + 9.81).max() < 1e-7
     assert abs(summary["energy_closure"]) < 1e-9
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_first_tilts_do_not_depend_on_their_order(order):
+    """The lower block with the upper one on it, and the upper one on the lower: each about the corner it stands on."""
+    lower = {"blocks": ["b", "upper"], "tilt": 0.05}
+    case = rocking({"kind": "none"}, block("upper", rectangle(-0.2, 1.5, 0.2, 2.5)), duration=0.05)
+    case["initial"] = [lower, {"block": "upper", "tilt": 0.04}][::order]
+    case["monitor"] = [{"block": name, "component": axis} for name in ("b", "upper") for axis in "xy"]
+    _, records = engine.solve(case)
+    turn = np.array([[np.cos(0.05), -np.sin(0.05)], [np.sin(0.05), np.cos(0.05)]])
+    pivot, hinge = np.array([-0.25, 0.0]), np.array([-0.2, 1.5])
+    arm = np.array([[np.cos(0.04), -np.sin(0.04)], [np.sin(0.04), np.cos(0.04)]]) @ [0.2, 0.5]
+    places = [pivot + turn @ ([0.0, 0.75] - pivot), pivot + turn @ (hinge + arm - pivot)]
+    starts = [[0.0, 0.75], [0.0, 2.0]]
+    assert records.history.monitors[0] == pytest.approx((np.array(places) - starts).ravel(), abs=1e-4)
