@@ -141,7 +141,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         right.set(xlabel="a", ylabel="mean peak rotation [mrad]", ylim=(-0.5, 12.0))
         left.legend(loc="upper right", ncols=2)
         left.set_ylim(-11, 14)
-        right.legend(loc="center left")
+        right.legend(loc="center left", bbox_to_anchor=(0.0, 0.33))
 
 
 PICTURES = {"column": draw}
