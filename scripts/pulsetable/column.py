@@ -11,7 +11,7 @@ from pulsetable import domain, monolith
 
 CASE = "dimitri_column"
 ALL = (0.1, 0.15, 0.2, 0.25, 0.3, 0.31, 0.32, 0.33, 0.34, 0.35, 0.36, 0.37, 0.38, 0.39, 0.4, 0.45, 0.5, 0.6, 0.8, 1.0)
-FEW = (0.1, 0.2, 0.3, 0.34, 0.4, 0.6)  # of other dampings [s]
+FEW = (0.1, 0.2, 0.3, 0.32, 0.33, 0.34, 0.36, 0.4, 0.6)  # of other dampings [s]
 NEAR, FAR_BEYOND = (0.3, 0.37), 2.2  # durations at which it stands again above the least amplitude, tried up to there
 LASTS, MARGIN = 5.0, 0.5
 MAIN = "0.35 of critical"
@@ -22,9 +22,10 @@ STATIC = {"kind": "pushover", "direction": [1.0, 0.0], "pattern": "mass", "resol
 Say = Callable[[str], None]
 
 
-def static(case: str = CASE) -> dict[str, Any]:
-    """Bracket of the explicit solver [g], and rigid-block limit analysis."""
+def static(case: str = CASE, **joint: Any) -> dict[str, Any]:
+    """Bracket of the explicit solver [g], and rigid-block limit analysis; joint: other keys of [joints.dry]."""
     made = domain.changed(domain.table_of(case), motion=None, damping=None, monitor=None) | {"analysis": STATIC}
+    made["joints"] = {"dry": {**made["joints"]["dry"], **joint}}
     summary = solve(made).summary
     limit = summary["limit_analysis"]
     return {"bracket": [float(load) for load in summary["failure_load_bracket"]], "limit": limit}

@@ -33,7 +33,7 @@ def render(table: Mapping[str, Any]) -> str:
     said = words.COLUMN.format(lasts=column.LASTS, margin=column.MARGIN)
     after = words.COLUMN_AFTER.format(first=ranges[0][0], last=ranges[-1][0]) if ranges else ""
     lines = [words.HEAD, "", words.STATIC, "", *_static(table), "", said, "", *_domain(table), "", after, ""]
-    lines += [*lines_of(("tp [s]", "falls from … to [g]", "stands up to", "falls again from"), map(_said, ranges)), ""]
+    lines += [*lines_of(("tp [s]", "falls at amplitudes of the grid [g]", "tried up to"), ranges), ""]
     lines += [words.FINE.format(fine=column.FINE, coarse=column.MARGIN), "", *_fine(table["fine"]), ""]
     lines += [words.BUTTRESSES, "", *_buttresses(table["buttresses"]["rows"]), ""]
     theirs = THEIR_FREE["elastic_s5"]
@@ -55,6 +55,7 @@ def _static(table: Row) -> list[str]:
         ("column", table["column_static"], value(BOOK, "col_static")),
         ("arch on buttresses", table["buttresses"]["static"], value(BOOK, "arch_static")),
         ("arch of 17 voussoirs", table["vault"]["static"], value(VAULT_BOOK, "static")),
+        ("the same, kn = ks = 1e12 Pa/m", table["stiff_static"], value(VAULT_BOOK, "static")),
     ):
         low, high = found["bracket"]
         exact = found["limit"]["associated"]
@@ -87,23 +88,20 @@ def _bound(row: Row) -> str:
     return f"{row['least']:.3f}, {SIDES[fall['side']]}" if fall["collapsed"] else f"{row['least']:.3f}"
 
 
-def _again(rows: Sequence[Row]) -> list[tuple[float, float, float, float, float | None]]:
-    """tp, amplitudes of the grid between which it falls, the highest that stands again, the next that falls."""
+def _again(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
+    """Where a structure stands again: tp, the amplitudes of the grid at which it falls, the highest one tried [g]."""
     found = []
     for row in rows:
-        answers = row["answers"]
-        first = next((k for k, (_, falls) in enumerate(answers) if falls), len(answers))
-        stands = [k for k in range(first, len(answers)) if not answers[k][1]]
-        if stands:
-            again = next((answers[k][0] for k in range(stands[0], len(answers)) if answers[k][1]), None)
-            last = max(k for k in stands if again is None or answers[k][0] < again)
-            found.append((row["tp"], row["least"], answers[stands[0] - 1][0], answers[last][0], again))
+        stretches: list[list[float]] = []
+        for k, (amplitude, falls) in enumerate(row["answers"]):
+            if falls and k and row["answers"][k - 1][1]:
+                stretches[-1].append(amplitude)
+            elif falls:
+                stretches.append([amplitude])
+        if len(stretches) > 1:
+            said = [f"{one[0]:.3f}" + (f" … {one[-1]:.3f}" if len(one) > 1 else "") for one in stretches]
+            found.append((f"{row['tp']:g}", "; ".join(said), f"{row['answers'][-1][0]:.3f}"))
     return found
-
-
-def _said(row: tuple[float, float, float, float, float | None]) -> list[str]:
-    tp, least, until, stands, again = row
-    return [f"{tp:g}", f"{least:.3f} … {until:.3f}", f"{stands:.3f}", f"{again:.3f}" if again else "not tried"]
 
 
 def _fine(rows: Sequence[Row]) -> list[str]:

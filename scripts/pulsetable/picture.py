@@ -96,7 +96,7 @@ def points(path: Path, vault: Mapping[str, Any]) -> None:
             values = [1e3 * row[name]["values"][0] for row in rows]
             axis.barh(labels, values, color=[style.COLLAPSE if not row["group"] else style.FAINT for row in rows])
             axis.axvline(1e3 * float(np.atleast_1d(result(VAULT_BOOK, f"pulse_{name}")["value"])[0]), color=style.INK)
-            axis.set(xlabel="peak of the crown [mm]", title=title)
+            axis.set(xlabel="peak of the crown [mm]; line: 3DEC", title=title)
             axis.invert_yaxis()
         right.set(xlim=(0.0, 30.0), yticklabels=[])
         for k, row in enumerate(rows):

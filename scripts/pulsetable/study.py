@@ -15,6 +15,7 @@ PARTS: dict[str, Callable[[Say], Any]] = {
     "others": column.others,
     "fine": column.fine,
     "vault": vault.study,
+    "stiff_static": lambda say: column.static(vault.CASE, kn=1e12, ks=1e12),
     "free": vault.free,
     "edges": vault.edges,
     "buttresses": buttresses.study,

@@ -33,9 +33,7 @@ def voussoirs(parts: int) -> list[dict[str, Any]]:
     corners = np.stack([x, np.where(np.abs(y) < 1e-12, 0.0, y)], axis=2)
     blocks = []
     for k in range(VOUSSOIRS):
-        cut = [
-            [corners[at].tolist() for at in ((k, j), (k + 1, j), (k + 1, j + 1), (k, j + 1))] for j in range(parts)
-        ]
+        cut = [[corners[at].tolist() for at in ((k, j), (k + 1, j), (k + 1, j + 1), (k, j + 1))] for j in range(parts)]
         shape = {"vertices": cut[0]} if parts == 1 else {"parts": cut}
         blocks.append({"id": f"voussoir-{k + 1}", **shape})
     return blocks
