@@ -25,7 +25,8 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
     worst = max((closure(sim) for sim in sims), key=abs)
     overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
     if abs(worst) > CLOSURE:
-        said.append(f"the energy does not close: {worst:.2%} is missing; do not trust this run")
+        advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
+        said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > OVERLAP:
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
     said += _weightless(sims[0]) + _shear(sims[0]) + _leaning(case, sims[0], found.get("displacement_at_failure"))

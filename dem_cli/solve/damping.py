@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.case.base import CaseModel, KeyProblem, Positive
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 
@@ -41,6 +41,8 @@ class Rayleigh(CaseModel):
             raise ValueError(f"{found} given; one of them says where the ratio holds")
         if not (self.mass or self.stiffness):
             raise KeyProblem("false is not allowed where mass = false too: nothing would be damped", "stiffness")
+        if self.frequencies is not None and not self.frequencies[0] < self.frequencies[1]:
+            raise KeyProblem(f"{self.frequencies[1]:g} is not allowed; must be more than the first", "frequencies", 1)
         if self.frequencies is not None and not (self.mass and self.stiffness):
             raise KeyProblem("two frequencies need both parts; one part alone needs 'frequency'", "frequencies")
         return self
@@ -66,7 +68,7 @@ class Element(CaseModel):
 class DampingTable(CaseModel):
     """[damping]; joints have at most one of contact_fraction, restitution, rayleigh and stiffness."""
 
-    contact_fraction: NonNegative | None = Field(
+    contact_fraction: Annotated[float, Field(ge=0.0, le=10.0)] | None = Field(
         default=None,
         description="dashpots of the joints as a fraction of critical at the frequency of a block on its joint; "
         f"{DEFAULT_FRACTION} without a [damping] table",

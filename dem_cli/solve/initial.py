@@ -44,6 +44,8 @@ class Initial(CaseModel):
         if (self.block is None) == (self.blocks is None):
             found = "'block' and 'blocks' are" if self.block else "neither 'block' nor 'blocks' is"
             raise ValueError(f"{found} given; one of them says what moves")
+        if not (self.tilt or any(self.displacement) or any(self.velocity)):
+            raise ValueError("nothing moves; give tilt, displacement or velocity")
         return self
 
     @property

@@ -106,7 +106,7 @@ def test_time_history(tmp_path, monkeypatch):
     assert found["time step"].startswith(f"{1 / highest:.3g} s, 0.5 of the largest stable one, {2 / highest:.3g} s")
     assert float(found["first frequency"].split()[0]) == pytest.approx(lowest / 6.283185307, rel=1e-3)
     assert found["steps"] == f"{int(5.0 * highest) + 1:,}"
-    assert found["cost"].endswith(f"({found['steps']} steps × 2 points × 40 ns)")
+    assert found["cost"].endswith(f"({found['steps']} steps × (2 points × 55 ns + 0.4 µs))")
     assert found["load"] == "5 s of motion, peak 3 m/s²"
     assert "runs" not in found
     repeated = shaken(tmp_path, "analysis.margin=0.5", "analysis.repeats=9")
