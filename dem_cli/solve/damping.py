@@ -125,6 +125,11 @@ class Damping:
         """Whether joints have anything but springs."""
         return self.fraction > 0.0 or self.stiffness > 0.0 or len(self.elements) > 0
 
+    @property
+    def stiffening(self) -> float:
+        """What Maxwell elements, whose springs lie beside those of the joints, multiply frequencies by."""
+        return math.sqrt(1.0 + float(self.elements[:, 0].sum()))
+
     def viscosities(self, model: Model, joints: Joints) -> np.ndarray:
         """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M with the reduced mass M."""
         found = np.full(len(joints.blocks), self.stiffness)

@@ -62,9 +62,10 @@ def describe(case: Case, model: Model) -> Rows:
 
 
 def _shaking(case: Case, model: Model) -> Rows:
-    from dem_cli.solve.estimate_shaking import describe_shaking, shaken
+    from dem_cli.solve.estimate_shaking import describe_shaking
+    from dem_cli.solve.time_history import damping_of_start, shaken
 
-    sim = shaken(case, model)
+    sim = shaken(case, model, damping_of_start(case, model))
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),

@@ -5,41 +5,26 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.model.model import Model
-from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.motion.build import motions_of, suites_of
-from dem_cli.solve.damping import damping_of
 from dem_cli.solve.estimate import duration
 from dem_cli.solve.frequencies import modes, system
 from dem_cli.solve.ground import GroundMotion
-from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.modes import touching_points
 from dem_cli.solve.search import runs_per_record
-from dem_cli.solve.shaken import Shaken
-from dem_cli.solve.time_history import DYNAMIC_RATIO
 from dem_cli.solve.timestep import TimeStep, time_step
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.solve.shaken import Shaken
 
 NANOSECONDS = {False: 20, True: 55}  # per contact point and step, one core, without and with dashpots
 PER_STEP = 0.4  # µs beside them
 
 
-def shaken(case: Case, model: Model) -> Shaken:
-    """The simulation of a time history, before its first step; nothing is compiled for it."""
-    properties = joint_properties(case, model, DYNAMIC_RATIO)
-    bodies = bodies_at_rest(model, origin_of(model))
-    joints, _ = joints_of_start(model, bodies, properties, smallest_edge(model))
-    return Shaken(model, law_of(case), properties, damping_of(case, model, joints))
-
-
 def describe_shaking(case: Case, sim: Shaken) -> list[tuple[str, str]]:
     """Lines of `dem check`. Raises CaseError where analysis.time_step is not stable."""
     analysis = case.analysis
-    stiffer = math.sqrt(1.0 + sim.damping.elements[:, 0].sum())
-    step = time_step(sim, analysis.margin / stiffer, analysis.time_step)
+    step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
     return [
         ("damping", sim.damping.words),
         ("highest frequency", step.cause),

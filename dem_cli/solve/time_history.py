@@ -64,10 +64,7 @@ class TimeHistory:
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
         self.duration = _duration(job.case, ground)
-        properties = joint_properties(job.case, job.model, DYNAMIC_RATIO)
-        bodies = bodies_at_rest(job.model, origin_of(job.model))
-        joints, _ = joints_of_start(job.model, bodies, properties, smallest_edge(job.model))
-        self.damping: Damping = damping_of(job.case, job.model, joints)
+        self.damping = damping_of_start(job.case, job.model)
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
         self.overlap = 0.0
@@ -77,12 +74,10 @@ class TimeHistory:
         analysis, model = self.case.analysis, self.job.model
 
         def make(step: float) -> Shaken:
-            properties = joint_properties(self.case, model, DYNAMIC_RATIO, step)
-            return Shaken(model, law_of(self.case), properties, self.damping)
+            return shaken(self.case, model, self.damping, step)
 
         sim = self.job.clock.compiled(lambda: make(math.inf))
-        stiffer = math.sqrt(1.0 + self.damping.elements[:, 0].sum())
-        found = time_step(sim, analysis.margin, analysis.time_step, stiffer)
+        found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
         if not math.isfinite(found.step):
             found = found._replace(step=min(1e-4, 1e-3 * self.duration))
         if any(law.rates for law in laws_of(self.case)):
@@ -200,6 +195,18 @@ class TimeHistory:
             "largest_overlap": self.overlap,
             "unbalanced_force": None,
         })  # fmt: skip
+
+
+def damping_of_start(case: Case, model: Model) -> Damping:
+    """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
+    properties = joint_properties(case, model, DYNAMIC_RATIO)
+    joints, _ = joints_of_start(model, bodies_at_rest(model, origin_of(model)), properties, smallest_edge(model))
+    return damping_of(case, model, joints)
+
+
+def shaken(case: Case, model: Model, damping: Damping, step: float = math.inf) -> Shaken:
+    """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
+    return Shaken(model, law_of(case), joint_properties(case, model, DYNAMIC_RATIO, step), damping)
 
 
 def energy_shares(energy: Energy) -> dict[str, float]:
