@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 NAME = "chapter6"
-SECTIONS = ("blocks", "column", "arch", "records", "failure")
+SECTIONS = ("blocks", "column", "arch", "engines", "records", "failure")
 HEAD = """\
 # Thesis chapter 6: blocks, a column and an arch that are shaken
 
