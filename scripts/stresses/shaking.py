@@ -60,7 +60,7 @@ def column(n: int = 6) -> list[dict]:
 
 
 def shaken(short: bool) -> Iterator[Record]:
-    """Drift at rest and below the sliding limit, books and order in the step, momenta of a collision, rates of output."""
+    """Drift at rest and below the sliding limit, books, momenta of a collision, rates of output."""
     seconds = 2.0 if short else 20.0
     still = scene("column of 6, undamped, no motion", column(), seconds, damping={"none": True})
     _, history, _ = shake(still)

@@ -10,9 +10,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-IMPORT_NAMES = {"vtk": "vtkmodules", "box2d": "Box2D", "pillow": "PIL"}  # where a distribution is imported by another name
+IMPORT_NAMES = {"vtk": "vtkmodules", "box2d": "Box2D", "pillow": "PIL"}  # distribution: how it is imported
 TOOLS = {"mypy", "pytest-xdist", "ruff"}  # run, not imported
-EXTRA_OF = {"matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench"}  # what the package itself may lack
+EXTRA_OF = {"matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench"}  # may be absent
 
 
 def names(requirements: list[str]) -> set[str]:
