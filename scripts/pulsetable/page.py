@@ -41,7 +41,8 @@ def render(table: Mapping[str, Any]) -> str:
     lines += [words.VAULT.format(
         their_f=theirs[0], their_r=100 * theirs[1], our_f=case["frequencies"][0], pressed=vault["pressed"][0]
     ), ""]  # fmt: skip
-    lines += [*_peaks(case), "", words.POINTS, "", *_variants(vault["variants"]), "", words.POINTS_AFTER, ""]
+    lines += [*_peaks(case), "", _steps(table["steps"]), "", words.POINTS, "", *_variants(vault["variants"]), ""]
+    lines += [words.POINTS_AFTER, ""]
     lines += [*_edges(table["edges"]), ""]
     lines += [words.ELEMENTS, "", *_elements(vault["elements"]), "", words.ELEMENTS_AFTER, ""]
     lines += [*_free(table["free"]), ""]
@@ -136,6 +137,19 @@ def _peaks(case: Row) -> list[str]:
                 f"{1e3 * ours:.4f} mm, {when:.4f} s", percent(ours / theirs[k] - 1.0), percent(when / at[k] - 1.0),
             ))  # fmt: skip
     return lines_of(("run", "3DEC", "dem", "error of the peak", "of its time"), rows)
+
+
+def _steps(rows: Sequence[Row]) -> str:
+    def span(values: list[float], factor: float, places: int) -> str:
+        low, high = sorted((factor * min(values), factor * max(values)), key=abs)
+        return f"{low:.{places}f} to {high:.{places}f}"
+
+    return words.STEPS.format(
+        margins=span([row["margin"] for row in rows], 1.0, 2),
+        first=span([row["values"][0] for row in rows], 1e3, 3),
+        second=span([row["values"][1] for row in rows], 1e3, 2),
+        time=span([row["times"][1] for row in rows], 1.0, 3),
+    )
 
 
 def _variants(rows: Sequence[Row]) -> list[str]:

@@ -56,8 +56,14 @@ def _least(axis: Any, table: Mapping[str, Any]) -> None:
     for name, found in table["others"].items():
         colour, dashes = STYLES[name]
         axis.plot(
-            [r["tp"] for r in found], [r["least"] for r in found], ls=dashes, lw=1.3, marker=".", ms=5, color=colour,
-            label=f"dem, {name}"
+            [r["tp"] for r in found],
+            [r["least"] for r in found],
+            ls=dashes,
+            lw=1.3,
+            marker=".",
+            ms=5,
+            color=colour,
+            label=f"dem, {name}",
         )
     for key, marker, label in (("col_domain_udec", "s", "UDEC"), ("col_domain_lmgc", "^", "LMGC90")):
         book = result(BOOK, key)

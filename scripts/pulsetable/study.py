@@ -18,6 +18,7 @@ PARTS: dict[str, Callable[[Say], Any]] = {
     "stiff_static": lambda say: column.static(vault.CASE, kn=1e12, ks=1e12),
     "free": vault.free,
     "edges": vault.edges,
+    "steps": vault.steps,
     "buttresses": buttresses.study,
     "spread": spread.study,
 }

@@ -132,6 +132,17 @@ def edges(say: Callable[[str], None]) -> list[dict[str, Any]]:
     return rows
 
 
+MARGINS = (0.3, 0.2, 0.15, 0.1, 0.05)
+
+
+def steps(say: Callable[[str], None]) -> list[dict[str, Any]]:
+    """Both peaks of no-tension joints with Maxwell elements by the time step."""
+    return [
+        {"margin": margin} | peaks(run("mx5", lambda case, m=margin: changed(case, analysis={"margin": m})))
+        for margin in MARGINS
+    ]
+
+
 def free_vibration(found: History, after: float = 0.26) -> dict[str, float]:
     """Frequency [Hz] and damping ratio of an elastic arch after the pulse, by its first six extremes.
 
