@@ -110,7 +110,7 @@ class ShakingAnalysis(CaseModel):
     time_step: float | None = Field(
         default=None, gt=0.0, description="[s]; default: margin × the largest stable one of joints that all touch"
     )
-    margin: float = Field(default=0.15, gt=0.0, le=0.95, description="time step over the largest stable one")
+    margin: float = Field(default=0.25, gt=0.0, le=0.95, description="time step over the largest stable one")
     settle: bool = Field(default=True, description="come to rest under dead loads first; false: start as drawn")
     fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed")
     dropped: float | None = Field(

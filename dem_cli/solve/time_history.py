@@ -42,6 +42,8 @@ GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a r
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a time history; collapse is an answer, not an error. Raises SolverError where it blows up."""
     job = Job.start(case, model, observer)
+    for module in ("scipy.signal", "scipy.interpolate") if case.motion else ():
+        job.clock.imported(module)
     history = TimeHistory(job, GroundMotion(motions_of(case), model))
     return history.run()
 
