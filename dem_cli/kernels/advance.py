@@ -49,7 +49,7 @@ def _sign(x):
 
 
 @inline
-def _drag(unbalanced, previous, velocity, damp, damp_change):
+def local_drag(unbalanced, previous, velocity, damp, damp_change):
     """Damping force against the motion: (α sgn v − α' sgn ΔF)|F|, local and combined damping (Cundall 1987).
 
     The part with the change of force damps vibrations of a block that drifts, where sgn v cannot.
@@ -68,7 +68,7 @@ def _rate_impulse(
         q = live_loads[i]
         if q != 0.0:
             unbalanced = forces[i] + dead * dead_loads[i] + live * q
-            drag = _drag(unbalanced, previous[i], velocities[i], damp, damp_change)
+            drag = local_drag(unbalanced, previous[i], velocities[i], damp, damp_change)
             flow += q * (velocities[i] + dt * inverse_masses[i] * (unbalanced - drag))
     return (rate - flow) / stiffness
 
@@ -115,7 +115,7 @@ def _kick(
             old, inverse = velocities[i], inverse_masses[i]
             applied = dead * dead_loads[i] + live * live_loads[i]
             unbalanced = forces[i] + applied if inverse > 0.0 else 0.0
-            drag = _drag(unbalanced, previous[i], old, damp, damp_change)
+            drag = local_drag(unbalanced, previous[i], old, damp, damp_change)
             previous[i] = unbalanced
             free = old + inverse * (dt * (forces[i] - drag) + (dt * applied + impulse * live_loads[i]))
             new = _clip(free, speed_limits[i])
@@ -130,7 +130,7 @@ def _kick(
             continue
         applied = dead * dead_loads[i] + live * live_loads[i]
         unbalanced = forces[i] + applied
-        drag = _drag(unbalanced, previous[i], old, damp, damp_change)
+        drag = local_drag(unbalanced, previous[i], old, damp, damp_change)
         previous[i] = unbalanced
         pushed = dt * applied + impulse * live_loads[i]
         free = keep * old + inverse * (steer * unbalanced + dt * (forces[i] - drag) + pushed)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from dem_cli.kernels.advance import _drag
+from dem_cli.kernels.advance import local_drag
 from dem_cli.kernels.dashpots import book_elements, book_supports, meet, resist
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.records import (
@@ -43,7 +43,7 @@ def _kick(
             i = block * n_dof + k
             before, inverse = velocities[block, k], inverse_masses[block, k]
             total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if k < d else 0.0)
-            drag = _drag(total, 0.0, before, damp, 0.0)
+            drag = local_drag(total, 0.0, before, damp, 0.0)
             old[i], unbalanced[block, k], drags[i] = before, total, drag
             new = keep * before + gain * inverse * (total - drag)
             velocities[block, k] = new
@@ -81,7 +81,7 @@ def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, d
 
 
 @inline
-def _sample(step, dt, positions, orientations, velocities, means, old, watch):
+def _sample(step, dt, positions, orientations, velocities, means, watch):
     """Place, mean velocity and acceleration of the watched blocks at this step."""
     n_dof, d = velocities.shape[1], positions.shape[1]
     row = step // watch.every
@@ -135,7 +135,7 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
                 velocities, forces, unbalanced, inverse_masses, dampers.masses, means, pulled, drags, rate, dt, ledger
             )  # fmt: skip
             if step % watch.every == 0:
-                _sample(step, dt, bodies.positions, bodies.orientations, velocities, means, drags, watch)
+                _sample(step, dt, bodies.positions, bodies.orientations, velocities, means, watch)
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:

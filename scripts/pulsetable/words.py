@@ -68,7 +68,7 @@ What the data book leaves open was read from their 3DEC input files and series, 
 
 ![histories](pulses_arch.png)"""
 STEPS = """\
-With Maxwell elements the way back is a matter of chance: with time steps of {margins} of the largest stable one (0.15
+With Maxwell elements the way back is a matter of chance: with time steps of {margins} of the largest stable one (0.25
 is the default) the first peak is {first} mm, the one to the other side {second} mm, after {time} s."""
 POINTS = """\
 ### What it depends on
