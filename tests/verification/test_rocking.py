@@ -52,8 +52,8 @@ def test_restitution_falls_to_housners(aspect):
 
 
 def test_wanted_restitution():
-    """0.8 for h/b = 2, whose Housner ratio is 0.7."""
-    assert free.restitution(2.0, {"restitution": 0.8}, output={"rate": 2000.0}) == pytest.approx(0.8, abs=5e-3)
+    """0.8 for h/b = 2, whose Housner ratio is 0.7; it is sought at half the tilt, and varies by 1 % with that."""
+    assert free.restitution(2.0, {"restitution": 0.8}, output={"rate": 2000.0}) == pytest.approx(0.8, abs=1e-2)
 
 
 def test_case_of_free_rocking():
