@@ -25,7 +25,7 @@ sequential impulses, without restitution, springs or dashpots. The same blocks a
 """
 SAYS = """\
 With friction 0.6 it collapses where dem does, and with 0.8 as well, about as soon; at 2.5 Hz and friction 0.8, where
-dem is marginal (8 of 10 perturbed arches collapse), it stands. So what differs from the thesis is what was inferred, or
+dem is marginal (7 of 10 perturbed arches collapse), it stands. So what differs from the thesis is what was inferred, or
 the joints of its program: a dashpot along joints that keeps acting while they slip would let our arch stand as well
 (tried in a copy of the program, up to a = 2.5 at 5 Hz), but the thesis describes none.
 """
