@@ -59,10 +59,10 @@ BOUNCE = """\
 ## A block that bounces
 
 A fall of 50 mm on an elastic joint, flat. Without a dashpot nothing is lost. The joint closes and opens somewhere
-within a step, so that the error has either sign, and falls with the square of the step; at the default step it is up to a
-per cent. `margin` is that of `[analysis]`, 0.25 by default. With a dashpot the two points of the joint are solved one
-after the other, which leaves the block turned a little after its first landing: later ones are on a corner, and the third
-bounce is another. Rocking with "housner" does not mind: its landings are plastic."""
+within a step, so that the error has either sign, and falls with the square of the step; at the default step it is up
+to a per cent. `margin` is that of `[analysis]`, 0.25 by default. With a dashpot the two points of the joint are
+solved one after the other, which leaves the block turned a little after its first landing: later ones are on a
+corner, and the third bounce is another. Rocking with "housner" does not mind: its landings are plastic."""
 ENERGY = """\
 ## Energy
 

@@ -22,6 +22,7 @@ page, arch, blocks, column, records, runs = (
 )
 book = importlib.import_module("thesis7.runs").book
 
+page = page.PAGE
 TABLE, TEXT = page.read(DOCS), (DOCS / "chapter6.md").read_text(encoding="utf-8")
 RESTITUTION, ROTATION = 0.05, 1.0 / 7.0
 
@@ -31,13 +32,13 @@ def thesis(name: str) -> float:
 
 
 def test_the_page_is_made_from_its_json():
-    assert list(TABLE) == list(page.SECTIONS)
+    assert list(TABLE) == list(page.sections)
     assert page.render(TABLE) == TEXT
 
 
 def test_pictures_are_there():
     named = set(re.findall(r"\]\((chapter6_\w+\.png)\)", TEXT))
-    drawn = {f"chapter6_{suffix}.png" for name in page.SECTIONS for suffix in page.section(name).PICTURES}
+    drawn = {f"chapter6_{suffix}.png" for name in page.sections for suffix in page.section(name).PICTURES}
     assert named == drawn
     assert all((DOCS / name).stat().st_size > 10_000 for name in named)
 
