@@ -51,7 +51,7 @@ def _lower_side(polygons: np.ndarray, places: np.ndarray) -> np.ndarray:
     x0, y0, x1, y1 = (side[:, None, :, axis] for side in (start, end) for axis in (0, 1))
     x = places[:, :, None]
     run = x1 - x0
-    upright = run == 0.0
+    upright = np.abs(run) < 1e-300  # also what would overflow in the division
     share = np.where(upright, 0.0, (x - x0) / np.where(upright, 1.0, run))
     heights = np.where(upright, np.minimum(y0, y1), np.where(share == 1.0, y1, y0 + share * (y1 - y0)))
     within = (x >= np.minimum(x0, x1)) & (x <= np.maximum(x0, x1))
