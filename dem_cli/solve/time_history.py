@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from dem_cli.solve.track import Track
 
 DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
-LONGEST_LOOK = 0.05  # s from one look to the next, at most
+LONGEST_LOOK = 0.1  # s from one look to the next, at most
 SETTLING = 4_000_000  # steps to come to rest, at most
-ROWS = 400  # looks along the way: energies, collapse, whether all is well
+ROWS = 200  # looks along the way: energies, collapse, whether all is well
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
 GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a run warns
