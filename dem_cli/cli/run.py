@@ -265,14 +265,13 @@ def put_in_place(folder: OutputFolder, summary: dict[str, Any], quiet: bool) -> 
 
 def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
     """A different name for each, such as "top-right displacement x"."""
-    names: list[str] = []
-    for monitor in monitors:
-        name = monitor.name or " ".join(
-            filter(None, (monitor.place, "absolute" if monitor.absolute else "", monitor.quantity, monitor.component))
-        )
-        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in names)
-        names.append(name if count == 1 else f"{name} #{count}")
-    return names
+    from dem_cli.output.record import distinct
+
+    def told(monitor: Monitor) -> str:
+        words = (monitor.place, "absolute" if monitor.absolute else "", monitor.quantity, monitor.component)
+        return monitor.name or " ".join(filter(None, words))
+
+    return distinct(map(told, monitors))
 
 
 def file_names(folder: Path) -> list[str]:

@@ -8,8 +8,6 @@ slip have no dashpot along the joint, and open ones none at all.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from dem_cli.kernels.jit import always_inline, inline
@@ -105,7 +103,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             add_at(pushes, b, d, add_torques(levers_b, push, along, none), 1.0)
             if n_elements > 0:
                 stiffness = (kns[point], kss[point])
-                _relax(memory, rates, elements, states[point], normals[point], stiffness, dt, point, first, d)
+                _relax(memory, rates, elements, states[point], normals[point], stiffness, point, first, d)
                 normal, shear = 0.0, scale(0.0, sliding)
                 for e in range(n_elements):
                     column = first + d * (e + 1)
@@ -120,13 +118,11 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
 
 
 @inline
-def _relax(memory, rates, elements, state, pressed, stiffness, dt, point, first, d):
+def _relax(memory, rates, elements, state, pressed, stiffness, point, first, d):
     """Forces of the Maxwell elements of a point after a step at constant rates; with its own they do not pull."""
     total = 0.0
     for e in range(elements.shape[0]):
-        share, rate = elements[e, 0], elements[e, 1]
-        keep = math.exp(-rate * dt)
-        gain = -share * math.expm1(-rate * dt) / rate
+        keep, gain = elements[e, 0], elements[e, 1]
         column = first + d * (e + 1)
         for k in range(d):
             held = keep * memory[point, column + k] - gain * stiffness[min(k, 1)] * rates[point, k]

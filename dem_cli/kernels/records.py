@@ -91,7 +91,7 @@ class Dampers(NamedTuple):
 
     first: int
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
-    elements: np.ndarray  # Maxwell elements: stiffness over that of the joint [-] and rate [1/s], (n_elements, 2)
+    elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
     rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
     gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -96,6 +96,15 @@ class RunRow(NamedTuple):
     time: float | None  # of the collapse [s]
     how: str  # what collapsed and how, or why the run failed
     peaks: tuple[float, ...]  # largest absolute values, in the order of the case's [[monitor]] tables
+
+
+def distinct(names: Iterable[str]) -> list[str]:
+    """The same names, with a number where one comes again."""
+    found: list[str] = []
+    for name in names:
+        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)
+        found.append(name if count == 1 else f"{name} #{count}")
+    return found
 
 
 class Observer(Protocol):

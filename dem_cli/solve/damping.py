@@ -117,7 +117,7 @@ class Damping:
     stiffness: float = 0.0  # damping over stiffness of all joints [s]
     mass: float = 0.0  # [1/s]
     local: float = 0.0
-    elements: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # as Dampers.elements
+    elements: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # as `element_numbers`
     words: str = "none"  # for users
 
     @property

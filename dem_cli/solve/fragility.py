@@ -15,14 +15,14 @@ import numpy as np
 
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer, RunRow
+from dem_cli.output.record import Observer, RunRow, distinct
 from dem_cli.solve.audit import CLOSURE
 from dem_cli.solve.batch import Batch, Batcher, Task, Trial, each
 from dem_cli.solve.capacities import Bounds, bounds_of, distribution, outcomes, split, survived_above
 from dem_cli.solve.gravity import FALLS
 from dem_cli.solve.perturb import Variant
 from dem_cli.solve.run import Outcome
-from dem_cli.solve.search import bisection, records_of, runs_per_record, scaled, unique
+from dem_cli.solve.search import bisection, records_of, runs_per_record, scaled
 from dem_cli.solve.trial import OnlyProgress, Rested
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Study:
         self.analysis: FragilityAnalysis = case.analysis
         self.started = time.perf_counter()
         self.records = records_of(case)
-        self.names = unique([record.name for record in self.records])
+        self.names = distinct([record.name for record in self.records])
         self.warnings: list[str] = []
 
     def run(self) -> Outcome:

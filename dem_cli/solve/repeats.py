@@ -25,7 +25,6 @@ from dem_cli.solve.trial import OnlyProgress, Rested, Run
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-EARTHQUAKES = ("record", "artificial")  # kinds of [motion] that are one draw of many
 ONE_DRAW = (
     "the peaks are those of one record on one structure: rocking is ill-conditioned, and a change of 0.1 % may give "
     "others, or a collapse; repeats = 20 shows their spread, kind = 'fragility' that of many records"
@@ -47,7 +46,7 @@ def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None
 
 def doubtful(case: Case) -> bool:
     """Whether the peaks of a case lack their sensitivity."""
-    return case.analysis.repeats == 0 and any(table.kind in EARTHQUAKES for table in case.motion)
+    return case.analysis.repeats == 0 and any(table.kind in time_history.EARTHQUAKES for table in case.motion)
 
 
 def repeated(case: Case, model: Model, observer: Observer, batch: Batch) -> dict[str, Any]:

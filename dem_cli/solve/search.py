@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from dem_cli.errors import CaseError, CaseProblem
@@ -28,15 +27,6 @@ def records_of(case: Case) -> list[Motion]:
 def scaled(record: Motion, intensity: float, analysis: FragilityAnalysis) -> Motion:
     """A record with the peak acceleration of an intensity."""
     return record.scaled(intensity * analysis.unit_acceleration / record.peak)
-
-
-def unique(names: Sequence[str]) -> list[str]:
-    """The same names, with a number where one comes again."""
-    found: list[str] = []
-    for name in names:
-        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)
-        found.append(name if count == 1 else f"{name} #{count}")
-    return found
 
 
 def runs_per_record(analysis: FragilityAnalysis) -> int:

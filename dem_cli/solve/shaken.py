@@ -88,7 +88,7 @@ class Shaken(Simulation):
         self.dampers = Dampers(
             first=self.law.n_memory(d),
             viscosity=self.damping.viscosities(self.model, joints),
-            elements=self.damping.elements,
+            elements=self._decays(),
             rates=np.zeros((n, d)),
             gains=np.ones((n, d)),
             shares=np.ones(n),
@@ -97,6 +97,12 @@ class Shaken(Simulation):
             masses=self.masses,
             pushes=np.zeros_like(self.bodies.velocities),
         )
+
+    def _decays(self) -> np.ndarray:
+        """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""
+        share, rate = self.damping.elements.T
+        gains = -share * np.expm1(-rate * self.dt) / rate
+        return np.ascontiguousarray(np.column_stack([np.exp(-rate * self.dt), gains]))
 
     # -- stepping ----------------------------------------------------------------------------------
 

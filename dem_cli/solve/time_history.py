@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.track import Track
 
 DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints: the deeper they give, the longer the step
+EARTHQUAKES = ("record", "artificial")  # kinds of [motion] that are one draw of many, and are made with scipy
 LONGEST_LOOK = 0.1  # s from one look to the next, at most
 SETTLING = 4_000_000  # steps to come to rest, at most
 ROWS = 200  # looks along the way: energies, collapse, whether all is well
@@ -42,7 +43,7 @@ GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a r
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
     """Outcome of a time history; collapse is an answer, not an error. Raises SolverError where it blows up."""
     job = Job.start(case, model, observer)
-    for module in ("scipy.signal", "scipy.interpolate") if case.motion else ():
+    for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
         job.clock.imported(module)
     history = TimeHistory(job, GroundMotion(motions_of(case), model))
     return history.run()

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from dem_cli.errors import CaseError
+from dem_cli.output.record import distinct
 from dem_cli.solve.analysis import FragilityAnalysis
 from dem_cli.solve.batch import Trial
 from dem_cli.solve.capacities import bounds_of, outcomes, split, survived_above
-from dem_cli.solve.search import bisection, runs_per_record, unique
+from dem_cli.solve.search import bisection, runs_per_record
 from dem_cli.solve.trial import Run
 
 
@@ -68,7 +69,7 @@ def test_bisection_brackets_a_capacity_with_few_runs(capacity, keys):
 
 
 def test_names_that_come_again_get_a_number():
-    assert unique(["a", "b", "a", "a"]) == ["a", "b", "a #2", "a #3"]
+    assert distinct(["a", "b", "a", "a"]) == ["a", "b", "a #2", "a #3"]
 
 
 @pytest.mark.parametrize(
