@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
+
 import engine
 import numpy as np
 import pytest
+import tomli_w
+from click.testing import CliRunner
 from engine import block, rectangle, tables, turned
 
+from dem_cli.cli.main import main
 from dem_cli.errors import CaseError, SolverError
 
 PULSE = {"kind": "pulse", "shape": "sine", "amplitude": 7.0, "frequency": 2.0}
@@ -144,3 +149,25 @@ def test_a_start_that_touches_is_not_refused(kn):
     summary, _ = engine.solve(shaken(*column(), kn=kn, initial=[{"blocks": ["b2", "b3"], "tilt": 0.02}]))
     assert summary["status"] == "ok"
     assert abs(summary["energy_closure"]) < 1e-2
+
+
+def test_a_run_that_makes_energy_stops_and_keeps_what_came_before(tmp_path):
+    """A block thrown at 10 km/s passes its joint in a step. Exit 3; when, where and why; results up to there."""
+    case = tables(
+        block("base", rectangle(-2, -0.5, 2, 0), fixed=True),
+        block("b", rectangle(-0.25, 0, 0.25, 1)),
+        joints={"j": {"friction": 10.0, "kn": 1e9}},
+        analysis={"kind": "time-history", "duration": 1.0},
+        damping={"contact_fraction": 2.0},
+        initial=[{"block": "b", "velocity": [0.0, -1e4, 0.0]}],
+        monitor=[{"block": "b", "component": "y"}],
+    )
+    path = tmp_path / "case.toml"
+    path.write_text(tomli_w.dumps(case), encoding="utf-8")
+    result = CliRunner().invoke(main, ["run", str(path), "-o", str(tmp_path / "out"), "-q"])
+    assert result.exit_code == 3, result.output
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["status"] == "not converged"
+    assert any(text.startswith("blew up at 0.0") and "block 'b' is the fastest" in text for text in summary["warnings"])
+    assert summary["reached"]["stage"] == "shaking"
+    assert len((tmp_path / "out" / "history.csv").read_text(encoding="utf-8").splitlines()) >= 2  # names and values
