@@ -43,6 +43,11 @@ OWN_NAMES = frozenset(
         "spectra.png",
         "motion.png",
         "modes.png",
+        "safety.png",
+        "render.png",
+        "render.gif",
+        "render.mp4",
+        "report.html",
         "pvd",
     )
 )

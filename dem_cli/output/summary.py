@@ -67,6 +67,27 @@ def plain(value: Any) -> Any:
     return value
 
 
+def scalars(summary: Mapping[str, Any]) -> dict[str, float | int | str | bool | None]:
+    """Every single number, word and truth of a summary by its path, such as "peaks.top displacement.max".
+
+    Items of lists have their number in it: "failure_load_bracket.0".
+    """
+    found: dict[str, float | int | str | bool | None] = {}
+
+    def walk(path: str, value: Any) -> None:
+        if isinstance(value, Mapping):
+            for key, item in value.items():
+                walk(f"{path}.{key}" if path else str(key), item)
+        elif isinstance(value, list):
+            for i, item in enumerate(value):
+                walk(f"{path}.{i}", item)
+        else:
+            found[path] = value
+
+    walk("", plain(summary))
+    return found
+
+
 def to_json(summary: Mapping[str, Any]) -> str:
     """One JSON object, a key per line."""
     return json.dumps(ordered(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
