@@ -13,7 +13,9 @@ from dem_cli.laws.profile import Shape, pair
 class NamedShape(Shape):
     """[[calibration.shapes]]: a polygon but for its aperture."""
 
-    name: Annotated[str, Field(min_length=1)] = Field(description="as the table and the picture call it")
+    name: Annotated[str, Field(min_length=1)] = Field(
+        description="as the table and the picture call it", examples=["A"]
+    )
 
     @property
     def share_in_the_middle(self) -> tuple[float, float] | None:
@@ -34,14 +36,28 @@ class NamedShape(Shape):
 class Calibration(CaseModel):
     """[calibration]"""
 
-    joint: str = Field(default="", description="a name in [joints]: its profile is sought; default: the first one")
-    failure_load: Positive = Field(description="measured load multiplier at failure")
-    displacement: Positive = Field(description="measured displacement before failure [m], whatever its sign")
-    block: str | None = Field(default=None, description="id of the block whose centroid was watched")
-    point: Pair | None = Field(default=None, description="instead of block: a point of the undeformed structure [m]")
-    component: Literal["x", "y"] | None = Field(default=None, description="default: the length of the vector")
-    apertures: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(description="tried with each shape [m]")
-    shapes: Annotated[tuple[NamedShape, ...], Field(min_length=1)] = Field(description="tried with each aperture")
+    joint: str = Field(
+        default="", description="a name in [joints]: its profile is sought; default: the first one", examples=["dry"]
+    )
+    failure_load: Positive = Field(description="measured load multiplier at failure [-]", examples=[0.13])
+    displacement: Positive = Field(
+        description="measured displacement before failure [m], whatever its sign", examples=[0.0115]
+    )
+    block: str | None = Field(
+        default=None, description="id of the block whose centroid was watched", examples=["column-14"]
+    )
+    point: Pair | None = Field(
+        default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 0.5]]
+    )
+    component: Literal["x", "y"] | None = Field(
+        default=None, description="of the displacement; default: the length of the vector", examples=["x"]
+    )
+    apertures: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        description="tried with each shape [m]", examples=[[5e-5, 1e-4]]
+    )
+    shapes: Annotated[tuple[NamedShape, ...], Field(min_length=1)] = Field(
+        description="tried with each aperture", examples=[[{"name": "A", "sides": 3}]]
+    )
 
     @model_validator(mode="after")
     def _one_place_and_different_names(self) -> Calibration:

@@ -17,8 +17,8 @@ ERRORS = ("height", "length", "wedge", "shift", "lean")  # the keys that change 
 class Normal(CaseModel):
     """{ mean = 0.0, deviation = 0.001 }: drawn from the normal distribution."""
 
-    mean: float = Field(default=0.0, description="mean")
-    deviation: Positive = Field(description="standard deviation")
+    mean: float = Field(default=0.0, description="mean of what is drawn [unit of the key]")
+    deviation: Positive = Field(description="standard deviation of what is drawn [unit of the key]", examples=[0.001])
 
 
 Error = float | Pair | Normal  # for all the same | [least, most], drawn uniformly | drawn normally
@@ -33,17 +33,27 @@ class Imperfection(CaseModel):
     up; the blocks are laid again with all errors of tables with `restack`, those of the others come on top.
     """
 
-    block: str | None = Field(default=None, description="id of a block; default: all free blocks")
-    structure: str | None = Field(default=None, description="id of a structure: its free blocks")
-    height: Error = Field(default=0.0, description="added to the height, at the top [m]")
-    length: Error = Field(default=0.0, description="added to the length, half of it at each end [m]")
-    wedge: Error = Field(
-        default=0.0, description="added to the height at the right end, less towards the left, where it is 0 [m]"
+    block: str | None = Field(
+        default=None, description="id of a block; default: all free blocks", examples=["wall-4-2"]
     )
-    shift: tuple[Error, Error] = Field(default=(0.0, 0.0), description="moved by [x, y] [m]")
+    structure: str | None = Field(default=None, description="id of a structure: its free blocks", examples=["wall"])
+    height: Error = Field(default=0.0, description="added to the height, at the top [m]", examples=[[-0.0005, 0.0005]])
+    length: Error = Field(
+        default=0.0,
+        description="added to the length, half of it at each end [m]",
+        examples=[{"mean": 0.0, "deviation": 0.0001}],
+    )
+    wedge: Error = Field(
+        default=0.0,
+        description="added to the height at the right end, less towards the left, where it is 0 [m]",
+        examples=[-0.0003],
+    )
+    shift: tuple[Error, Error] = Field(default=(0.0, 0.0), description="moved by [x, y] [m]", examples=[[0.002, 0.0]])
     lean: Error = Field(
         default=0.0,
-        description="out of plumb: shift to the right per height above the foot, course by course; drawn per structure",
+        description="out of plumb: shift to the right per height above the foot [-], course by course; drawn per "
+        "structure",
+        examples=[0.01],
     )
     restack: bool = Field(
         default=True,

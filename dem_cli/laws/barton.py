@@ -25,9 +25,11 @@ class BartonJoint(StiffJoint):
     """[joints.*] with law = "barton"."""
 
     law: Literal["barton"] = "barton"
-    jrc: float = Field(ge=0.0, le=20.0, description="joint roughness coefficient JRC [deg per decade of stress]")
-    jcs: Positive = Field(description="joint compressive strength JCS [Pa]; above it the angle is φr")
-    residual_angle_deg: float = Field(ge=0.0, lt=90.0, description="residual friction angle φr [deg]")
+    jrc: float = Field(
+        ge=0.0, le=20.0, description="joint roughness coefficient JRC [deg per decade of stress]", examples=[8.0]
+    )
+    jcs: Positive = Field(description="joint compressive strength JCS [Pa]; above it the angle is φr", examples=[50e6])
+    residual_angle_deg: float = Field(ge=0.0, lt=90.0, description="residual friction angle φr [deg]", examples=[28.0])
     largest_angle_deg: float = Field(
         default=70.0, ge=0.0, lt=90.0, description="largest friction angle φ_max, at low stress [deg]"
     )

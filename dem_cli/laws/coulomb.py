@@ -24,7 +24,9 @@ class CoulombJoint(FrictionJoint):
 
     law: Literal["coulomb"] = "coulomb"
     softening: Softening | None = Field(
-        default=None, description="friction that falls with the slip: { residual, slip_start, slip_length }"
+        default=None,
+        description="friction that falls with the slip: { residual, slip_start, slip_length }",
+        examples=[{"residual": 0.8, "slip_start": 0.0009, "slip_length": 0.0001}],
     )
 
 

@@ -22,7 +22,7 @@ class CrushingJoint(FrictionJoint):
     """[joints.*] with law = "crushing"."""
 
     law: Literal["crushing"] = "crushing"
-    compression: Positive = Field(description="compressive strength fc [Pa]")
+    compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
 
 
 @inline

@@ -25,8 +25,10 @@ class DegradingJoint(FrictionJoint):
     """[joints.*] with law = "slip-degrading"."""
 
     law: Literal["slip-degrading"] = "slip-degrading"
-    residual: float = Field(ge=0.0, le=1.0, description="share r of the friction that is left in the end [-]")
-    slip_scale: Positive = Field(description="slip S0 over which what goes falls to 1/e [m]")
+    residual: float = Field(
+        ge=0.0, le=1.0, description="share r of the friction that is left in the end [-]", examples=[0.7]
+    )
+    slip_scale: Positive = Field(description="slip S0 over which what goes falls to 1/e [m]", examples=[0.01])
 
 
 @inline

@@ -37,12 +37,14 @@ class FractureJoint(FrictionJoint):
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["fracture"] = "fracture"
-    tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction")
-    cohesion: Positive = Field(description="cohesion c [Pa]")
-    fracture_energy_tension: Positive = Field(description="energy G_I that opening takes [J/m2]")
-    fracture_energy_shear: Positive = Field(description="energy G_II that sliding takes beside friction [J/m2]")
+    tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])
+    cohesion: Positive = Field(description="cohesion c [Pa]", examples=[0.15e6])
+    fracture_energy_tension: Positive = Field(description="energy G_I that opening takes [J/m2]", examples=[10.0])
+    fracture_energy_shear: Positive = Field(
+        description="energy G_II that sliding takes beside friction [J/m2]", examples=[50.0]
+    )
     friction_residual: NonNegative | None = Field(
-        default=None, description="friction coefficient μr of the crack [-]; default: as before"
+        default=None, description="friction coefficient μr of the crack [-]; default: as before", examples=[0.6]
     )
 
     @property

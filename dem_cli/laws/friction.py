@@ -13,9 +13,11 @@ from dem_cli.laws.stiffness import StiffJoint
 class FrictionJoint(StiffJoint):
     """Stiffness and friction of a joint."""
 
-    friction: float | None = Field(default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]")
+    friction: float | None = Field(
+        default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]", examples=[0.6]
+    )
     friction_angle_deg: float | None = Field(
-        default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction"
+        default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction", examples=[31.0]
     )
 
     @model_validator(mode="after")

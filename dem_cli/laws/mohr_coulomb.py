@@ -34,20 +34,22 @@ class MohrCoulombJoint(FrictionJoint):
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
-    cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]")
+    cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
     tension: NonNegative = Field(
-        default=0.0, description="tensile strength ft [Pa], at most cohesion / friction: there the shear strength ends"
+        default=0.0,
+        description="tensile strength ft [Pa], at most cohesion / friction: there the shear strength ends",
+        examples=[0.05e6],
     )
     dilation_deg: float = Field(
-        default=0.0, ge=0.0, lt=90.0, description="dilation angle ψ [deg], at most the friction angle"
+        default=0.0, ge=0.0, lt=90.0, description="dilation angle ψ [deg], at most the friction angle", examples=[5.0]
     )
     dilation_slip: NonNegative | None = Field(
-        default=None, description="slip zdil up to which the joint dilates [m]; default: without end"
+        default=None, description="slip zdil up to which the joint dilates [m]; default: without end", examples=[0.005]
     )
     cohesion_residual: NonNegative = Field(default=0.0, description="cohesion after failure [Pa]")
     tension_residual: NonNegative = Field(default=0.0, description="tensile strength after failure [Pa]")
     friction_residual: NonNegative | None = Field(
-        default=None, description="friction coefficient after failure [-]; default: as before"
+        default=None, description="friction coefficient after failure [-]; default: as before", examples=[0.5]
     )
 
     @property

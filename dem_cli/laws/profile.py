@@ -18,15 +18,18 @@ class Shape(CaseModel):
     """A convex polygon on a flat surface, but for its size: each number is a value or a range to draw from."""
 
     sides: Sides | tuple[Sides, Sides] | None = Field(
-        default=None, description="number of sides, or [lowest, highest]; default: as many as lengths"
+        default=None, description="number of sides, or [lowest, highest]; default: as many as lengths", examples=[3]
     )
     lengths: Annotated[tuple[Positive | tuple[Positive, Positive], ...], Field(min_length=1)] | None = Field(
         default=None,
-        description="of the sides [m], from left to right or from top to bottom; scaled to the length of the joint; "
-        "each a value or [lowest, highest], one for all sides or one per side; default: equal sides",
+        description="lengths of the sides [m], from left to right or from top to bottom; scaled to the length of "
+        "the joint; each a value or [lowest, highest], one for all sides or one per side; default: equal sides",
+        examples=[[0.016, 0.008, 0.016]],
     )
     central: Share | tuple[Share, Share] | None = Field(
-        default=None, description="instead of lengths: share of the middle side; the others are equal"
+        default=None,
+        description="instead of lengths: share of the middle side [-]; the others are equal",
+        examples=[0.2],
     )
     keep: Literal["aperture", "angle", "lengths"] = Field(
         default="aperture",
@@ -39,7 +42,7 @@ class Shape(CaseModel):
         "of which each joint has a part",
     )
     only: Literal["bed", "head", "all"] = Field(
-        default="all", description="bed: joints flatter than 45°; head: steeper ones; the others are plane"
+        default="all", description="which joints have it; bed: those flatter than 45°; head: steeper ones; all: both"
     )
 
     @model_validator(mode="after")
@@ -74,7 +77,7 @@ class Profile(Shape):
     """[joints.NAME.profile]: contact surfaces that are not plane."""
 
     aperture: Positive | tuple[NonNegative, Positive] = Field(
-        description="distance from the line through the ends of the polygon to its lowest point [m]"
+        description="distance from the line through the ends of the polygon to its lowest point [m]", examples=[1e-4]
     )
 
     @model_validator(mode="after")

@@ -27,9 +27,11 @@ class RateJoint(FrictionJoint):
 
     law: Literal["rate-dependent"] = "rate-dependent"
     friction_dynamic: NonNegative = Field(
-        description="friction coefficient μd of fast slip [-], at most the static one"
+        description="friction coefficient μd of fast slip [-], at most the static one", examples=[0.5]
     )
-    velocity: Positive = Field(description="speed of slip vc over which static friction falls to dynamic [m/s]")
+    velocity: Positive = Field(
+        description="speed of slip vc over which static friction falls to dynamic [m/s]", examples=[0.05]
+    )
 
     @model_validator(mode="after")
     def _dynamic_is_less(self) -> Self:

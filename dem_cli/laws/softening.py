@@ -22,9 +22,15 @@ from dem_cli.laws.law import Law
 class Softening(CaseModel):
     """softening = { ... } of a Coulomb joint."""
 
-    residual: float = Field(ge=0.0, le=1.0, description="share β of the friction that is left in the end [-]")
-    slip_start: float = Field(ge=0.0, description="slip ΔU1 at which the friction starts to fall [m]")
-    slip_length: float = Field(ge=0.0, description="further slip ΔU2 over which it falls, linearly; 0: at once [m]")
+    residual: float = Field(
+        ge=0.0, le=1.0, description="share β of the friction that is left in the end [-]", examples=[0.8]
+    )
+    slip_start: float = Field(
+        ge=0.0, description="slip ΔU1 at which the friction starts to fall [m]", examples=[0.0009]
+    )
+    slip_length: float = Field(
+        ge=0.0, description="further slip ΔU2 over which it falls, linearly; 0: at once [m]", examples=[0.0001]
+    )
 
 
 @inline

@@ -17,15 +17,20 @@ class StiffJoint(CaseModel):
 
     plane_points: ClassVar[int] = 2  # contact points of a plane joint that says nothing else
 
-    kn: Stiffness = Field(default="auto", description="normal stiffness [Pa/m], or 'auto': stiff enough to drop out")
-    ks: Stiffness = Field(default="auto", description="shear stiffness [Pa/m], or 'auto': equal to kn")
+    kn: Stiffness = Field(
+        default="auto", description="normal stiffness [Pa/m], or 'auto': stiff enough to drop out", examples=[1e10]
+    )
+    ks: Stiffness = Field(default="auto", description="shear stiffness [Pa/m], or 'auto': equal to kn", examples=[4e9])
     profile: Profile | None = Field(
-        default=None, description="shape of contact surfaces that are not plane; default: plane"
+        default=None,
+        description="shape of contact surfaces that are not plane; default: plane",
+        examples=[{"sides": 3, "aperture": 1e-4}],
     )
     points: Annotated[int, Field(ge=2, le=9)] | None = Field(
         default=None,
         description="contact points of a plane joint, at Gauss-Lobatto places; "
         "default: 2; 5 where the joint can crack, 3 where it is elastic",
+        examples=[5],
     )
 
     @model_validator(mode="after")

@@ -20,8 +20,10 @@ EC8_KEYS = ("soil", "ag")
 class MotionTable(CaseModel):
     """What every kind of motion accepts."""
 
-    direction: Pair = Field(default=(1.0, 0.0), description="of positive values; its length does not matter")
-    blocks: tuple[str, ...] = Field(default=(), description="ids of the fixed blocks that move; default: all of them")
+    direction: Pair = Field(default=(1.0, 0.0), description="of positive values; its length does not matter [-]")
+    blocks: tuple[str, ...] = Field(
+        default=(), description="ids of the fixed blocks that move; default: all of them", examples=[["ground"]]
+    )
     start: NonNegative = Field(default=0.0, description="time at which it begins [s]")
 
     @model_validator(mode="after")
@@ -39,12 +41,16 @@ class PulseTable(MotionTable):
         default="sine",
         description="one cycle of sine or cosine, half a cycle of sine, Ricker's wavelet, or a constant for a while",
     )
-    amplitude: float = Field(description="peak acceleration of the base [m/s2]")
-    frequency: Positive | None = Field(default=None, description="[Hz]; of ricker, where its spectrum peaks")
-    duration: Positive | None = Field(default=None, description="of impulse: how long it lasts [s]")
+    amplitude: float = Field(description="peak acceleration of the base [m/s2]", examples=[3.0])
+    frequency: Positive | None = Field(
+        default=None, description="of the cycle [Hz]; of ricker, where its spectrum peaks", examples=[1.5]
+    )
+    duration: Positive | None = Field(default=None, description="of impulse: how long it lasts [s]", examples=[0.3])
     rebound: NonNegative = Field(
         default=0.0,
-        description="of impulse: then −rebound · amplitude until the base stands still; 0: it keeps its velocity",
+        description="of impulse: then −rebound · amplitude until the base stands still [-]; 0: it keeps its "
+        "velocity",
+        examples=[0.5],
     )
 
     @model_validator(mode="after")
@@ -65,12 +71,18 @@ class HarmonicTable(MotionTable):
     """[motion] kind = "harmonic": a sine of the given length."""
 
     kind: Literal["harmonic"] = "harmonic"
-    amplitude: float = Field(description="peak acceleration of the base [m/s2]")
-    frequency: Positive = Field(description="[Hz]")
-    cycles: Positive | None = Field(default=None, description="number of cycles")
-    duration: Positive | None = Field(default=None, description="instead of cycles: how long it lasts [s]")
-    phase_deg: float = Field(default=0.0, description="0: a sine; 90: a cosine, after which the base has not drifted")
-    ramp: NonNegative = Field(default=0.0, description="cycles over which it rises at the start and falls at the end")
+    amplitude: float = Field(description="peak acceleration of the base [m/s2]", examples=[2.0])
+    frequency: Positive = Field(description="of the sine [Hz]", examples=[2.0])
+    cycles: Positive | None = Field(default=None, description="number of cycles [-]", examples=[10.0])
+    duration: Positive | None = Field(
+        default=None, description="instead of cycles: how long it lasts [s]", examples=[5.0]
+    )
+    phase_deg: float = Field(
+        default=0.0, description="of the sine at the start [deg]; 90: a cosine, after which the base has not drifted"
+    )
+    ramp: NonNegative = Field(
+        default=0.0, description="cycles over which it rises at the start and falls at the end [-]", examples=[2.0]
+    )
 
     @model_validator(mode="after")
     def _one_length(self) -> HarmonicTable:
@@ -94,20 +106,29 @@ class RecordTable(MotionTable):
 
     kind: Literal["record"] = "record"
     file: Annotated[str, Field(min_length=1)] = Field(
-        description="columns of time [s] and value (CSV), or a PEER file (AT2); a relative path starts at the case file"
+        description="columns of time [s] and value (CSV), or a PEER file (AT2); relative paths start at the case file",
+        examples=["record.csv"],
     )
     quantity: Literal["acceleration", "velocity", "displacement"] = Field(
         default="acceleration", description="what the values are"
     )
-    unit: Unit | None = Field(default=None, description="of the values; may be left out where the file says it (AT2)")
-    scale: float | None = Field(default=None, description="factor on the values; default: 1")
-    peak: Positive | None = Field(default=None, description="instead of scale: the peak acceleration wanted [m/s2]")
+    unit: Unit | None = Field(
+        default=None, description="of the values; may be left out where the file says it (AT2)", examples=["g"]
+    )
+    scale: float | None = Field(default=None, description="factor on the values [-]; default: 1", examples=[1.2])
+    peak: Positive | None = Field(
+        default=None, description="instead of scale: the peak acceleration wanted [m/s2]", examples=[3.0]
+    )
     baseline: bool | Annotated[int, Field(ge=0, le=3)] = Field(
         default=False, description="take out a polynomial of this order of the acceleration; true: 1"
     )
-    step: Positive | None = Field(default=None, description="time step of a file that has values only [s]")
+    step: Positive | None = Field(
+        default=None, description="time step of a file that has values only [s]", examples=[0.01]
+    )
     column: Annotated[int, Field(ge=1)] | None = Field(
-        default=None, description="number of the column of values, from 1; may be left out when there is no choice"
+        default=None,
+        description="number of the column of values, from 1; may be left out when there is no choice",
+        examples=[2],
     )
     uneven: bool = Field(default=False, description="time steps that differ are meant; no gaps are looked for")
 
@@ -146,23 +167,34 @@ class ArtificialTable(MotionTable):
 
     kind: Literal["artificial"] = "artificial"
     spectrum: Literal["EC8-1", "EC8-2"] | Annotated[tuple[Period, ...], Field(min_length=2)] = Field(
-        description="elastic spectrum of Eurocode 8, type 1 or 2, or a list of [period [s], acceleration [m/s2]]"
+        description="elastic spectrum of Eurocode 8, type 1 or 2, or a list of [period [s], acceleration [m/s2]]",
+        examples=["EC8-1"],
     )
-    soil: Literal["A", "B", "C", "D", "E"] | None = Field(default=None, description="ground type of Eurocode 8")
-    ag: Positive | None = Field(default=None, description="ground acceleration on rock [m/s2], with Eurocode 8")
-    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(default=0.05, description="ratio that the spectrum is for")
+    soil: Literal["A", "B", "C", "D", "E"] | None = Field(
+        default=None, description="ground type of Eurocode 8", examples=["B"]
+    )
+    ag: Positive | None = Field(
+        default=None, description="ground acceleration on rock [m/s2], with Eurocode 8", examples=[3.0]
+    )
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
+        default=0.05, description="damping ratio that the spectrum is for [-]"
+    )
     duration: Positive = Field(default=20.0, description="how long each record lasts [s]")
     rise: Positive = Field(default=2.0, description="how long it grows [s], with the square of time")
     plateau: Positive = Field(default=10.0, description="how long it stays strong [s]; Eurocode 8 wants 10 s")
-    time_step: Positive = Field(default=0.01, description="of the samples [s]")
+    time_step: Positive = Field(default=0.01, description="time between samples [s]")
     count: Annotated[int, Field(ge=1, le=1000)] = Field(default=1, description="number of records in the suite")
     number: Annotated[int, Field(ge=1)] = Field(default=1, description="which of them a time history uses, from 1")
     iterations: Annotated[int, Field(ge=0, le=200)] = Field(default=12, description="corrections towards the spectrum")
-    seed: Annotated[int, Field(ge=0)] | None = Field(default=None, description="default: the seed of the case")
-    first_period: Positive | None = Field(
-        default=None, description="T1 of the structure [s]: Eurocode 8 judges a suite from 0.2 T1 to 2 T1"
+    seed: Annotated[int, Field(ge=0)] | None = Field(
+        default=None, description="of the random phases; default: the seed of the case", examples=[7]
     )
-    scale: float = Field(default=1.0, description="factor on the finished records")
+    first_period: Positive | None = Field(
+        default=None,
+        description="T1 of the structure [s]: Eurocode 8 judges a suite from 0.2 T1 to 2 T1",
+        examples=[0.4],
+    )
+    scale: float = Field(default=1.0, description="factor on the finished records [-]")
 
     @field_validator("spectrum")
     @classmethod

@@ -44,7 +44,9 @@ class GravityAnalysis(AnalysisBase):
 class LiveAnalysis(AnalysisBase):
     """What analyses with a live load accept: what the multiplier acts on."""
 
-    direction: tuple[float, float] = Field(default=(1.0, 0.0), description="direction of the horizontal load")
+    direction: tuple[float, float] = Field(
+        default=(1.0, 0.0), description="direction of the horizontal load; its length does not matter [-]"
+    )
     pattern: Literal["mass", "live", "tilt"] = Field(
         default="mass", description="mass: λ × weight of each block; live: λ × live loads; tilt: table turned by atan λ"
     )
@@ -54,11 +56,18 @@ class PushoverAnalysis(LiveAnalysis):
     """[analysis] with kind = "pushover": the load multiplier at which the structure fails."""
 
     kind: Literal["pushover"] = "pushover"
-    resolution: float = Field(default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load")
-    step: float | None = Field(
-        default=None, gt=0.0, description="largest step of the multiplier on the way from gravity; default: they grow"
+    resolution: float = Field(
+        default=0.002, ge=1e-4, le=0.1, description="width of the bracket over the failure load [-]"
     )
-    follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
+    step: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="largest step of the multiplier on the way from gravity [-]; default: they grow",
+        examples=[0.02],
+    )
+    follow: float = Field(
+        default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]", examples=[0.02]
+    )
     collapse: Literal["auto", "rate", "load"] = Field(
         default="auto",
         description="what is prescribed while the collapse is followed; rate: of displacement, the load is found; "
@@ -67,7 +76,8 @@ class PushoverAnalysis(LiveAnalysis):
     max_load: float | None = Field(
         default=None,
         gt=0.0,
-        description="give up above this multiplier; default: live loads of 100 times the dead ones",
+        description="give up above this multiplier [-]; default: live loads of 100 times the dead ones",
+        examples=[10.0],
     )
     start: Literal["auto", "gravity", "path", "limit"] = Field(
         default="auto",
@@ -81,8 +91,14 @@ class CycleAnalysis(LiveAnalysis):
     """[analysis] with kind = "cycle": the load multiplier follows a path of given values, slowly, to and fro."""
 
     kind: Literal["cycle"] = "cycle"
-    path: tuple[float, ...] = Field(min_length=1, description="load multipliers to go to one after the other, from 0")
-    step: float = Field(gt=0.0, description="largest step of the multiplier; every one is a proven equilibrium")
+    path: tuple[float, ...] = Field(
+        min_length=1,
+        description="load multipliers to go to one after the other, from 0 [-]",
+        examples=[[0.2, -0.2, 0.0]],
+    )
+    step: float = Field(
+        gt=0.0, description="largest step of the multiplier [-]; every one is a proven equilibrium", examples=[0.02]
+    )
 
 
 class SettlementAnalysis(AnalysisBase):
@@ -94,30 +110,40 @@ class SettlementAnalysis(AnalysisBase):
 class Perturbation(CaseModel):
     """analysis.perturb: relative standard deviations of what `repeats` change, each drawn from the seed of the case."""
 
-    friction: Share = Field(default=0.02, description="of the friction coefficient, a factor per joint in [joints]")
+    friction: Share = Field(default=0.02, description="of the friction coefficient, a factor per joint in [joints] [-]")
     geometry: Share = Field(
         default=0.001,
-        description="of the size of blocks: mass and centre of mass of each change as by such errors, and the ground "
-        "leans by as many radians; joints stay closed",
+        description="of the size of blocks [-]: mass and centre of mass of each change as by such errors, and the "
+        "ground leans by as many radians; joints stay closed",
     )
-    motion: Share = Field(default=0.001, description="of the strength of the ground motion")
+    motion: Share = Field(default=0.001, description="of the strength of the ground motion [-]")
 
 
 class ShakingAnalysis(CaseModel):
     """What analyses of structures that are shaken accept."""
 
-    duration: float | None = Field(default=None, gt=0.0, description="[s]; default: that of the motion")
-    time_step: float | None = Field(
-        default=None, gt=0.0, description="[s]; default: margin × the largest stable one of joints that all touch"
+    duration: float | None = Field(
+        default=None, gt=0.0, description="time that is computed [s]; default: that of the motion", examples=[15.0]
     )
-    margin: float = Field(default=0.25, gt=0.0, le=0.95, description="time step over the largest stable one")
+    time_step: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="of the integration [s]; default: margin × the largest stable one of joints that all touch",
+        examples=[1e-4],
+    )
+    margin: float = Field(default=0.25, gt=0.0, le=0.95, description="time step over the largest stable one [-]")
     settle: bool = Field(default=True, description="come to rest under dead loads first; false: start as drawn")
-    fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed")
+    fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed [deg]")
     dropped: float | None = Field(
-        default=None, gt=0.0, description="a block that sank by so much has collapsed [m]; default: its least width"
+        default=None,
+        gt=0.0,
+        description="a block that sank by so much has collapsed [m]; default: its least width",
+        examples=[0.3],
     )
     max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
-    repeats: int = Field(default=0, ge=0, le=10_000, description="runs of slightly different structures beside it")
+    repeats: int = Field(
+        default=0, ge=0, le=10_000, description="runs of slightly different structures beside it", examples=[20]
+    )
     perturb: Perturbation = Field(default=Perturbation(), description="how different: { friction, geometry, motion }")
 
     @property
@@ -142,21 +168,32 @@ class FragilityAnalysis(ShakingAnalysis):
 
     kind: Literal["fragility"] = "fragility"
     intensities: tuple[Positive, ...] | None = Field(
-        default=None, min_length=1, description="levels to run, increasing; or lowest, highest and resolution"
+        default=None,
+        min_length=1,
+        description="levels to run [-], increasing: peak acceleration over unit_acceleration; or lowest, highest "
+        "and resolution",
+        examples=[[0.5, 1.0, 1.5, 2.0]],
     )
-    lowest: Positive | None = Field(default=None, description="bisection between two intensities: the lower one")
-    highest: Positive | None = Field(default=None, description="and the higher one")
-    resolution: Positive | None = Field(default=None, description="and how closely a collapse is found between them")
+    lowest: Positive | None = Field(
+        default=None, description="bisection between two intensities: the lower one [-]", examples=[0.5]
+    )
+    highest: Positive | None = Field(default=None, description="bisection: the higher intensity [-]", examples=[2.0])
+    resolution: Positive | None = Field(
+        default=None, description="bisection: how closely a collapse is found [-]", examples=[0.1]
+    )
     search: Literal["grid", "bisection"] | None = Field(
         default=None,
         description="grid: every record at every level (default with intensities); bisection: per record only the runs "
         "that lead to one change from standing to collapse, which need not be the lowest",
+        examples=["bisection"],
     )
     unit_acceleration: Positive = Field(default=1.0, description="peak acceleration at intensity 1 [m/s2]")
     coda: NonNegative = Field(
         default=5.0, description="time after the motion in which a structure that still moves may fall [s]"
     )
-    confidence: float = Field(default=0.9, gt=0.0, lt=1.0, description="of the band around the curve")
+    confidence: float = Field(
+        default=0.9, gt=0.0, lt=1.0, description="confidence level of the band around the curve [-]"
+    )
 
     @model_validator(mode="after")
     def _levels_or_range(self) -> FragilityAnalysis:
@@ -210,6 +247,9 @@ class ModesAnalysis(AnalysisBase):
         "touching: also those without a gap that carry nothing, such as dry head joints",
     )
     measured: float | None = Field(
-        default=None, gt=0.0, description="measured natural frequency [Hz]: all kn and ks are scaled to meet it"
+        default=None,
+        gt=0.0,
+        description="measured natural frequency [Hz]: all kn and ks are scaled to meet it",
+        examples=[10.0],
     )
     mode: int = Field(default=1, ge=1, le=200, description="number of the mode that the measured frequency belongs to")

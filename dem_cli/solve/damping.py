@@ -23,12 +23,16 @@ JOINTS = ("contact_fraction", "restitution", "rayleigh", "stiffness")  # each se
 class Rayleigh(CaseModel):
     """damping.rayleigh: damping ratio of elastic modes, c = a0 m + a1 k."""
 
-    ratio: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(description="damping ratio at the given frequencies")
+    ratio: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
+        description="damping ratio at the given frequencies [-]", examples=[0.02]
+    )
     frequency: Positive | None = Field(
-        default=None, description="where the ratio is least [Hz]; with one part alone: where it holds"
+        default=None, description="where the ratio is least [Hz]; with one part alone: where it holds", examples=[10.0]
     )
     frequencies: tuple[Positive, Positive] | None = Field(
-        default=None, description="instead of frequency: two between which the ratio is at most the given one [Hz]"
+        default=None,
+        description="instead of frequency: two between which the ratio is at most the given one [Hz]",
+        examples=[[2.0, 20.0]],
     )
     mass: bool = Field(default=True, description="with the part that is proportional to mass")
     stiffness: bool = Field(default=True, description="with the part that is proportional to stiffness")
@@ -61,8 +65,10 @@ class Rayleigh(CaseModel):
 class Element(CaseModel):
     """damping.maxwell: a spring and a dashpot in series beside each spring of a joint."""
 
-    ratio: Annotated[float, Field(gt=0.0, lt=0.5)] = Field(description="damping ratio that it gives at its frequency")
-    frequency: Positive = Field(description="where it damps most [Hz]")
+    ratio: Annotated[float, Field(gt=0.0, lt=0.5)] = Field(
+        description="damping ratio that it gives at its frequency [-]", examples=[0.03]
+    )
+    frequency: Positive = Field(description="where it damps most [Hz]", examples=[5.0])
 
 
 class DampingTable(CaseModel):
@@ -74,21 +80,36 @@ class DampingTable(CaseModel):
         f"{DEFAULT_FRACTION} without a [damping] table",
     )
     restitution: Annotated[float, Field(gt=0.0, lt=1.0)] | Literal["housner"] | None = Field(
-        default=None, description="wanted ratio of angular velocities after and before a rocking block lands"
+        default=None,
+        description="wanted ratio of angular velocities after and before a rocking block lands [-]",
+        examples=["housner"],
     )
     block: str | None = Field(
         default=None,
         description="id of the block whose frequency or restitution is meant; default: each joint for itself, "
         "and the heaviest block on a support for a restitution",
+        examples=["column-1"],
     )
-    rayleigh: Rayleigh | None = Field(default=None, description="{ ratio, frequency or frequencies, mass, stiffness }")
-    stiffness: Positive | None = Field(default=None, description="damping over stiffness of all joints [s]")
-    mass: Positive | None = Field(default=None, description="damping force over mass and velocity of blocks [1/s]")
+    rayleigh: Rayleigh | None = Field(
+        default=None,
+        description="damping ratio of elastic modes: { ratio, frequency or frequencies, mass, stiffness }",
+        examples=[{"ratio": 0.02, "frequency": 10.0}],
+    )
+    stiffness: Positive | None = Field(
+        default=None, description="damping over stiffness of all joints [s]", examples=[1e-4]
+    )
+    mass: Positive | None = Field(
+        default=None, description="damping force over mass and velocity of blocks [1/s]", examples=[0.5]
+    )
     maxwell: Annotated[tuple[Element, ...], Field(min_length=1)] | None = Field(
-        default=None, description="elements beside each spring: [{ ratio, frequency }]"
+        default=None,
+        description="elements beside each spring: [{ ratio, frequency }]",
+        examples=[[{"ratio": 0.03, "frequency": 5.0}]],
     )
     local: Annotated[float, Field(gt=0.0, lt=1.0)] | None = Field(
-        default=None, description="share of the unbalanced force against the motion; has no physical meaning"
+        default=None,
+        description="share of the unbalanced force against the motion [-]; has no physical meaning",
+        examples=[0.1],
     )
     none: bool = Field(default=False, description="true: no damping but friction")
 

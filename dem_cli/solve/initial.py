@@ -24,19 +24,24 @@ INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
 class Initial(CaseModel):
     """[[initial]]: how blocks start, once the structure has come to rest."""
 
-    block: str | None = Field(default=None, description="id of a block that can move")
+    block: str | None = Field(default=None, description="id of a block that can move", examples=["column-1"])
     blocks: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
-        default=None, description="instead of block: ids of several, which are moved as one"
+        default=None,
+        description="instead of block: ids of several, which are moved as one",
+        examples=[["column-7", "column-8"]],
     )
     tilt: float = Field(
         default=0.0,
         gt=-1.6,
         lt=1.6,
         description="turn about the corner on which they then stand, counter-clockwise [rad]",
+        examples=[0.1],
     )
-    displacement: Pair = Field(default=(0.0, 0.0), description="how far they are moved [m]")
+    displacement: Pair = Field(default=(0.0, 0.0), description="how far they are moved [m]", examples=[[0.01, 0.0]])
     velocity: tuple[float, float, float] = Field(
-        default=(0.0, 0.0, 0.0), description="of each centroid [m/s], and of the turn, counter-clockwise [rad/s]"
+        default=(0.0, 0.0, 0.0),
+        description="of each centroid [m/s], and of the turn, counter-clockwise [rad/s]",
+        examples=[[0.1, 0.0, 0.0]],
     )
 
     @model_validator(mode="after")

@@ -16,10 +16,12 @@ from dem_cli.model.blocks import Block
 class Support(CaseModel):
     """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
 
-    width: Positive = Field(description="width [m]; at least that of the springing joint")
-    height: Positive = Field(description="height of the inner face, from the ground to the springing [m]")
+    width: Positive = Field(description="width [m]; at least that of the springing joint", examples=[0.8])
+    height: Positive = Field(
+        description="height of the inner face, from the ground to the springing [m]", examples=[1.6]
+    )
     courses: int = Field(1, ge=1, le=10_000, description="number of blocks that it consists of")
-    material: str = Field("", description="a name in [materials]; default: that of the arch")
+    material: str = Field("", description="a name in [materials]; default: that of the arch", examples=["brick"])
 
 
 SHAPE_KEYS = {
@@ -44,28 +46,41 @@ class Arch(StructureBase):
         description="circular: by radius and angle; segmental: part of a circle, by span and rise; "
         "pointed: two arcs; flat: straight, wedge-shaped voussoirs",
     )
-    voussoirs: int = Field(ge=1, le=10_000, description="number of voussoirs; even for a pointed arch")
-    ring: Positive = Field(description="depth of the ring, from inner to outer face [m]")
-    radius: Positive | None = Field(None, description="radius of the middle of the ring [m] (circular)")
+    voussoirs: int = Field(ge=1, le=10_000, description="number of voussoirs; even for a pointed arch", examples=[21])
+    ring: Positive = Field(description="depth of the ring, from inner to outer face [m]", examples=[0.15])
+    radius: Positive | None = Field(None, description="radius of the middle of the ring [m] (circular)", examples=[1.0])
     inner_radius: Positive | None = Field(
-        None, description="radius of the inner face [m] (circular, pointed)"
+        None, description="radius of the inner face [m] (circular, pointed)", examples=[0.925]
     )
     included_angle_deg: float | None = Field(
-        None, gt=0.0, lt=360.0, description="from springing to springing [degrees] (circular); default: 180"
+        None,
+        gt=0.0,
+        lt=360.0,
+        description="from springing to springing [deg] (circular); default: 180",
+        examples=[160.0],
     )
-    span: Positive | None = Field(None, description="clear span [m] (segmental, pointed, flat)")
-    rise: Positive | None = Field(None, description="rise of the inner face [m] (segmental, pointed)")
+    span: Positive | None = Field(None, description="clear span [m] (segmental, pointed, flat)", examples=[2.0])
+    rise: Positive | None = Field(None, description="rise of the inner face [m] (segmental, pointed)", examples=[0.5])
     skew_deg: float | None = Field(
         None,
         ge=0.0,
         lt=80.0,
-        description="outermost joints against the vertical [degrees] (flat); default: 20",
+        description="outermost joints against the vertical [deg] (flat); default: 20",
+        examples=[20.0],
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    columns: Support | None = Field(None, description="stand on columns; default: on fixed springings")
-    buttresses: Support | None = Field(None, description="stand on buttresses (the same as columns)")
+    columns: Support | None = Field(
+        None,
+        description="columns below the springings; default: none, the springings are fixed",
+        examples=[{"width": 0.3, "height": 1.0, "courses": 4}],
+    )
+    buttresses: Support | None = Field(
+        None,
+        description="buttresses below the springings, the same as columns; default: none",
+        examples=[{"width": 0.8, "height": 1.0, "courses": 4}],
+    )
     base_extension: NonNegative = Field(
-        0.0, description="how far the fixed ground goes beyond each side of a column or buttress [m]"
+        0.0, description="how far the fixed ground goes beyond each side of a column or buttress [m]", examples=[1.5]
     )
 
     @property

@@ -15,17 +15,19 @@ from dem_cli.model.blocks import Block
 class Drum(CaseModel):
     """One block of a column, symmetric about the axis."""
 
-    width: Positive = Field(description="width at its foot [m]")
-    height: Positive = Field(description="height [m]")
-    top_width: Positive | None = Field(None, description="width at its top [m]; default: as at its foot")
+    width: Positive = Field(description="width at its foot [m]", examples=[0.5])
+    height: Positive = Field(description="height [m]", examples=[0.6])
+    top_width: Positive | None = Field(
+        None, description="width at its top [m]; default: as at its foot", examples=[0.45]
+    )
 
 
 class Cap(CaseModel):
     """A rectangular block on top: a capital, or a weight."""
 
-    width: Positive = Field(description="width [m]")
-    height: Positive = Field(description="height [m]")
-    material: str = Field("", description="a name in [materials]; default: that of the column")
+    width: Positive = Field(description="width [m]", examples=[0.7])
+    height: Positive = Field(description="height [m]", examples=[0.2])
+    material: str = Field("", description="a name in [materials]; default: that of the column", examples=["marble"])
 
 
 class Column(StructureBase):
@@ -37,18 +39,28 @@ class Column(StructureBase):
 
     kind: Literal["column"] = "column"
     block: tuple[Positive, Positive] | None = Field(
-        None, description="width at the foot, height of a block [m]"
+        None, description="width at the foot and height of a block [m]", examples=[[0.5, 0.4]]
     )
-    courses: int | None = Field(None, ge=1, le=10_000, description="number of blocks")
+    courses: int | None = Field(None, ge=1, le=10_000, description="number of blocks", examples=[8])
     top_width: Positive | None = Field(
-        None, description="width at the top of the column [m], tapered from block[0]; default: not tapered"
+        None,
+        description="width at the top of the column [m], tapered from block[0]; default: not tapered",
+        examples=[0.4],
     )
-    drums: tuple[Drum, ...] = Field((), description="the blocks from below, instead of block and courses")
-    cap: Cap | None = Field(None, description="a block on top of all; default: none")
+    drums: tuple[Drum, ...] = Field(
+        (),
+        description="the blocks from below, instead of block and courses",
+        examples=[[{"width": 0.5, "height": 0.6}, {"width": 0.5, "height": 0.5, "top_width": 0.45}]],
+    )
+    cap: Cap | None = Field(
+        None, description="a block on top of all; default: none", examples=[{"width": 0.7, "height": 0.2}]
+    )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
     base: bool = Field(True, description="a fixed block below, as wide as the lowest block")
-    base_height: Positive | None = Field(None, description="height of the base [m]; default: as lowest block")
-    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each side [m]")
+    base_height: Positive | None = Field(
+        None, description="height of the base [m]; default: as lowest block", examples=[0.3]
+    )
+    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each side [m]", examples=[0.5])
 
     @model_validator(mode="after")
     def _one_shape(self) -> Column:

@@ -17,19 +17,21 @@ SLIVER = 1e-6  # parts of a block below this fraction of its length or height ar
 class Lintel(CaseModel):
     """One block over an opening, in place of whatever it crosses."""
 
-    height: Positive = Field(description="height [m]")
-    bearing: NonNegative = Field(description="length that rests on the wall at each side [m]")
-    material: str = Field("", description="a name in [materials]; default: that of the wall")
+    height: Positive = Field(description="height [m]", examples=[0.2])
+    bearing: NonNegative = Field(description="length that rests on the wall at each side [m]", examples=[0.15])
+    material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["wood"])
 
 
 class Opening(CaseModel):
     """A rectangular hole; blocks that it cuts keep what is left of them as rectangles."""
 
-    x: NonNegative = Field(description="left edge, from the left end of the wall [m]")
-    y: NonNegative = Field(description="lower edge, from the foot of the wall [m]")
-    width: Positive = Field(description="width [m]")
-    height: Positive = Field(description="height [m]")
-    lintel: Lintel | None = Field(None, description="a block over the opening; default: none")
+    x: NonNegative = Field(description="left edge, from the left end of the wall [m]", examples=[0.8])
+    y: NonNegative = Field(description="lower edge, from the foot of the wall [m]", examples=[0.0])
+    width: Positive = Field(description="width [m]", examples=[0.9])
+    height: Positive = Field(description="height [m]", examples=[2.0])
+    lintel: Lintel | None = Field(
+        None, description="a block over the opening; default: none", examples=[{"height": 0.2, "bearing": 0.15}]
+    )
 
 
 class Wall(StructureBase):
@@ -40,17 +42,21 @@ class Wall(StructureBase):
     """
 
     kind: Literal["wall"] = "wall"
-    block: tuple[Positive, Positive] = Field(description="length and height of a full block [m]")
-    courses: int = Field(ge=1, le=10_000, description="number of courses")
+    block: tuple[Positive, Positive] = Field(description="length and height of a full block [m]", examples=[[0.4, 0.2]])
+    courses: int = Field(ge=1, le=10_000, description="number of courses", examples=[12])
     blocks_per_course: int = Field(
-        ge=1, le=10_000, description="full blocks in a full course: the wall is this many block lengths long"
+        ge=1,
+        le=10_000,
+        description="full blocks in a full course: the wall is this many block lengths long",
+        examples=[8],
     )
     bond: Literal["running", "stack"] | None = Field(
         None,
-        description="running (default): every other course is shifted by half a block; stack: none is",
+        description="running: every other course is shifted by half a block; stack: none is; default: running",
+        examples=["stack"],
     )
     offset: NonNegative | None = Field(
-        None, description="shift of every other course [m], instead of bond; less than the block length"
+        None, description="shift of every other course [m], instead of bond; less than the block length", examples=[0.1]
     )
     ends: Literal["half", "toothed"] = Field(
         "half",
@@ -62,16 +68,20 @@ class Wall(StructureBase):
         description="lowest course; half: shifted, starts with a part block; full: starts with a full block",
     )
     course_heights: tuple[Positive, ...] = Field(
-        (), description="height of each course from below [m]; default: block[1]"
+        (), description="height of each course from below [m]; default: block[1]", examples=[[0.25, 0.2, 0.2]]
     )
     course_lengths: tuple[Positive, ...] = Field(
-        (), description="block length in each course from below [m]; default: all alike"
+        (), description="block length in each course from below [m]; default: all alike", examples=[[0.5, 0.4, 0.4]]
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    openings: tuple[Opening, ...] = Field((), description="doors and windows")
+    openings: tuple[Opening, ...] = Field(
+        (), description="doors and windows", examples=[[{"x": 0.8, "y": 0.0, "width": 0.9, "height": 2.0}]]
+    )
     base: bool = Field(True, description="a fixed block below, as long as the wall")
-    base_height: Positive | None = Field(None, description="height of the base [m]; default: that of a block")
-    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each end [m]")
+    base_height: Positive | None = Field(
+        None, description="height of the base [m]; default: that of a block", examples=[0.3]
+    )
+    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each end [m]", examples=[0.5])
 
     @property
     def length(self) -> float:
