@@ -65,3 +65,16 @@ def as_tuples(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: as_tuples(item) for key, item in value.items()}
     return value
+
+
+def one_or_more(table: Any) -> Any:
+    """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
+    return Annotated[tuple[table, ...], OneOrMore()]  # type: ignore[valid-type]
+
+
+class OneOrMore:
+    """Tells editors, by the JSON Schema, that one table will do."""
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        several = handler(core_schema)
+        return {"anyOf": [several["items"], several]}

@@ -12,13 +12,16 @@ from dem_cli.case.schema import Case
 from dem_cli.case.words import either, listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
+ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
+
 
 def complete(data: dict[str, Any], title: str) -> None:
-    """Fill in, in place, the title, the only material and the ids of structures; one [motion] becomes a list."""
+    """Fill in, in place, the title, the only material and the ids of structures; a table alone becomes a list."""
     if data.get("title", "") == "":
         data["title"] = title
-    if isinstance(data.get("motion"), dict):
-        data["motion"] = [data["motion"]]
+    for key in ONE_OR_MORE:
+        if isinstance(data.get(key), dict):
+            data[key] = [data[key]]
     materials = data.get("materials")
     only = next(iter(materials)) if isinstance(materials, dict) and len(materials) == 1 else ""
     tables = [table for _, table in entries(data, "structure")]

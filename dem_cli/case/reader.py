@@ -51,7 +51,8 @@ class Source:
 
     def as_written(self, path: KeyPath) -> KeyPath:
         """A key path without the number of a table that is not written as a list: motion.0.file -> motion.file."""
-        alone = path[:1] == ("motion",) and path[1:2] == (0,) and path[:2] not in self.places.values
+        one = path[1:2] == (0,) and path[0] in names.ONE_OR_MORE
+        alone = one and path[:2] not in self.places.values
         return path[:1] + path[2:] if alone else path
 
     @contextmanager

@@ -13,8 +13,17 @@ from typing import Annotated, Any, Literal, cast
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive, StructureBase
+from dem_cli.case.base import (
+    CaseModel,
+    KeyProblem,
+    NonNegative,
+    Pair,
+    Positive,
+    StructureBase,
+    one_or_more,
+)
 from dem_cli.case.imperfection import Imperfection
+from dem_cli.case.reference import Reference
 
 Name = Annotated[str, Field(min_length=1)]
 Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
@@ -150,14 +159,6 @@ class Output(CaseModel):
     rate: Positive = Field(default=200.0, description="samples of the monitors per second, in time histories [1/s]")
 
 
-class Reference(CaseModel):
-    """[reference]: what the answer is compared with."""
-
-    failure_load: NonNegative = Field(description="expected load multiplier at failure")
-    tolerance: Positive = Field(description="largest difference that passes, on the multiplier itself")
-    source: str = Field(default="", description="where the number comes from")
-
-
 class WrittenBy(CaseModel):
     """[dem]: put into the effective case by the program."""
 
@@ -185,7 +186,9 @@ class Case(CaseModel):
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
-    reference: Reference | None = Field(default=None, description="what the answer is compared with")
+    reference: one_or_more(Reference) = Field(  # type: ignore[valid-type]
+        default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
+    )
     motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: dict[str, Any] | None = Field(
@@ -251,19 +254,6 @@ def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None =
     if len(classes) > 1:
         table = Annotated[table, Field(discriminator=key)]
     return Annotated[table, BeforeValidator(with_default(key, default))] if default in kinds else table
-
-
-def one_or_more(table: Any) -> Any:
-    """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
-    return Annotated[tuple[table, ...], OneOrMore()]  # type: ignore[valid-type]
-
-
-class OneOrMore:
-    """Tells editors, by the JSON Schema, that one table will do."""
-
-    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
-        several = handler(core_schema)
-        return {"anyOf": [several["items"], several]}
 
 
 def with_default(key: str, value: str | None) -> Callable[[Any], Any]:

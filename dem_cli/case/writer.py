@@ -17,6 +17,7 @@ NUMBERS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML hol
 FIRST = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
     "materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "motion", "monitor",
+    "reference",
 )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from typing import Any, TextIO
 
 from dem_cli.cli.fragility import fragility_rows
 from dem_cli.cli.modes import mode_rows
+from dem_cli.cli.reference import reference_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
@@ -203,11 +204,7 @@ def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     if known:
         text = ", ".join(f"{_load(limits[key])} {key.replace('_', '-')}" for key in known)
         rows.append(("limit analysis", text))
-    reference = summary.get("reference")
-    if reference:
-        verdict = "passed" if reference["passed"] else "FAILED"
-        rows.append(("reference", f"{reference['value']:g} ± {reference['tolerance']:g}: {verdict}"))
-    return rows
+    return rows + reference_rows(summary)
 
 
 def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -137,6 +137,7 @@ def execute(
     plot: bool = False,
     solve: Solve | None = None,
     wish: Wish | None = None,
+    recover: bool = True,
 ) -> tuple[dict[str, Any], Path]:
     """Solve and write; returns the summary and where the results are. Nothing is left where it fails."""
     from dem_cli.case.writer import case_text
@@ -145,7 +146,7 @@ def execute(
     from dem_cli.output.store import ResultWriter
 
     case = loaded.case
-    with Interrupts() as interrupts, OutputFolder(output, force=force) as folder:
+    with Interrupts() as interrupts, OutputFolder(output, force=force, recover=recover) as folder:
         with interrupts.shielded():
             names = monitor_names(case.monitor)
             text, kind = case_text(case), case.analysis.kind
@@ -218,17 +219,16 @@ def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str,
 
 def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: float) -> dict[str, Any]:
     """The solver's summary with everything that is not the solver's."""
-    from dem_cli.output.summary import ordered, reference_verdict
+    from dem_cli.output.reference import in_summary, verdicts
+    from dem_cli.output.summary import ordered
 
     case = loaded.case
     summary = dict(found)
     summary |= {"title": case.title or loaded.path.stem, "kind": case.analysis.kind, "version": __version__}
     summary["blocks"] = model.n_blocks
     summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
-    if case.reference is not None and found["status"] != "interrupted":
-        reference = case.reference
-        load = found.get("failure_load")
-        summary["reference"] = reference_verdict(load, reference.failure_load, reference.tolerance)
+    if case.reference and found["status"] != "interrupted":
+        summary["reference"] = in_summary(verdicts(summary, case.reference))
     summary["wall_seconds"] = time.perf_counter() - started
     return ordered(summary)
 

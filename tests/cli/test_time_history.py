@@ -159,7 +159,7 @@ def test_stopped_half_way(tmp_path, error, status, code):
 
     loaded = load(tmp_path / "case.toml")
     kind = loaded.case.analysis.model_copy(update={"kind": "time-history"})
-    loaded.case = loaded.case.model_copy(update={"analysis": kind, "reference": None})
+    loaded.case = loaded.case.model_copy(update={"analysis": kind, "reference": ()})
     summary, folder = execute(loaded, wall_model(), tmp_path / "out", time.perf_counter(), solve=solve, quiet=True)
     assert (summary["status"], exit_code(summary)) == (status, code)
     assert (summary["collapsed"], summary["collapse_time"]) == (None, None)

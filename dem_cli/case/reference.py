@@ -1,0 +1,93 @@
+"""[reference]: what the answer is compared with, where that comes from, and how near it must come."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
+from dem_cli.case.words import show
+
+Word = Annotated[str, Field(min_length=1)]
+NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes; or 'relative', a share of the value)"
+
+
+class Reference(CaseModel):
+    """[reference], or several [[reference]]: what the answer is compared with."""
+
+    failure_load: NonNegative | None = Field(
+        default=None, description="expected load multiplier at failure [-]", examples=[0.64]
+    )
+    quantity: Word | None = Field(
+        default=None,
+        description="instead of failure_load: path of a number, word or truth in summary.json",
+        examples=["peaks.top displacement.peak"],
+    )
+    value: bool | float | Pair | Word | None = Field(
+        default=None,
+        description="of the quantity: a number, [lowest, highest], a word or a truth [unit of the quantity]",
+        examples=[0.012],
+    )
+    tolerance: Positive | None = Field(
+        default=None, description="largest difference that passes [unit of the quantity]", examples=[0.001]
+    )
+    relative: Positive | None = Field(
+        default=None, description="instead of tolerance: its share of the value [-]", examples=[0.01]
+    )
+    kind: Literal["exact", "experiment", "code"] = Field(
+        default="exact",
+        description="where the value comes from: exact (mechanics), experiment, or another code's answer",
+    )
+    source: str = Field(default="", description="where the value comes from, in words")
+    missed: Word | None = Field(
+        default=None,
+        description="why the value is known to be missed; fails as soon as it is met",
+        examples=["the test had wedges under its first course"],
+    )
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Reference:
+        if (self.failure_load is None) == (self.quantity is None):
+            neither = self.quantity is None
+            found = "neither 'failure_load' nor 'quantity' is" if neither else "'failure_load' and 'quantity' are both"
+            raise ValueError(f"{found} given; a reference has 'failure_load', or 'quantity' and 'value'")
+        if self.quantity is None and self.value is not None:
+            raise KeyProblem(f"{show(self.value)} is not allowed beside 'failure_load'", "value")
+        if self.quantity is not None and self.value is None:
+            raise KeyProblem("missing; must be a number, a list of 2 numbers, a string, true or false", "value")
+        self._check_tolerance()
+        return self
+
+    def _check_tolerance(self) -> None:
+        given = [key for key in ("tolerance", "relative") if getattr(self, key) is not None]
+        if len(given) == 2:
+            raise KeyProblem(f"{show(self.relative)} is not allowed beside 'tolerance'", "relative")
+        if isinstance(self.expected, (bool, str)) and given:
+            raise KeyProblem(f"{show(getattr(self, given[0]))} is not allowed; words and truths have none", given[0])
+        if isinstance(self.expected, tuple) and self.expected[0] >= self.expected[1]:
+            raise KeyProblem(f"{show(self.expected)} is not allowed; must be [lowest, highest]", "value")
+        if type(self.expected) is float and not given:
+            raise KeyProblem(NO_TOLERANCE, "tolerance")
+        if self.relative is not None and self.allowance == 0.0:
+            raise KeyProblem(f"{show(self.relative)} is not allowed; a share of 0 is nothing", "relative")
+
+    @property
+    def path(self) -> str:
+        """Of the quantity in summary.json."""
+        return self.quantity or "failure_load"
+
+    @property
+    def expected(self) -> bool | float | Pair | Word:
+        """The value of the quantity, in either form."""
+        value = self.failure_load if self.quantity is None else self.value
+        assert value is not None
+        return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+    @property
+    def allowance(self) -> float | None:
+        """Largest difference that passes, in the unit of the quantity; beyond an interval; None for words."""
+        if isinstance(self.expected, (bool, str)):
+            return None
+        bounds = self.expected if isinstance(self.expected, tuple) else (self.expected,)
+        return self.tolerance or (self.relative or 0.0) * max(map(abs, bounds))

@@ -1,0 +1,44 @@
+"""What a user reads of a comparison with the `[reference]` of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def reference_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """A line for each reference of a run."""
+    from dem_cli.output.reference import from_summary
+
+    return [("reference", one_line(answer)) for answer in from_summary(summary.get("reference"))]
+
+
+def one_line(answer: Mapping[str, Any]) -> str:
+    """A verdict of output/reference.py in words; a failure load that was found stands above it."""
+    load = answer["quantity"] == "failure_load"
+    found = "" if load or "found" not in answer else f"{answer['quantity']} is {shown(answer['found'])}, expected "
+    return f"{found}{expected(answer)}: {judged(answer)}"
+
+
+def expected(answer: Mapping[str, Any]) -> str:
+    """`0.64 ± 0.001`, `[0.3, 0.4] ± 0.01`, `ok` or `false`."""
+    slack = f" ± {answer['tolerance']:g}" if answer["tolerance"] else ""
+    return f"{shown(answer['value'])}{slack}"
+
+
+def judged(answer: Mapping[str, Any]) -> str:
+    """The verdict in words."""
+    if "problem" in answer:
+        return f"FAILED, {answer['problem']}"
+    if "missed" in answer:
+        return "FAILED, met but declared as missed" if answer["passed"] else f"missed, as known: {answer['missed']}"
+    return "passed" if answer["passed"] else "FAILED"
+
+
+def shown(value: Any) -> str:
+    """A number, word, truth or interval as it stands in a case file, with six digits."""
+    if isinstance(value, bool) or value is None:
+        return {True: "true", False: "false", None: "–"}[value]
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(shown, value))}]"
+    return value if isinstance(value, str) else f"{value:.6g}"

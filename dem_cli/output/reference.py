@@ -1,0 +1,112 @@
+"""Is what was computed what the `[reference]` of the case says? One verdict per table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any, Protocol
+
+from dem_cli.output.summary import scalars
+
+Value = float | int | str | bool | None
+
+
+class Wanted(Protocol):
+    """What this file asks of a `[reference]`."""
+
+    @property
+    def path(self) -> str: ...
+    @property
+    def expected(self) -> bool | float | tuple[float, float] | str: ...
+    @property
+    def allowance(self) -> float | None: ...
+
+    kind: str
+    missed: str | None
+
+
+def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[dict[str, Any]]:
+    """What summary.json says of each reference.
+
+    value, tolerance and passed, as the contract of `dem run` has them; quantity, kind, found; `missed`, why the case
+    says that this is missed; `problem`, why there is nothing to compare.
+    """
+    known = scalars(summary)
+    return [verdict(known, reference) for reference in references]
+
+
+def verdict(known: Mapping[str, Value], reference: Wanted) -> dict[str, Any]:
+    """One reference and the numbers, words and truths of a summary by their paths."""
+    found = known.get(reference.path)
+    value = list(reference.expected) if isinstance(reference.expected, tuple) else reference.expected
+    answer = {
+        "value": value,
+        "tolerance": reference.allowance,
+        "passed": passes(found, reference.expected, reference.allowance),
+        "quantity": reference.path,
+        "kind": reference.kind,
+        "found": found,
+    }
+    if reference.missed is not None:
+        answer["missed"] = reference.missed
+    problem = why_nothing(known, reference)
+    return answer | ({"problem": problem} if problem else {})
+
+
+def passes(found: Value, expected: bool | float | tuple[float, float] | str, allowance: float | None) -> bool:
+    """Whether what was found is what was expected; nothing found never is, nor a truth for a number."""
+    if isinstance(expected, (bool, str)):
+        return type(found) is type(expected) and found == expected
+    off = error(found, expected)
+    return off is not None and abs(off) <= (allowance or 0.0)
+
+
+def error(found: Value, expected: bool | float | Sequence[float] | str) -> float | None:
+    """How far a number is above (+) or below (−) the expected one, or outside the interval; None of anything else."""
+    if isinstance(expected, (bool, str)) or isinstance(found, (bool, str)) or found is None:
+        return None
+    low, high = expected if isinstance(expected, Sequence) else (expected, expected)
+    return min(found - low, 0.0) + max(found - high, 0.0)
+
+
+def why_nothing(known: Mapping[str, Value], reference: Wanted) -> str | None:
+    """Why there is nothing to compare; None where there is something, or where no answer is one (no failure load)."""
+    if reference.path in known:
+        found, wanted = known[reference.path], _sort(reference.expected)
+        fits = found is None or _sort(found) == wanted
+        return None if fits else f"'{reference.path}' is {_sort(found)}, not {wanted}"
+    if reference.path == "failure_load":
+        return "this kind of analysis has no failure load"
+    close = get_close_matches(reference.path, known, 1, 0.6)
+    hint = f", did you mean '{close[0]}'?" if close else ""
+    below = [path for path in known if path.startswith(f"{reference.path}.")]
+    hint = f", but {', '.join(repr(path) for path in below[:3])}" if below else hint
+    return f"the summary has no '{reference.path}'{hint}"
+
+
+def as_declared(answer: Mapping[str, Any]) -> bool:
+    """Whether a verdict is what the case says: passed, or missed where it declares that. A met known miss is not."""
+    return "problem" not in answer and bool(answer["passed"]) != ("missed" in answer)
+
+
+def in_summary(answers: Sequence[Mapping[str, Any]]) -> Any:
+    """The key `reference` of summary.json: value, tolerance and passed of one plain failure load; of several a list."""
+    if len(answers) != 1:
+        return list(answers)
+    (answer,) = answers
+    plain = answer["quantity"] == "failure_load" and answer["kind"] == "exact"
+    short = plain and not {"missed", "problem"} & set(answer) and isinstance(answer["value"], float)
+    return {key: answer[key] for key in ("value", "tolerance", "passed")} if short else answer
+
+
+def from_summary(reference: Any) -> list[dict[str, Any]]:
+    """The verdicts in the key `reference` of a summary; none where it has none."""
+    if not reference:
+        return []
+    answers = reference if isinstance(reference, list) else [reference]
+    return [{"quantity": "failure_load", "kind": "exact", **answer} for answer in answers]
+
+
+def _sort(value: Any) -> str:
+    """What a value is, in words."""
+    return "true or false" if isinstance(value, bool) else "a word" if isinstance(value, str) else "a number"
