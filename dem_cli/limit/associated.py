@@ -73,6 +73,16 @@ def limit_load(structure: Structure, friction: np.ndarray) -> LimitLoad:
     return found if stands.status == OK else stands._replace(iterations=found.iterations)
 
 
+def carried(structure: Structure, friction: np.ndarray) -> tuple[bool | None, float]:
+    """Whether any forces inside the friction cones carry the dead loads, and the error of the proof; None: not known.
+
+    friction: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
+    that do not dilate may fail all the same.
+    """
+    answer = _first_good(program_of(structure, cone_of(friction)), standing, _judge_standing)
+    return {OK: True, FALLS: False}.get(answer.status), answer.residual
+
+
 def _first_good(
     program: Program, solve: Callable[[Program, dict[str, Any]], Found], judge: Callable[[Program, Found], LimitLoad]
 ) -> LimitLoad:

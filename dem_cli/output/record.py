@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from dem_cli.model.model import Model
 
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
 STAGES = (
@@ -121,6 +124,9 @@ class Observer(Protocol):
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
+
+    def structure(self, model: Model) -> None:
+        """The structure that frames from now on show, where it is another one than that of the case; before any frame."""
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """All runs of an analysis that consists of many, at its end."""

@@ -65,7 +65,7 @@ def follow(
     relax(sim, 0.0, GRAVITY_TOLERANCE)
     track.write("gravity")
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
-    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+    soften_falls(sim, until)
     sim.control[slot.RATE] = rate / GROWTH**50
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []
@@ -96,18 +96,33 @@ def follow(
         chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
 
 
+def soften_falls(sim: Simulation, until: float) -> None:
+    """Limits the speed of blocks that fall, over a way of `until` [m]."""
+    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+
+
 def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
     """The collapse under a constant load until a block moved by `until` [m]; where it holds after all, a little more.
 
     failure: internal multiplier that was proved impossible. Rows and frames of the way up are those of the search.
     """
     relax(sim, 0.0, GRAVITY_TOLERANCE)
-    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+    soften_falls(sim, until)
     for share in STEPS_UP:
         if settle_or_fail(sim, share * failure, budget, sim.dead_scale()).state != "equilibrium":
             break
+    fall_under(sim, track, failure, until, frames, budget, HARDER)
+
+
+def fall_under(
+    sim: Simulation, track: Track, load: float, until: float, frames: int, budget: Budget, harder: float | None = None
+) -> bool:
+    """On from the present state under a constant load until a block moved by `until` [m]; rows and frames of that.
+
+    load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
+    """
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
-    load, calm, next_row, next_frame = failure, 0, 0.0, 0.0
+    calm, next_row, next_frame = 0, 0.0, 0.0
     sim.set_load(load)
     while sim.largest_displacement() < until:
         sim.advance(CHUNK, slot.HOLD_LOAD)
@@ -115,7 +130,9 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
         if calm == 2:
-            load, calm = HARDER * load, 0
+            if harder is None:
+                return False
+            load, calm = harder * load, 0
             sim.set_load(load)
         moved = sim.largest_displacement()
         if moved >= next_row:
@@ -127,3 +144,4 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
     track.write("collapse")
     track.frame("collapse")
+    return True

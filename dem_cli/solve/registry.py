@@ -10,6 +10,7 @@ from dem_cli.solve.analysis import (
     SettlementAnalysis,
     TimeHistoryAnalysis,
 )
+from dem_cli.solve.safety_table import SafetyAnalysis
 
 
 def _gravity():
@@ -32,6 +33,12 @@ def _cycle():
 
 def _settlement():
     from dem_cli.solve.settlement import run
+
+    return run
+
+
+def _safety():
+    from dem_cli.solve.safety import run
 
     return run
 
@@ -64,5 +71,6 @@ ANALYSES: dict[str, Analysis] = {
         Analysis("time-history", TimeHistoryAnalysis, _time_history),
         Analysis("fragility", FragilityAnalysis, _fragility),
         Analysis("modes", ModesAnalysis, _modes),
+        Analysis("safety", SafetyAnalysis, _safety),
     )
 }

@@ -1,0 +1,96 @@
+"""One number of a case with another value: a key path such as structure.0.ring."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ValidationError
+
+from dem_cli.errors import CaseError, CaseProblem, KeyPath
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+WHERE: KeyPath = ("analysis", "vary")
+PARTS = re.compile(r'"([^"]*)"|([^."]+)')  # of a key path; names with dots are quoted
+NO_STRUCTURE = ("title", "seed", "dem", "output", "monitor", "reference", "sweep", "calibration", "motion", "damping")
+
+
+def parts_of(text: str) -> list[str]:
+    """structure.0.ring -> ["structure", "0", "ring"]."""
+    return [quoted or plain for quoted, plain in PARTS.findall(text)]
+
+
+def value_at(case: Case, text: str) -> float | int:
+    """The number that a key has now. Raises CaseError, at analysis.vary, where there is none."""
+    if not parts_of(text):
+        raise _wrong(f"'{text}' is not a key path, such as structure.0.ring")
+    node: Any = case
+    for depth, part in enumerate(parts_of(text)):
+        if isinstance(node, BaseModel) and part in type(node).model_fields:
+            node = getattr(node, part)
+        elif isinstance(node, Mapping) and part in node:
+            node = node[part]
+        elif isinstance(node, tuple) and part.isdigit() and int(part) < len(node):
+            node = node[int(part)]
+        else:
+            raise _wrong(f"'{text}' is not in the case: {_missing(node, part, depth, text)}")
+    first = parts_of(text)[0]
+    if first in NO_STRUCTURE or (first == "analysis" and text != "analysis.load"):
+        raise _wrong(f"'{text}' is not allowed; it changes neither structure nor load")
+    if isinstance(node, bool) or not isinstance(node, (int, float)):
+        found = "has no value" if node is None else f"is {node!r}" if isinstance(node, str) else "is not one number"
+        raise _wrong(f"'{text}' is not allowed: it {found}; a number in the case can be varied")
+    return node
+
+
+def with_value(case: Case, text: str, value: float) -> Case:
+    """The case with another value of a number, validated. Raises CaseError, at analysis.between."""
+    data = case.model_dump(exclude_unset=True)
+    path = parts_of(text)
+    _put(data, path, value)
+    try:
+        return type(case).model_validate(data)
+    except ValidationError as error:
+        message = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
+        problem = CaseProblem(("analysis", "between"), f"{text} = {value:.6g} is not possible: {message}")
+        raise CaseError([problem]) from None
+
+
+def _put(data: dict[str, Any], path: list[str], value: float) -> None:
+    """Change a nested table in place; tables that were left out are made."""
+    node: Any = data
+    for part, following in zip(path, path[1:]):
+        if isinstance(node, list):
+            node = _listed(node, int(part))
+        else:
+            node.setdefault(part, {})
+            node = _listed(node, part)
+    key: Any = int(path[-1]) if isinstance(node, list) else path[-1]
+    node[key] = value
+
+
+def _listed(node: Any, key: Any) -> Any:
+    """The value at a key, made a list where it was a tuple: it is going to be changed."""
+    if isinstance(node[key], tuple):
+        node[key] = list(node[key])
+    return node[key]
+
+
+def _missing(node: Any, part: str, depth: int, text: str) -> str:
+    """What there is instead of a part of the path."""
+    around = ".".join(parts_of(text)[:depth]) or "a case"
+    if isinstance(node, tuple):
+        return f"{around} has the numbers 0 to {len(node) - 1}" if node else f"there is no [[{around}]]"
+    names = list(type(node).model_fields) if isinstance(node, BaseModel) else list(node) if isinstance(node, Mapping) else []
+    if not names:
+        return f"{around} has no '{part}'"
+    near = get_close_matches(part, names, 1)
+    return f"{around} has no '{part}'" + (f", did you mean '{near[0]}'?" if near else "")
+
+
+def _wrong(message: str) -> CaseError:
+    return CaseError([CaseProblem(WHERE, message)])
