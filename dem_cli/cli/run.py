@@ -162,10 +162,9 @@ def execute(
             found = solved(solve or load_solver(batch), case, model, recorder)
             interrupts.ignore()
             bar.stop()
-            peaks = {"peaks": writer.peaks()} if writer.peaks() else {}
             if batch is not None:
                 found = with_names(found, names, quantities)
-            summary = completed(found | peaks, loaded, model, started)
+            summary = completed(found | writer.measured(found), loaded, model, started)
             writer.close(summary)
             if plot:
                 draw(folder.path, quiet)

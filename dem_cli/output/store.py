@@ -25,6 +25,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.columns import Columns
 from dem_cli.output.disk import HeldFile
 from dem_cli.output.folder import write_error
+from dem_cli.output.held import Held
 from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, RunRow, Samples
 from dem_cli.output.runs import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
@@ -65,6 +66,7 @@ class ResultWriter:
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._rows: list[HistoryRow] = []
+        self._held = Held(self.monitors, self.quantities)
         self._files: list[HeldFile] = []
         self._vtk: tuple[GridSeries, PointSeries] | None = None
         self._series: SeriesWriter | None = None
@@ -102,6 +104,7 @@ class ResultWriter:
         if len(row.monitors) != len(self.monitors):
             raise ValueError(f"{len(row.monitors)} monitor values for {len(self.monitors)} monitors")
         self._rows.append(row)
+        self._held.row(row)
         self.last_row = row
         if len(self._rows) >= _BUFFERED_ROWS:
             self._guarded(self._flush)
@@ -119,9 +122,10 @@ class ResultWriter:
         name = TABLES.get(self.kind, TABLES["time-history"])
         self._guarded(lambda: write_runs(self.folder / name, rows, self.monitors))
 
-    def peaks(self) -> dict[str, dict[str, float | str]]:
-        """Peak, its time, last value and unit of each monitor of a time history so far, by name."""
-        return self._series.peaks() if self._series else {}
+    def measured(self, found: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+        """What a summary says of the monitors: `peaks` of a time history, else `monitors` in the last equilibrium."""
+        kept = {"peaks": self._series.peaks()} if self._series else {"monitors": self._held.values(found)}
+        return {key: values for key, values in kept.items() if values}
 
     def close(self, summary: Mapping[str, Any]) -> None:
         """Complete the files and write summary.json, last of all."""

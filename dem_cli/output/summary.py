@@ -30,6 +30,7 @@ ORDER = (
     "dispersion",
     "confidence",
     "records",
+    "monitors",
     "collapse_intensities",
     "energy_shares",
     "limit_analysis",

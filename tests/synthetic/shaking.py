@@ -94,5 +94,5 @@ def write_shaking(folder: Path, n_frames: int = 30) -> Path:
     writer.samples(shaken())
     for frame in frames:
         writer.frame(frame)
-    writer.close({**shaking_summary(), "peaks": writer.peaks()})
+    writer.close({**shaking_summary(), **writer.measured({})})
     return folder

@@ -64,7 +64,7 @@ def test_peaks_keep_their_sign_over_all_stretches(tmp_path):
     values[3, 0], values[8, 0], values[-1, 1] = 2.0, -5.0, 0.25
     for part in (slice(0, 5), slice(5, 11), slice(11, 11)):
         writer.samples(Samples(times[part], np.zeros((11, 3, 2))[part], values[part]))
-    assert writer.peaks() == {
+    assert writer.measured({})["peaks"] == {
         "top, left": {"peak": -5.0, "time": 0.8, "residual": 0.0, "unit": "m/s2"},
         "hinge": {"peak": 0.25, "time": 1.0, "residual": 0.25, "unit": "m"},
     }
