@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dem_cli.case.overrides import Override
 from dem_cli.case.reader import LoadedCase, read_case
 from dem_cli.case.schema import Case, case_model
 from dem_cli.errors import CaseError
@@ -37,9 +38,12 @@ def make_case_model() -> type[Case]:
     )
 
 
-def load_case(path: str | Path, overrides: Sequence[str] = ()) -> LoadedCase:
-    """Read and validate a case file; `overrides` are KEY=VALUE texts. Raises CaseError or UsageError."""
-    return read_case(path, make_case_model(), overrides)
+def load_case(path: str | Path, overrides: Sequence[str | Override] = (), text: str | None = None) -> LoadedCase:
+    """Read and validate a case file (or the `text` that it held), with KEY=VALUE overrides.
+
+    Raises CaseError or UsageError.
+    """
+    return read_case(path, make_case_model(), overrides, text)
 
 
 def build_model(loaded: LoadedCase) -> Model:

@@ -14,11 +14,12 @@ NAMED = ("materials", "joints")  # tables of named tables: a new name is taken f
 
 
 class Override(NamedTuple):
-    """A key path, as typed and resolved, and its new value."""
+    """A key path, as typed and resolved, its new value, and where it was asked for."""
 
     text: str
     path: KeyPath
     value: Any
+    origin: str = "--set "
 
 
 def parse(text: str) -> Override:
@@ -27,11 +28,18 @@ def parse(text: str) -> Override:
     key = key.strip()
     if not equals or not key:
         raise UsageError(f"--set {text}: must be KEY=VALUE, such as joints.dry.friction=0.6")
-    try:
-        path = single_path(tomli.loads(f"{key} = 0"))
-    except tomli.TOMLDecodeError:
-        raise UsageError(f"--set {text}: '{key}' is not a key path, such as structure.0.courses") from None
+    path = key_path(key)
+    if not path:
+        raise UsageError(f"--set {text}: '{key}' is not a key path, such as structure.0.courses")
     return Override(key, path, literal(value.strip()))
+
+
+def key_path(text: str) -> KeyPath:
+    """`joints.dry.friction` as its keys; () for a text that is no key path."""
+    try:
+        return single_path(tomli.loads(f"{text} = 0"))
+    except tomli.TOMLDecodeError:
+        return ()
 
 
 def single_path(table: dict[str, Any]) -> KeyPath:

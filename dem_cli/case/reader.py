@@ -68,11 +68,11 @@ class Source:
         path = self.as_written(problem.path)
         for override in self.overrides:
             if path and override.path == path[: len(override.path)]:
-                return f"--set {dotted(path)}: {problem.message}"
+                return f"{override.origin}{dotted(path)}: {problem.message}"
         table = path[:-1]
         for override in self.overrides:  # a key missing in a table that only an override made
             if table and table not in self.places.values and override.path[: len(table)] == table:
-                return f"--set {override.text}: {dotted(path)}: {problem.message}"
+                return f"{override.origin}{override.text}: {dotted(path)}: {problem.message}"
         line, column = self.locate(path, problem.at_key)
         where = f"{self.path}:{line}:{column}: "
         return where + (f"{dotted(path)}: " if path else "") + problem.message
@@ -87,11 +87,16 @@ class LoadedCase(Source):
         self.warnings = [self.render(doubt) for doubt in doubts(case)]
 
 
-def read_case(path: str | Path, model: type[Case], overrides: Sequence[str] = ()) -> LoadedCase:
-    """Read and validate a case file, with `KEY=VALUE` overrides. Raises CaseError or UsageError."""
+def read_case(
+    path: str | Path, model: type[Case], overrides: Sequence[str | Override] = (), text: str | None = None
+) -> LoadedCase:
+    """Read and validate a case file, with overrides (texts are KEY=VALUE). Raises CaseError or UsageError.
+
+    text: what the file held when it was read, where that was before.
+    """
     path = Path(path)
-    changes = [parse(text) for text in overrides]
-    text = read_text(path)
+    changes = [parse(change) if isinstance(change, str) else change for change in overrides]
+    text = read_text(path) if text is None else text
     data = parse_toml(path, text)
     resolved, found = [], []
     for change in changes:

@@ -24,6 +24,7 @@ from dem_cli.case.base import (
 )
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.reference import Reference
+from dem_cli.case.sweep import Sweep
 
 Name = Annotated[str, Field(min_length=1)]
 Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
@@ -32,34 +33,41 @@ Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
 class Material(CaseModel):
     """[materials.NAME]"""
 
-    density: Positive = Field(description="mass per volume [kg/m3]")
-    young: Positive | None = Field(default=None, description="Young's modulus [Pa]; not used by rigid blocks")
+    density: Positive = Field(description="mass per volume [kg/m3]", examples=[2400.0])
+    young: Positive | None = Field(
+        default=None, description="Young's modulus [Pa]; not used by rigid blocks", examples=[5e9]
+    )
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(
-        default=None, description="Poisson's ratio"
+        default=None, description="Poisson's ratio [-]; not used by rigid blocks", examples=[0.2]
     )
 
 
 class Interface(CaseModel):
     """[[interface]]: the joint between two materials, instead of the first one in [joints]."""
 
-    between: tuple[str, str] = Field(description="two names in [materials]")
-    joint: str = Field(description="a name in [joints]")
+    between: tuple[str, str] = Field(description="two names in [materials]", examples=[["stone", "wood"]])
+    joint: str = Field(description="a name in [joints]", examples=["seat"])
 
 
 class BlockTable(CaseModel):
     """[[block]]: one block, drawn by hand."""
 
-    id: Name = Field(description="name of the block")
-    vertices: Polygon | None = Field(default=None, description="corners of a convex block, in any order [m]")
+    id: Name = Field(description="name of the block", examples=["lintel"])
+    vertices: Polygon | None = Field(
+        default=None,
+        description="corners of a convex block, in any order [m]",
+        examples=[[[0.0, 0.0], [1.0, 0.0], [1.0, 0.3], [0.0, 0.3]]],
+    )
     parts: Annotated[tuple[Polygon, ...], Field(min_length=1)] | None = Field(
         default=None,
         description="instead of vertices: convex pieces of a concave block, which move as one [m]",
+        examples=[[[[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]], [[0.4, 0.0], [0.4, 0.4], [0.0, 0.4]]]],
     )
     material: str = Field(
-        default="", description="a name in [materials]; may be left out when there is only one"
+        default="", description="a name in [materials]; may be left out when there is only one", examples=["stone"]
     )
     thickness: Positive = Field(default=1.0, description="depth out of plane [m]")
-    fixed: bool = Field(default=False, description="cannot move (base, support)")
+    fixed: bool = Field(default=False, description="cannot move (base, support)", examples=[True])
 
     @model_validator(mode="after")
     def _one_shape(self) -> BlockTable:
@@ -72,23 +80,25 @@ class BlockTable(CaseModel):
 class Load(CaseModel):
     """[[load]]: a force on a block."""
 
-    block: str = Field(description="id of the block that it acts on")
-    force: Pair = Field(description="force [N]")
+    block: str = Field(description="id of the block that it acts on", examples=["lintel"])
+    force: Pair = Field(description="force [N]", examples=[[100.0, 0.0]])
     at: Pair | None = Field(
-        default=None, description="point of application [m]; default: centroid of the block"
+        default=None, description="point of application [m]; default: centroid of the block", examples=[[0.0, 1.75]]
     )
     kind: Literal["dead", "live"] = Field(
-        default="dead", description="dead: constant; live: times the multiplier"
+        default="dead", description="dead: constant; live: times the multiplier", examples=["live"]
     )
 
 
 class Settlement(CaseModel):
     """[[settlement]]: a support that is moved."""
 
-    block: str = Field(description="id of a fixed block")
-    displacement: Pair = Field(default=(0.0, 0.0), description="how far its centroid moves [m]")
+    block: str = Field(description="id of a fixed block", examples=["right-pier-base"])
+    displacement: Pair = Field(
+        default=(0.0, 0.0), description="how far its centroid moves [m]", examples=[[0.01, -0.02]]
+    )
     rotation_deg: float = Field(
-        default=0.0, description="turn about its centroid, counter-clockwise [degrees]"
+        default=0.0, description="turn about its centroid, counter-clockwise [deg]", examples=[1.0]
     )
 
     @property
@@ -105,22 +115,34 @@ OF_POINTS = ("displacement", "velocity", "acceleration")
 class Monitor(CaseModel):
     """[[monitor]]: a number followed through the run."""
 
-    name: Name | None = Field(default=None, description="label; default: made of place, quantity and component")
-    block: str | None = Field(default=None, description="id of a block: its centroid is followed")
+    name: Name | None = Field(
+        default=None, description="label; default: made of place, quantity and component", examples=["top"]
+    )
+    block: str | None = Field(
+        default=None, description="id of a block: its centroid is followed", examples=["top-right"]
+    )
     point: Pair | None = Field(
-        default=None, description="instead of block: a point of the undeformed structure [m]"
+        default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 1.9]]
     )
     between: tuple[str, str] | None = Field(
-        default=None, description="for opening and slip: ids of two blocks that share a joint at the start"
+        default=None,
+        description="for opening and slip: ids of two blocks that share a joint at the start",
+        examples=[["arch-3", "arch-4"]],
     )
     quantity: Literal["displacement", "rotation", "velocity", "acceleration", "opening", "slip"] = Field(
         default="displacement",
-        description="[m], [rad], [m/s] or [m/s2]; of a joint: opening (largest separation of its two ends, negative: "
-        "pressed) or slip of the second block against the first, at the middle, along the normal turned by +90° [m]",
+        description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
+        "a joint: opening [m] (largest separation of its two ends, negative: pressed) or slip [m] of the second "
+        "block against the first, at the middle, along the normal turned by +90°",
+        examples=["rotation"],
     )
-    component: Literal["x", "y"] | None = Field(default=None, description="default: the length of the vector")
+    component: Literal["x", "y"] | None = Field(
+        default=None, description="of the vector; default: its length", examples=["x"]
+    )
     absolute: bool = Field(
-        default=False, description="with the motion of the base; default: relative to the base that moves"
+        default=False,
+        description="true: with the motion of the base; false: relative to the base that moves",
+        examples=[True],
     )
 
     @model_validator(mode="after")
@@ -162,14 +184,16 @@ class Output(CaseModel):
 class WrittenBy(CaseModel):
     """[dem]: put into the effective case by the program."""
 
-    version: str = Field(description="version of dem that wrote this file")
+    version: str = Field(description="version of dem that wrote this file", examples=["0.1.0"])
 
 
 class Case(CaseModel):
     """A whole case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
 
-    title: str = Field(default="", description="one line; default: the name of the file")
-    dimension: Literal[2] = Field(default=2, description="only 2 so far")
+    title: str = Field(
+        default="", description="one line; default: the name of the file", examples=["A wall of 21 blocks"]
+    )
+    dimension: Literal[2] = Field(default=2, description="of space; only 2 so far")
     gravity: NonNegative = Field(default=9.81, description="acceleration towards −y [m/s2]")
     seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
     dem: WrittenBy | None = Field(default=None, description="written by the program")
@@ -191,9 +215,7 @@ class Case(CaseModel):
     )
     motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
-    sweep: dict[str, Any] | None = Field(
-        default=None, description="values to be combined; `dem run` ignores it"
-    )
+    sweep: Sweep | None = Field(default=None, description="the runs of `dem sweep`; other commands ignore it")
 
     @property
     def default_joint(self) -> str:

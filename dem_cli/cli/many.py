@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dem_cli.cli import console
@@ -48,6 +46,7 @@ def batch_of(case: Case, text: str, folder: OutputFolder, wish: Wish, quiet: boo
         return
     from dem_cli.output.journal import Journal
     from dem_cli.solve.batch import Batch
+    from dem_cli.sweep.identity import facts
 
     with Journal(folder.path.parent, folder.final.name, facts(case, text), wish.resume) as journal:
         try:
@@ -72,21 +71,6 @@ def left(journal: Journal, quiet: bool) -> None:
     """What an interrupted analysis leaves."""
     if journal.count:
         console.note(f"{journal.count:,} runs are kept; go on with --resume", quiet)
-
-
-def facts(case: Case, text: str) -> dict[str, str]:
-    """What must be the same for runs to be comparable: the case, the records that it names, and the program."""
-    from dem_cli.kernels.jit import cache_folder
-    from dem_cli.output.provenance import provenance
-
-    files = [Path(table.file) for table in case.motion if getattr(table, "file", None)]
-    records = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files))
-    program = " ".join([*(f"{name} {version}" for name, version in provenance().items()), cache_folder().name])
-    return {
-        "the case": hashlib.sha256(text.encode()).hexdigest(),
-        "a record": records.hexdigest(),
-        "the program": program,
-    }
 
 
 def with_names(found: dict[str, Any], names: Sequence[str], quantities: Sequence[str]) -> dict[str, Any]:

@@ -38,6 +38,7 @@ class Outcome(Protocol):
 ANSWERS = {
     "pushover": ("failure_load", "failure_load_bracket", "failure_mode", "displacement_at_failure"),
     "time-history": ("collapsed", "collapse_time"),
+    "safety": ("safety_factor", "safety_factor_bracket", "critical_value", "critical_value_bracket"),
     "fragility": ("median", "dispersion", "collapse_intensities"),
 }
 
@@ -61,6 +62,10 @@ class Recorder:
     def samples(self, samples: Samples) -> None:
         with self.interrupts.shielded():
             self.writer.samples(samples)
+
+    def structure(self, model: Model) -> None:
+        with self.interrupts.shielded():
+            self.writer.structure(model)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         with self.interrupts.shielded():

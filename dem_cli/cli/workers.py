@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from typing import TypeVar
 
 from dem_cli.errors import SolverError
+from dem_cli.sweep.pool import Died, each_done
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -22,27 +19,8 @@ def usable_cores() -> int:
 
 
 def side_by_side(function: Callable[[Item], Result], items: Sequence[Item], jobs: int) -> Iterator[tuple[int, Result]]:
-    """Number and result of each item, as they come; one process: in this one, in order.
-
-    function must be importable, items and results picklable. Raises SolverError where a process dies.
-    """
-    if min(jobs, len(items)) <= 1:
-        yield from ((i, function(item)) for i, item in enumerate(items))
-        return
-    others = set(multiprocessing.active_children())
-    context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
-    with ProcessPoolExecutor(min(jobs, len(items)), context, initializer=_leave_interrupts_to_parent) as pool:
-        numbers = {pool.submit(function, item): i for i, item in enumerate(items)}
-        try:
-            for done in as_completed(numbers):
-                yield numbers[done], done.result()
-        except BrokenProcessPool:
-            raise SolverError("a process of a run died, perhaps for want of memory; fewer --jobs need less") from None
-        except BaseException:  # also a caller that stops asking: what still runs is not waited for
-            for child in set(multiprocessing.active_children()) - others:
-                child.terminate()
-            raise
-
-
-def _leave_interrupts_to_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """As sweep.pool.each_done; raises SolverError where an item kills its process."""
+    for number, result in each_done(function, items, jobs):
+        if isinstance(result, Died):
+            raise SolverError("a process of a run died, perhaps for want of memory; fewer --jobs need less")
+        yield number, result

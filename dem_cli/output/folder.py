@@ -110,10 +110,10 @@ def foreign_names(folder: Path) -> list[str]:
 class OutputFolder:
     """`path` is where to write now; `commit()` gives it the final name, leaving the block discards it."""
 
-    def __init__(self, final: Path | str, *, force: bool = False):
+    def __init__(self, final: Path | str, *, force: bool = False, recover: bool = True):
         self.name = str(final)
         self.final = Path(final).resolve()
-        self.force = force
+        self.force, self.recover = force, recover  # recover: look for what killed runs left there
         self._made: list[Path] = []
         self._lock: int | None = None
         if self.final.exists() and not self.final.is_dir():
@@ -125,9 +125,10 @@ class OutputFolder:
             raise write_error(error, Path(self.name)) from None
 
     def _open(self) -> None:
-        self._recover(self.final.parent)
-        if self.final.is_dir():
-            self._recover(self.final)
+        if self.recover:
+            self._recover(self.final.parent)
+            if self.final.is_dir():
+                self._recover(self.final)
         self._refuse_foreign()
         self._make_parents()
         self.inside = self._must_be_inside()
@@ -167,7 +168,7 @@ class OutputFolder:
             return
         stem = f".{self.final.name}."
         for name in sorted(os.listdir(base)):
-            if name.startswith(f"{stem}{_NEW}-") and _is_abandoned(base / name):
+            if name.startswith(f"{stem}{_NEW}-") and abandoned(base / name):
                 shutil.rmtree(base / name, ignore_errors=True)
             elif name.startswith(f"{stem}{_OLD}-") and base != self.final:
                 if self.final.exists():
@@ -271,7 +272,8 @@ def _try_flock(handle: int) -> bool:
     return True
 
 
-def _is_abandoned(folder: Path) -> bool:
+def abandoned(folder: Path) -> bool:
+    """Whether nobody writes to this hidden folder any more."""
     try:
         handle = os.open(folder / _LOCK, os.O_RDWR)
     except FileNotFoundError:  # just made, or just about to be renamed, unless it is old
@@ -281,3 +283,18 @@ def _is_abandoned(folder: Path) -> bool:
     free = _try_flock(handle)
     os.close(handle)
     return free
+
+
+def locked(file: int) -> bool:
+    """Takes the lock, which the system frees when its owner dies; False where somebody has it."""
+    try:
+        import fcntl
+    except ImportError:  # no locks here: nobody is known to have it
+        return True
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True

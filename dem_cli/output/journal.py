@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from dem_cli.errors import UsageError
-from dem_cli.output.folder import JOURNAL, write_error
+from dem_cli.output.folder import JOURNAL, locked, write_error
 
 FORMAT = 1
 Key = tuple[Any, ...]
@@ -38,7 +38,7 @@ class Journal:
             self._file = os.open(self.path, os.O_CREAT | os.O_RDWR, 0o644)
         except OSError as error:
             raise write_error(error, self.path) from None
-        if not _locked(self._file):
+        if not locked(self._file):
             os.close(self._file)
             raise UsageError(f"{self.path.parent / name}: another run is writing its results there")
         try:
@@ -123,21 +123,6 @@ class Journal:
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
-
-
-def _locked(file: int) -> bool:
-    """Takes the lock, which the system frees when its owner dies; False where somebody has it."""
-    try:
-        import fcntl
-    except ImportError:  # no locks here: nobody is known to have it
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
 
 
 def _parsed(line: bytes) -> Any:

@@ -63,7 +63,7 @@ def test_doubts(case_file):
         "case.toml:5:12: joints.dry.friction: "
         "31 is unusual for tan(phi); an angle is given as friction_angle_deg",
         "case.toml:1:11: gravity: 981 m/s2 is unusual; on Earth it is 9.81",
-        "case.toml:11:1: sweep: not used here; one case is solved, as written above",
+        "case.toml:11:1: sweep: not used here: one case is solved, as written above; `dem sweep` runs all of them",
     ]
 
 

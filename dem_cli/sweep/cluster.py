@@ -1,0 +1,89 @@
+"""The runs of a sweep on a Dask cluster: its workers see the same files, and run the same program."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from dem_cli.errors import SolverError, UsageError
+from dem_cli.sweep.identity import program
+from dem_cli.sweep.pool import Died
+from dem_cli.sweep.run import Job, Summary
+
+PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
+
+
+@contextmanager
+def connected(address: str, folder: Path) -> Iterator[Any]:
+    """A client of the cluster at `address`, whose workers have been asked whether they are fit.
+
+    Raises UsageError where there is no cluster, where Dask is missing, or where a worker runs another program or
+    does not see `folder`.
+    """
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise UsageError("--scheduler needs Dask: pip install 'dem-cli[cluster]'") from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"--scheduler {address}: no Dask scheduler answers ({str(error).splitlines()[0]})") from None
+    try:
+        _inspect(client, address, folder)
+        yield client
+    finally:
+        client.close()
+
+
+def _inspect(client: Any, address: str, folder: Path) -> None:
+    """Whether all workers are fit."""
+    from dask.distributed import TimeoutError as TooLate
+
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TooLate:
+        raise UsageError(f"--scheduler {address}: the cluster has no workers") from None
+    probe = folder / f".probe-{secrets.token_hex(4)}"
+    probe.write_text("")
+    try:
+        blind = [worker for worker, sees in client.run(os.path.exists, str(probe)).items() if not sees]
+        if blind:
+            raise UsageError(f"--scheduler {address}: worker {blind[0]} does not see {folder}: put the results on a "
+                             "file system that all workers share")  # fmt: skip
+        for worker, theirs in client.run(program, on_error="return").items():
+            if theirs != program():
+                raise UsageError(f"--scheduler {address}: worker {worker} runs another program: {theirs!s:.300}; "
+                                 f"here it is {program()}")  # fmt: skip
+    finally:
+        probe.unlink(missing_ok=True)
+
+
+def on_cluster(
+    client: Any, do: Callable[[Job], Summary], jobs: Sequence[Job]
+) -> Iterator[tuple[int, Summary | Died]]:
+    """Number and result of each job as they come. A job whose worker dies is done again by another, a few times."""
+    from dask.distributed import CancelledError, KilledWorker, as_completed
+
+    if not jobs:
+        return
+    numbers = {job.id: number for number, job in enumerate(jobs)}
+    futures = client.map(do, jobs, key=list(numbers), pure=False, batch_size=200)
+    try:
+        for future in as_completed(futures):
+            error = future.exception() if future.status == "error" else None
+            if isinstance(error, KilledWorker):
+                yield numbers[future.key], Died()
+            elif future.cancelled():
+                raise SolverError("the cluster went away; what was done is kept, run the same command again")
+            else:
+                yield numbers[future.key], future.result()
+            future.release()
+    except CancelledError:
+        raise SolverError("the cluster went away; what was done is kept, run the same command again") from None
+    except BaseException:
+        client.cancel(futures)
+        raise

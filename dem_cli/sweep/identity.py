@@ -1,0 +1,40 @@
+"""What makes two runs the same: the case, the records that it names, and the program."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dem_cli.output.provenance import provenance
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+DIGITS = 12  # of a name: two of a million runs meet with a chance of one in 500
+
+
+@cache
+def program() -> str:
+    """Versions of everything that computes, and the sources of the kernels."""
+    from dem_cli.kernels.jit import cache_folder
+
+    return " ".join([*(f"{name} {version}" for name, version in provenance().items()), cache_folder().name])
+
+
+def facts(case: Case, text: str) -> dict[str, str]:
+    """What must be the same for runs to be comparable, in words for users. text: the effective case."""
+    files = [Path(table.file) for table in case.motion if getattr(table, "file", None)]
+    records = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files))
+    return {
+        "the case": hashlib.sha256(text.encode()).hexdigest(),
+        "a record": records.hexdigest(),
+        "the program": program(),
+    }
+
+
+def name_of(found: Mapping[str, str]) -> str:
+    """A short name for a run with these facts: the same for the same run, today and on another machine."""
+    return hashlib.sha256("\n".join(found.values()).encode()).hexdigest()[:DIGITS]

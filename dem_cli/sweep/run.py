@@ -1,0 +1,173 @@
+"""All runs of a sweep, each in a folder of its own: what is there is not done again, what fails stops nobody."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from dem_cli import api
+from dem_cli.case.overrides import Override
+from dem_cli.case.reader import LoadedCase
+from dem_cli.case.writer import case_text
+from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.output.folder import SUMMARY, abandoned
+from dem_cli.sweep.identity import facts, name_of
+from dem_cli.sweep.plan import Plan, Run
+from dem_cli.sweep.pool import Died
+
+RUNS = "runs"
+FAILED, WAITING = "failed", "waiting"
+FEW = 5  # mistakes that are listed
+LIGHT = (("output.frames", 0), ("analysis.follow", 0.0))  # what a table of answers does not need
+DIED = "its process died, twice; perhaps for want of memory"
+Summary = Mapping[str, Any]
+
+
+class Job(NamedTuple):
+    """All that a process elsewhere needs to know of a run."""
+
+    id: str
+    path: str  # of the case file, for messages and records beside it
+    text: str  # what it holds
+    overrides: tuple[Override, ...]
+    folder: str  # of the results
+
+
+class Sweep(NamedTuple):
+    """A sweep that can be done: one job per row of its table; equal runs have equal jobs."""
+
+    plan: Plan
+    jobs: tuple[Job | None, ...]  # None: the changes of this run make no valid case
+    reasons: dict[int, str]  # why not, by row
+    base: dict[str, Any]  # value in the file of each key that some runs leave alone
+
+
+Say = Callable[[int, int], None]  # is told how many runs are done, and how many of them failed
+
+
+def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[str | Override], light: bool) -> Sweep:
+    """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it.
+
+    given: overrides of the whole sweep. light: nothing is kept that the table of answers does not need.
+    """
+    extra = _light(loaded, plan) if light else ()
+    jobs: list[Job | None] = []
+    wrong: dict[int, CaseError] = {}
+    path = loaded.path.resolve()
+    for row, run in enumerate(plan.runs):
+        overrides = (*given, *extra, *run.overrides)
+        try:
+            case = api.load_case(loaded.path, overrides, loaded.text).case
+        except CaseError as error:
+            wrong[row] = error
+            jobs.append(None)
+            continue
+        name = name_of(facts(case, case_text(case)))
+        jobs.append(Job(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))  # type: ignore[arg-type]
+    mistaken = _mistaken(plan.runs, wrong)
+    if mistaken:
+        raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
+    return Sweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
+
+
+def _light(loaded: LoadedCase, plan: Plan) -> tuple[Override, ...]:
+    """No snapshots, and no following of the collapse."""
+    swept = {override.path[:2] for run in plan.runs for override in run.overrides}
+    other_kinds = swept & {("analysis",), ("analysis", "kind")}
+    follows = "follow" in type(loaded.case.analysis).model_fields and not other_kinds
+    keys = [(key, value) for key, value in LIGHT if follows or not key.startswith("analysis")]
+    return tuple(Override(key, tuple(key.split(".")), value) for key, value in keys)
+
+
+def _mistaken(runs: Sequence[Run], wrong: Mapping[int, CaseError]) -> list[str]:
+    """Messages of listed values that are wrong wherever they occur, or of everything, if all is wrong."""
+    if len(wrong) == len(runs):
+        return [str(error) for error in wrong.values()]
+    fine = {(c.key, repr(c.value)) for row, run in enumerate(runs) if row not in wrong for c in run.changes}
+    return [
+        str(error)
+        for row, error in wrong.items()
+        if not runs[row].sampled and any((c.key, repr(c.value)) not in fine for c in runs[row].changes)
+    ]
+
+
+def _base(loaded: LoadedCase, plan: Plan) -> dict[str, Any]:
+    """What the file says of keys that not every run changes."""
+    found = {}
+    for key in plan.keys:
+        if all(key in run.values for run in plan.runs):
+            continue
+        node: Any = loaded.case
+        for name in key.split("."):
+            if isinstance(node, Mapping):
+                node = node.get(name)
+            elif isinstance(node, tuple):
+                node = node[int(name)] if name.isdigit() and int(name) < len(node) else None
+            else:
+                node = getattr(node, name, None)
+        if isinstance(node, (int, float, str, bool)):
+            found[key] = node
+    return found
+
+
+def finished(sweep: Sweep) -> dict[str, Summary]:
+    """Summaries, by name of the run, that are there already; leftovers of killed runs are removed."""
+    found: dict[str, Summary] = {}
+    for job in sweep.jobs:
+        if job is not None and job.id not in found:
+            summary = summary_in(Path(job.folder))
+            if summary is not None:
+                found[job.id] = summary
+    return found
+
+
+def summary_in(folder: Path) -> Summary | None:
+    """The summary of a run that came to its end, be it failure."""
+    try:
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return summary if isinstance(summary, dict) and summary.get("status") not in (None, "interrupted") else None
+
+
+def tidy(folder: Path) -> None:
+    """Remove what killed runs left in the folder of runs."""
+    runs = folder / RUNS
+    for entry in os.scandir(runs) if runs.is_dir() else ():
+        if entry.name.startswith(".") and abandoned(Path(entry.path)):
+            shutil.rmtree(entry.path, ignore_errors=True)
+
+
+Spread = Callable[[Sequence[Job]], Iterator[tuple[int, Summary | Died]]]  # does jobs somewhere, in any order
+
+
+def carried_out(sweep: Sweep, known: Mapping[str, Summary], spread: Spread) -> Iterator[tuple[str, Summary]]:
+    """Name and summary of each run as it ends; `known` ones are not done again."""
+    left = list({job.id: job for job in sweep.jobs if job is not None and job.id not in known}.values())
+    for number, summary in spread(left):
+        if isinstance(summary, Died):
+            summary = failure(left[number], DIED)
+        yield left[number].id, summary
+
+
+def failure(job: Job, reason: str, trace: str | None = None) -> Summary:
+    """The record of a run that could not be done, left in its folder so that it is not tried again."""
+    from dem_cli import __version__
+    from dem_cli.output.folder import OutputFolder
+    from dem_cli.output.summary import write_summary
+
+    summary = {"title": "", "kind": "", "version": __version__, "status": FAILED, "reason": reason}
+    summary |= {"traceback": trace} if trace else {}
+    with OutputFolder(job.folder, force=True, recover=False) as folder:
+        write_summary(folder.path, summary)
+        folder.commit()
+    return summary
+
+
+def solved(summary: Summary) -> bool:
+    """Whether a run has an answer."""
+    return not str(summary["status"]).startswith((FAILED, "not converged", WAITING))
