@@ -12,6 +12,7 @@ from typing import Any, TextIO
 
 from dem_cli.cli.fragility import fragility_rows
 from dem_cli.cli.modes import mode_rows
+from dem_cli.cli.safety import safety_rows
 from dem_cli.cli.reference import reference_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
@@ -119,6 +120,7 @@ def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbo
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
     lines = [str(summary["title"])]
     rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
+    rows += safety_rows(summary)
     rows += [*_sureness_rows(summary), *_cost_rows(summary)]
     rows += [("warning", text) for text in summary.get("warnings", ())]
     if verbose:

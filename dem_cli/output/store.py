@@ -117,6 +117,19 @@ class ResultWriter:
         if self._series.n_waiting >= _BUFFERED_SAMPLES:
             self._guarded(self._flush)
 
+    def structure(self, model: Model) -> None:
+        """Frames to come are of this structure, not of that of the case. Raises ValueError after the first frame."""
+        if self.n_frames:
+            raise ValueError("frames of another structure are kept already")
+        self.model, self._rest = model, rest_vertices(model)
+
+        def store() -> None:
+            del self.dem["model"]
+            _store_model(self.dem.create_group("model"), model)
+            self._flush()
+
+        self._guarded(store)
+
     def runs(self, rows: Sequence[RunRow]) -> None:
         """Keep the table of an analysis that consists of many runs."""
         name = TABLES.get(self.kind, TABLES["time-history"])

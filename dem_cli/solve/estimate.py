@@ -23,6 +23,7 @@ STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of case
     "gravity": (500, 10_000),
     "pushover": (10_000, 200_000),
     "settlement": (20_000, 100_000),
+    "safety": (2_000, 60_000),  # each of its runs
     "modes": (200, 10_000),
 }
 IN_SECONDS = ("time-history", "fragility")  # kinds that solve.estimate_shaking knows
@@ -55,6 +56,7 @@ def describe(case: Case, model: Model) -> Rows:
         *_stiffness(case, sim),
         ("kinematics", _kinematics(wanted, moving)),
         ("time step", _time_step(sim)),
+        *_runs(case),
         ("cost", _cost(case, sim)),
         ("load", _load(case, model)),
         ("monitors", _monitors(case)),
@@ -158,11 +160,26 @@ def _time_step(sim: Simulation) -> str:
     return f"{text}; with real masses {names} would limit it to {real:.2g} s"
 
 
+def _runs(case: Case) -> Rows:
+    """Of a safety analysis: what is varied, and how many runs that takes. Raises CaseError where it cannot be."""
+    if case.analysis.kind != "safety":
+        return []
+    from dem_cli.solve.safety import expected, scale_of
+
+    scale, (fewest, most) = scale_of(case), expected(case)
+    named = "F" if case.analysis.of_strength else case.analysis.vary
+    return [("runs", f"{fewest} to {most}, {named} between {scale.low:g} and {scale.high:g}")]
+
+
 def _cost(case: Case, sim: Simulation) -> str:
     """Seconds of one core, from the steps that such an analysis took elsewhere."""
     kind, points = case.analysis.kind, len(sim.joints.kn)
     few, many = STEPS.get(kind, STEPS["pushover"])
     few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
+    if kind == "safety":
+        from dem_cli.solve.safety import expected
+
+        few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
     nanoseconds = NANOSECONDS[sim.kinematics]
     seconds = [1e-9 * steps * points * nanoseconds for steps in (few, many)]
     basis = f"{few:,} to {many:,} steps × {points:,} points × {nanoseconds} ns"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from dem_cli.case.vary import impossible, value_at, with_value
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.laws.strength import reduced, strengths
 from dem_cli.model.assemble import assembly
@@ -25,7 +26,6 @@ from dem_cli.solve.run import Outcome
 from dem_cli.solve.safety_bound import Bound, bound
 from dem_cli.solve.safety_trial import Told, decide, fall
 from dem_cli.solve.trial import OnlyProgress
-from dem_cli.solve.vary import value_at, with_value
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -72,8 +72,8 @@ class Study:
         if status == "ok" and None in ends:
             status = self._nowhere(ends)
         self._check(ends, known)
-        shown = self._show(ends)
-        return Outcome(self._answer(status, ends, known) | shown | self._facts(ends))
+        self._show(ends)
+        return Outcome(self._answer(status, ends, known) | self._facts(ends))
 
     # -- runs --------------------------------------------------------------------------------------
 
@@ -93,7 +93,11 @@ class Study:
     def _run(self, value: float) -> None:
         text = f"{len(self.runs) + 1}. run: {self._named(value)}"
         self.observer.progress(text, math.nan, math.nan, None)
-        told = decide(*self.variant(value), OnlyProgress(self.observer), value)
+        try:
+            told = decide(*self.variant(value), OnlyProgress(self.observer), value)
+        except CaseError as error:  # both ends of the range are possible
+            self.warnings.append(str(error))
+            raise Undecided(value) from None
         self.steps += told.run.steps
         self.compiling += told.job.clock.compiling
         self.runs.append(told.run.summary())
@@ -117,9 +121,7 @@ class Study:
         if not self.analysis.limit:
             return None
         self.observer.progress("limit analysis", 0.0, 0.0, None)
-        found = bound(self.variant, self.scale, self.analysis.resolution)
-        self.compiling += 0.0
-        return found
+        return bound(self.variant, self.scale, self.analysis.resolution)
 
     # -- what they say -----------------------------------------------------------------------------
 
@@ -193,25 +195,24 @@ class Study:
 
     # -- what is to be seen ------------------------------------------------------------------------
 
-    def _show(self, ends: Ends) -> dict[str, Any]:
+    def _show(self, ends: Ends) -> None:
         """Rows and frames of the last structure that stands and of the first that fails, and its collapse."""
         standing, failing = (self.told.get(v) if v is not None else None for v in ends)
         base = failing or standing
         if base is None:
-            return {}
+            return
         if base.model is not self.model:
             self.observer.structure(base.model)
         if standing is not None and standing.model.n_blocks == base.model.n_blocks:
             self._hand_over(standing, base)
         if failing is None:
-            return {}
-        self._hand_over(failing, base)
+            return
         if self.analysis.follow == 0.0:
-            return {}
+            self._hand_over(failing, base)
+            return
         quiet = fall(failing, self.observer, self.analysis.follow, self.case.output.frames)
         if quiet is not None:
             self.warnings.append(f"the collapse was not followed to its end: {quiet}")
-        return {}
 
     def _hand_over(self, told: Told, base: Told) -> None:
         """Rows, and the frame as a displacement of the structure that is drawn."""
@@ -242,6 +243,14 @@ def scale_of(case: Case) -> Scale:
     return Scale(low, high, ratio=False, whole=whole)
 
 
+def expected(case: Case) -> tuple[int, int]:
+    """Fewest and most runs that are likely: two next to the guess of limit analysis, or a bisection of the range."""
+    analysis, scale = case.analysis, scale_of(case)
+    width = math.log(scale.high / scale.low) if scale.ratio else (scale.high - scale.low) / max(abs(scale.high), abs(scale.low))
+    finest = 1.0 / (scale.high - scale.low) if scale.whole else analysis.resolution
+    return 2 + analysis.scan, 2 + analysis.scan + math.ceil(math.log2(max(width / finest, 1.0)))
+
+
 def changed(case: Case, key: str, value: float) -> Case:
     """The case with another value of a key, a whole number where it is one."""
     return with_value(case, key, int(value) if isinstance(value_at(case, key), int) else value)
@@ -249,25 +258,25 @@ def changed(case: Case, key: str, value: float) -> Case:
 
 def checked_model(case: Case, value: float) -> Model:
     """The model of a changed case. Raises CaseError, at analysis.between, where it is no structure."""
-    where = f"{case.analysis.vary} = {value:.6g} is not possible: "
     try:
         made = assembly(case)
         found = problems(case, made.model, made.blocks)
     except CaseError as error:
         found = list(error.problems)
     if found:
-        raise CaseError([CaseProblem(("analysis", "between"), where + found[0].message)])
+        raise impossible(f"{case.analysis.vary} = {value:.6g}", found)
     return made.model
 
 
 def weaker(case: Case, factor: float) -> Case:
-    """The case with strengths divided by a factor."""
-    which = case.analysis.reduce
-    try:
-        joints = {name: reduced(joint, factor, which) for name, joint in case.joints.items()}
-    except ValidationError as error:
-        message = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-        raise CaseError([CaseProblem(("analysis", "between"), f"F = {factor:.5g} is not possible: {message}")]) from None
+    """The case with strengths divided by a factor. Raises CaseError where a law does not allow what comes out."""
+    joints = {}
+    for name, joint in case.joints.items():
+        try:
+            joints[name] = reduced(joint, factor, case.analysis.reduce)
+        except ValidationError as error:
+            said = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
+            raise impossible(f"F = {factor:.5g}", [CaseProblem(("joints", name), said)]) from None
     return case.model_copy(update={"joints": joints})
 
 

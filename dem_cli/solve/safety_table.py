@@ -24,15 +24,19 @@ class SafetyAnalysis(LiveAnalysis):
         default=STRENGTH,
         description="strength: joints with their strength divided by a factor; or the key of any number in the case, "
         "such as structure.0.ring: the last value of it with which the structure stands",
+        examples=["structure.0.ring"],
     )
     reduce: tuple[Literal["friction", "cohesion", "tension"], ...] = Field(
         default=("friction", "cohesion", "tension"), min_length=1, description="which strengths the factor divides"
     )
     between: tuple[float, float] | None = Field(
-        default=None, description="values between which failure is looked for; default for strength: 0.05 and 20"
+        default=None,
+        description="values between which failure is looked for [unit of the key] [-]; "
+        "default: 0.05 and 20 for strength; a key needs them",
+        examples=[[0.1, 0.3]],
     )
     resolution: float = Field(
-        default=0.002, ge=1e-5, le=0.1, description="width of the bracket around the answer, relative"
+        default=0.002, ge=1e-5, le=0.1, description="width of the bracket over the answer [-]"
     )
     scan: int = Field(
         default=0,
@@ -41,12 +45,16 @@ class SafetyAnalysis(LiveAnalysis):
         description="first try so many equal parts of between: shows structures that fail, stand and fail again",
     )
     load: NonNegative | None = Field(
-        default=None, description="multiplier of the live load, constant; default: 1 for pattern = live, else 0"
+        default=None,
+        description="multiplier of the live load, which stays [-]; default: 1 for pattern = live, else 0",
+        examples=[0.1],
     )
     limit: bool = Field(
         default=True, description="limit analysis first: a bound, and where to look; runs decide all the same"
     )
-    follow: float = Field(default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]")
+    follow: float = Field(
+        default=0.0, ge=0.0, description="follow the collapse until a block moved this far [m]", examples=[0.02]
+    )
 
     @model_validator(mode="after")
     def _range(self) -> SafetyAnalysis:

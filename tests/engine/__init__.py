@@ -40,6 +40,7 @@ class Records:
     rows: list[HistoryRow] = field(default_factory=list)
     frames: list[Frame] = field(default_factory=list)
     stretches: list[Samples] = field(default_factory=list)
+    models: list[Model] = field(default_factory=list)
 
     def frame(self, frame: Frame) -> None:
         self.frames.append(frame)
@@ -49,6 +50,9 @@ class Records:
 
     def samples(self, samples: Samples) -> None:
         self.stretches.append(samples)
+
+    def structure(self, model: Model) -> None:
+        self.models.append(model)
 
     @property
     def history(self) -> Samples:

@@ -21,7 +21,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "motion": {"case.base", "case.schema"},
     "solve": {
         "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base",
-        "case.schema",
+        "case.schema", "case.vary",
     },
     "calibrate": {"laws", "case.base", "case.schema"},
     "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},

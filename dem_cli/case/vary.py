@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from dem_cli.errors import CaseError, CaseProblem, KeyPath
-
-if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+from dem_cli.case.messages import problems_from
+from dem_cli.case.schema import Case
+from dem_cli.case.words import nearest
+from dem_cli.errors import CaseError, CaseProblem, KeyPath, plain
 
 WHERE: KeyPath = ("analysis", "vary")
 PARTS = re.compile(r'"([^"]*)"|([^."]+)')  # of a key path; names with dots are quoted
@@ -55,9 +54,13 @@ def with_value(case: Case, text: str, value: float) -> Case:
     try:
         return type(case).model_validate(data)
     except ValidationError as error:
-        message = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-        problem = CaseProblem(("analysis", "between"), f"{text} = {value:.6g} is not possible: {message}")
-        raise CaseError([problem]) from None
+        raise impossible(f"{text} = {value:.6g}", problems_from(error, type(case), data)) from None
+
+
+def impossible(what: str, found: Sequence[CaseProblem]) -> CaseError:
+    """The error, at analysis.between, of a value with which the case makes no sense."""
+    problems = [problem for problem in found if problem.path != WHERE]
+    return CaseError([CaseProblem(("analysis", "between"), f"{what} is not possible: {plain((problems or found)[0])}")])
 
 
 def _put(data: dict[str, Any], path: list[str], value: float) -> None:
@@ -85,11 +88,13 @@ def _missing(node: Any, part: str, depth: int, text: str) -> str:
     around = ".".join(parts_of(text)[:depth]) or "a case"
     if isinstance(node, tuple):
         return f"{around} has the numbers 0 to {len(node) - 1}" if node else f"there is no [[{around}]]"
-    names = list(type(node).model_fields) if isinstance(node, BaseModel) else list(node) if isinstance(node, Mapping) else []
-    if not names:
-        return f"{around} has no '{part}'"
-    near = get_close_matches(part, names, 1)
-    return f"{around} has no '{part}'" + (f", did you mean '{near[0]}'?" if near else "")
+    names: list[str] = []
+    if isinstance(node, BaseModel):
+        names = list(type(node).model_fields)
+    elif isinstance(node, Mapping):
+        names = list(node)
+    near = nearest(part, names)
+    return f"{around} has no '{part}'" + (f", {near}" if near else "")
 
 
 def _wrong(message: str) -> CaseError:
