@@ -43,13 +43,17 @@ class StructureBase(CaseModel):
     After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks.
     """
 
-    id: str = Field(default="", description="prefix of the block names; default: the kind, made unique")
-    material: str = Field(
-        default="", description="a name in [materials]; may be left out when there is only one"
+    id: str = Field(
+        default="", description="prefix of the block names; default: the kind, made unique", examples=["tower"]
     )
-    origin: Pair = Field(default=(0.0, 0.0), description="where the structure's own origin is placed [m]")
+    material: str = Field(
+        default="", description="a name in [materials]; may be left out when there is only one", examples=["stone"]
+    )
+    origin: Pair = Field(
+        default=(0.0, 0.0), description="where the structure's own origin is placed [m]", examples=[[3.0, 0.0]]
+    )
     rotation_deg: float = Field(
-        default=0.0, description="turned about its origin, counter-clockwise [degrees]"
+        default=0.0, description="turned about its origin, counter-clockwise [deg]", examples=[5.0]
     )
 
     @property

@@ -39,7 +39,9 @@ class Reference(CaseModel):
         default="exact",
         description="where the value comes from: exact (mechanics), experiment, or another code's answer",
     )
-    source: str = Field(default="", description="where the value comes from, in words")
+    source: str = Field(
+        default="", description="where the value comes from, in words", examples=["closed form: slides at tan φ"]
+    )
     missed: Word | None = Field(
         default=None,
         description="why the value is known to be missed; fails as soon as it is met",

@@ -26,13 +26,16 @@ class Sweep(CaseModel):
         default=False, description="take the lists value by value, side by side, instead of combining them"
     )
     samples: Annotated[int, Field(ge=1)] | None = Field(
-        default=None, description="how many points of the Latin hypercube; needed where keys are drawn"
+        default=None, description="how many points of the Latin hypercube; needed where keys are drawn", examples=[100]
     )
     run: tuple[Changes, ...] = Field(
-        default=(), description="[[sweep.run]]: runs given one by one, each with its own keys; `name` is a label"
+        default=(),
+        description="[[sweep.run]]: runs given one by one, each with its own keys; `name` is a label",
+        examples=[[{"name": "weak", "joints.dry.friction": 0.5}]],
     )
     bundle: dict[str, dict[str, Changes]] = Field(
         default={},
         description="[sweep.bundle.AXIS.NAME]: keys that change together; AXIS is then a key of the sweep with the "
         "values NAME, and is combined over all of them unless a list or a run says otherwise",
+        examples=[{"wall": {"low": {"structure.0.courses": 6}, "high": {"structure.0.courses": 10}}}],
     )

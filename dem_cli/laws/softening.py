@@ -20,7 +20,7 @@ from dem_cli.laws.law import Law
 
 
 class Softening(CaseModel):
-    """softening = { ... } of a Coulomb joint."""
+    """softening of a Coulomb joint: friction that falls with the slip; constant, then linear, then constant."""
 
     residual: float = Field(
         ge=0.0, le=1.0, description="share β of the friction that is left in the end [-]", examples=[0.8]

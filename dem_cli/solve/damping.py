@@ -72,12 +72,13 @@ class Element(CaseModel):
 
 
 class DampingTable(CaseModel):
-    """[damping]; joints have at most one of contact_fraction, restitution, rayleigh and stiffness."""
+    """[damping]: joints have at most one of contact_fraction, restitution, rayleigh and stiffness."""
 
     contact_fraction: Annotated[float, Field(ge=0.0, le=10.0)] | None = Field(
         default=None,
-        description="dashpots of the joints as a fraction of critical at the frequency of a block on its joint; "
+        description="dashpots of the joints as a fraction of critical at the frequency of a block on its joint [-]; "
         f"{DEFAULT_FRACTION} without a [damping] table",
+        examples=[DEFAULT_FRACTION],
     )
     restitution: Annotated[float, Field(gt=0.0, lt=1.0)] | Literal["housner"] | None = Field(
         default=None,

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
-from typing import Any
 
 import tomli_w
-from pydantic_core import PydanticUndefined
 
 from dem_cli.bench.table import lines_of
 from dem_cli.case.base import CaseModel
+from dem_cli.case.keys import Key, Table
 from dem_cli.laws.stiffness import StiffJoint
 from lawpages.pages import PAGES
 from lawpages.panels import Page
@@ -77,35 +77,16 @@ def parameters(page: Page) -> list[str]:
 
 def row(model: type[CaseModel], key: str) -> tuple[str, ...]:
     """Key, unit, range, default and meaning of a key."""
-    field = model.model_fields[key]
-    meaning = field.description or ""
-    unit = "–"
-    if " [" in meaning:
-        before, _, after = meaning.partition(" [")
-        unit, _, rest = after.partition("]")
-        meaning = before + rest
-    schema = model.model_json_schema()["properties"][key]
-    return f"`{key}`", unit, limits(schema), default(field.default), meaning.replace("|", "\\|")
+    table = Table(("joints", "NAME"), model, False, "law", (), "")
+    found = Key(table, key, model.model_fields[key])
+    default = "**required**" if found.required else found.default or "–"
+    return f"`{key}`", " ".join(found.units) or "–", limits(found.allowed), default, found.meaning.replace("|", "\\|")
 
 
-def limits(schema: dict[str, Any]) -> str:
-    """The range of a number, from its JSON schema: '> 0', '0 to 1'."""
-    found = next((s for s in (schema, *schema.get("anyOf", ())) if s.keys() & BOUNDS.keys()), {})
-    low = next((f"{sign} {found[key]:g}" for key, sign in BOUNDS.items() if key in found and sign[0] in "≥>"), "")
-    high = next((f"{sign} {found[key]:g}" for key, sign in BOUNDS.items() if key in found and sign[0] in "≤<"), "")
-    return ", ".join(filter(None, (low, high))) or "–"
-
-
-BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
-
-
-def default(value: Any) -> str:
-    """What is used where the key is left out."""
-    if value is PydanticUndefined:
-        return "**required**"
-    if value is None:
-        return "–"
-    return f"{value:g}" if isinstance(value, float) else f'"{value}"'
+def limits(allowed: str) -> str:
+    """The range of a number out of what is allowed: '> 0', '≥ 0 and ≤ 1'."""
+    found = re.search(r"(?:number|integer) ([><≥≤].*?)(?: or|$)", allowed)
+    return found[1] if found else "–"
 
 
 def index() -> str:

@@ -1,0 +1,143 @@
+"""Which keys and tables of a case file a user means: `joints.dry.friction`, `structure.arch`, `friction`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from difflib import get_close_matches
+from typing import Any, NamedTuple
+
+from pydantic import BaseModel
+
+from dem_cli.case.keys import NAME, Key, Table, tables
+from dem_cli.errors import UsageError
+
+CLOSE = 0.75  # a name that is so near to a key is a slip, not a material or a joint of that name
+PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
+    "joints": "docs/laws/{kind}.md",
+    "joints.NAME.profile": "docs/profile.md",
+    "joints.NAME.softening": "docs/laws/friction-softening.md",
+    "imperfection": "docs/case_imperfections.md",
+    "damping": "docs/numerics.md",
+    "motion": "docs/motion.md",
+    "calibration": "docs/profile.md",
+    "reference": "docs/guide/verify.md",
+    "sweep": "docs/guide/sweeps.md",
+    "analysis.fragility": "docs/fragility.md",
+    "analysis.modes": "docs/modes.md",
+    "analysis": "docs/numerics.md",
+}
+
+
+class Entry(NamedTuple):
+    """A key as it is in tables of some kinds, or, without a key, the table itself."""
+
+    table: Table
+    key: Key | None
+    kinds: tuple[str, ...]
+
+    @property
+    def path(self) -> str:
+        return self.key.path if self.key else ".".join(self.table.path)
+
+    @property
+    def page(self) -> str:
+        """The page of the documentation that says most about it."""
+        steps, page = list(self.table.path), ""
+        while steps and not page:
+            page = PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
+            page = page or PAGES.get(".".join(steps), "")
+            steps.pop()
+        if "{kind}" in page:
+            return page.format(kind=self.kinds[0]) if len(self.kinds) == 1 else "docs/laws/README.md"
+        return page or "docs/case.md"
+
+
+def find(model: type[BaseModel], query: str) -> list[Entry]:
+    """Every key or table that `query` may mean, alike ones together. Raises UsageError where there is none."""
+    words = [word for word in re.sub(r"[\[\]\"' ]", "", query).split(".") if word and not word.isdigit()]
+    names: dict[tuple[str, ...], set[str]] = {}
+    for table in tables(model):
+        names.setdefault(table.path, set()).update(table.declared.model_fields)
+    found = [(rank, one) for one in entries(model) if (rank := _rank(words, one, names[one.table.path])) is not None]
+    if not words or not found:
+        raise UsageError(unknown(model, query, words))
+    best = min(rank for rank, _ in found)
+    return _together(entry for rank, entry in found if rank == best)
+
+
+def entries(model: type[BaseModel]) -> Iterator[Entry]:
+    """All tables and all keys, of each kind for itself; keys whose value can only be a table as that table."""
+    for table in tables(model):
+        if table.path:
+            yield Entry(table, None, table.kinds)
+        yield from (Entry(table, key, table.kinds) for key in table.keys if not key.only_tables)
+
+
+def _rank(words: Sequence[str], entry: Entry, names: Collection[str]) -> tuple[int, int] | None:
+    """How badly words name an entry: whether its path is cut in front, words that are a user's own names; or None."""
+    steps: list[Any] = list(entry.table.path)
+    if entry.kinds:
+        steps.insert(2 if steps[1:2] == [NAME] else 1, set(entry.kinds))
+    if entry.key:
+        steps.append(entry.key.name)
+    own = _own_names(words, steps, names)
+    if own is not None:
+        return 0, own
+    for left_out in range(1, len(steps)):
+        if isinstance(steps[left_out], str) and steps[left_out] != NAME:
+            own = _own_names(words, steps[left_out:], names)
+            if own is not None:
+                return 1, own
+    only_kind = entry.key is None and bool(entry.table.tag) and list(words) == list(entry.kinds)
+    return (1, 0) if only_kind else None
+
+
+def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str]) -> int | None:
+    """How many of the words are a user's own names where words name the steps one by one; None where they do not.
+
+    names: keys of such tables, which a last word is not likely to miss by a letter.
+    """
+    if not steps:
+        return None if words else 0
+    step, rest = steps[0], steps[1:]
+    if isinstance(step, set) or step == NAME:  # may be left out
+        found = _own_names(words, rest, names)
+        if found is not None or not words:
+            return found
+        if isinstance(step, set):
+            return _own_names(words[1:], rest, names) if words[0] in step else None
+        if len(words) == 1 and get_close_matches(words[0], names, 1, CLOSE):
+            return None
+        found = _own_names(words[1:], rest, names)
+        return None if found is None else found + 1
+    return _own_names(words[1:], rest, names) if words and words[0] == step else None
+
+
+def _together(found: Iterator[Entry]) -> list[Entry]:
+    """Entries that say the same of several kinds as one."""
+    kept: dict[tuple[Any, ...], Entry] = {}
+    for entry in found:
+        key = entry.key
+        same: tuple[Any, ...] = (entry.path, entry.kinds)
+        if key is not None and not key.names_kind:
+            same = (entry.path, key.description, key.allowed, key.default)
+        known = kept.get(same)
+        kept[same] = entry if known is None else known._replace(kinds=tuple(dict.fromkeys(known.kinds + entry.kinds)))
+    return list(kept.values())
+
+
+def unknown(model: type[BaseModel], query: str, words: Sequence[str]) -> str:
+    """What to say about a key that does not exist: the nearest ones, best first."""
+    full: dict[str, str] = {}
+    for entry in entries(model):
+        steps = [step for step in entry.path.split(".") if step != NAME]
+        for short in (".".join(steps), steps[-1], *(".".join((steps[0], kind, *steps[1:])) for kind in entry.kinds)):
+            full.setdefault(short, ".".join(steps))
+    without_names = [word for i, word in enumerate(words) if not (i == 1 and words[0] in ("joints", "materials"))]
+    near: list[str] = []
+    for spelling in (".".join(words), ".".join(without_names), *words[-1:]):
+        near += [full[name] for name in get_close_matches(spelling, full, 3, 0.7)]
+    listed = ", ".join(f"'{name}'" for name in list(dict.fromkeys(near))[:4])
+    hint = f"did you mean {listed}?" if listed else "`dem explain` lists the tables"
+    return f"no key '{query}' in a case file; {hint}"

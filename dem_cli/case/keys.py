@@ -1,0 +1,212 @@
+"""Every key of a case file as its tables declare it: meaning, unit, what is allowed, default, an example.
+
+`dem explain`, docs/case.md and the key tables of docs/laws are made from nothing else. Conventions of a declaration:
+units stand in brackets in the description (`[m]`; `[-]`: a number without one), what is used where a key without a
+default value is left out follows `default: ` at its end, and `examples` has a value where the default is none.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator
+from typing import Any, Literal, NamedTuple, get_args, get_origin
+
+import tomli_w
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from dem_cli.case.base import OneOrMore
+from dem_cli.case.words import Kind, allowed, is_table, kind_of
+
+NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
+TAGS = ("kind", "law")  # keys that say which kind of table it is
+UNITS = (
+    "-", "m", "s", "kg", "N", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m", "J/m2",
+    "deg per decade of stress", "unit of the key", "unit of the quantity",
+)  # fmt: skip
+BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, UNITS)) + r")\]")
+# Of a docstring: `[materials.NAME]`, `[analysis] with kind = "modes": `, `damping.rayleigh: `.
+HEADING = re.compile(r"^(\[[\w.*\[\]]+\.?$|[\[a-z][^:\n]*: )")
+DEFAULT = re.compile(r"[;,]? ?\bdefault: (.*)$")
+
+
+class Table(NamedTuple):
+    """A table of the case file; of a table with kinds, one of them."""
+
+    path: tuple[str, ...]  # ("structure", "openings")
+    declared: type[BaseModel]
+    several: bool  # [[block]]
+    tag: str  # "kind" or "law"; empty where all such tables are alike
+    kinds: tuple[str, ...]  # the kind itself; of a table in another one, the kinds of that which have it
+    said: str  # what the table around it says of it
+
+    @property
+    def heading(self) -> str:
+        """As it begins in a file: [joints.NAME], [[structure]]."""
+        name = ".".join(self.path)
+        return f"[[{name}]]" if self.several else f"[{name}]"
+
+    @property
+    def about(self) -> str:
+        """What it is: its docstring without the heading there, a paragraph a line; of a law, that of the module."""
+        source = sys.modules[self.declared.__module__] if self.tag == "law" else self.declared
+        paragraphs = re.split(r"\n\s*\n", inspect.cleandoc(source.__doc__ or ""))
+        lines = [" ".join(paragraph.split()) for paragraph in paragraphs]
+        return lines[0] if self.tag == "law" else HEADING.sub("", "\n".join(lines)) or self.said
+
+    @property
+    def keys(self) -> list[Key]:
+        """Its keys, the one that names the kind first."""
+        names = sorted(self.declared.model_fields, key=lambda name: name != self.tag)
+        return [Key(self, name, self.declared.model_fields[name]) for name in names]
+
+
+class Key(NamedTuple):
+    """A key of a table."""
+
+    table: Table
+    name: str
+    field: FieldInfo
+
+    @property
+    def path(self) -> str:
+        """With the table: joints.NAME.friction."""
+        return ".".join((*self.table.path, self.name))
+
+    @property
+    def kind(self) -> Kind:
+        """Its type and the limits on its value."""
+        return kind_of(self.field.annotation, self.field.metadata)
+
+    @property
+    def description(self) -> str:
+        """As declared; of the key that names the kind, what the kind is."""
+        if self.names_kind:
+            return self.table.about.split("\n")[0].rstrip(".")
+        return self.field.description or ""
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Of its numbers; ("-",) for numbers without one, () where there is nothing to have a unit."""
+        return tuple(dict.fromkeys(BRACKETS.findall(self.description))) if self.numeric else ()
+
+    @property
+    def numeric(self) -> bool:
+        """Whether its value is or holds numbers that are no mere counts."""
+        return _holds_float(self.kind)
+
+    @property
+    def meaning(self) -> str:
+        """In words, without the default and, where there is only one, the unit."""
+        text = DEFAULT.sub("", self.description)
+        return (BRACKETS.sub("", text) if len(self.units) == 1 else text).strip()
+
+    @property
+    def allowed(self) -> str:
+        """What may stand there: `a number > 0 or 'auto'`."""
+        return allowed((self.kind,))
+
+    @property
+    def required(self) -> bool:
+        return self.field.is_required()
+
+    @property
+    def default(self) -> str:
+        """What holds where it is left out: TOML text, or in words; empty where that is nothing."""
+        said = DEFAULT.search(self.description)
+        if said:
+            return said[1]
+        value = self.field.default
+        if value is PydanticUndefined or value is None or value in ((), "", {}):
+            return ""
+        return toml(value.model_dump() if isinstance(value, BaseModel) else value)
+
+    @property
+    def only_tables(self) -> bool:
+        """Whether its value is a table, or tables, and nothing else: these speak for themselves."""
+        return all(bool(list(_inside(choice))) for choice in self.kind.choices)
+
+    @property
+    def names_kind(self) -> bool:
+        """Whether it says which kind of table this is."""
+        return self.name == self.table.tag
+
+    @property
+    def example(self) -> str:
+        """A line with it, without the table; empty for a table of tables that has sections of its own."""
+        values = self.field.examples or [self.field.default]
+        if get_origin(self.kind.type) is Literal and not self.field.examples:
+            values = [get_args(self.kind.type)[0] if self.field.is_required() else self.field.default]
+        value = values[0].model_dump() if isinstance(values[0], BaseModel) else values[0]
+        return "" if value is PydanticUndefined or value in (None, (), {}, "") else f"{self.name} = {toml(value)}"
+
+
+def tables(model: type[BaseModel]) -> list[Table]:
+    """All tables of a case in the order of their keys, those in others after them; the case itself comes first."""
+    found: dict[tuple[tuple[str, ...], type[BaseModel]], Table] = {}
+    for table in _below(Table((), model, False, "", (), "")):
+        known = found.setdefault((table.path, table.declared), table)
+        kinds = tuple(dict.fromkeys(known.kinds + table.kinds))
+        found[table.path, table.declared] = known._replace(kinds=kinds)
+    return list(found.values())
+
+
+def _below(table: Table) -> Iterator[Table]:
+    """A table and the ones in it."""
+    yield table
+    for name, field in table.declared.model_fields.items():
+        for declared, steps, several in _inside(kind_of(field.annotation, field.metadata)):
+            tag = next((tag for tag in TAGS if _kind(declared, tag)), "")
+            kinds = (_kind(declared, tag),) if tag else table.kinds
+            path = (*table.path, name, *steps)
+            yield from _below(Table(path, declared, several, tag, kinds, field.description or ""))
+
+
+def _inside(
+    kind: Kind, steps: tuple[str, ...] = (), several: bool = False
+) -> Iterator[tuple[type[BaseModel], tuple[str, ...], bool]]:
+    """Tables that a value of this kind may be or hold: class, path to it, whether there may be many."""
+    for choice in kind.choices:
+        arguments, origin = get_args(choice.type), get_origin(choice.type)
+        if is_table(choice.type):
+            yield choice.type, steps, several
+        elif origin is dict:
+            yield from _inside(kind_of(arguments[1]), (*steps, NAME), several)
+        elif origin is tuple and arguments[-1] is Ellipsis:
+            one_will_do = any(isinstance(limit, OneOrMore) for limit in choice.limits)
+            yield from _inside(kind_of(arguments[0]), steps, not one_will_do)
+
+
+def _holds_float(kind: Kind) -> bool:
+    """Whether a value of this kind is or may hold a float, tables aside."""
+    inner = [kind_of(part) for choice in kind.choices for part in get_args(choice.type) if part is not Ellipsis]
+    literal = get_origin(kind.type) is Literal
+    return any(choice.type is float for choice in kind.choices) or (not literal and any(map(_holds_float, inner)))
+
+
+def _kind(declared: type[BaseModel], tag: str) -> str:
+    """The kind that a class is; empty where its table has no kinds."""
+    field = declared.model_fields.get(tag)
+    names = get_args(field.annotation) if field is not None and get_origin(field.annotation) is Literal else ()
+    return names[0] if len(names) == 1 else ""
+
+
+def toml(value: Any) -> str:
+    """A value as it stands in a file, on one line."""
+    if isinstance(value, dict):
+        pairs = [f"{_key(key)} = {toml(item)}" for key, item in value.items() if item is not None]
+        return "{ " + ", ".join(pairs) + " }" if pairs else "{}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    if isinstance(value, float) and abs(value) >= 1e5:
+        digits, exponent = f"{value:e}".split("e")
+        return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"
+    return tomli_w.dumps({"x": value}).removeprefix("x = ").strip()
+
+
+def _key(name: str) -> str:
+    """A key as it stands in a file: in quotes where it has dots of its own."""
+    return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else toml(name)
