@@ -8,6 +8,7 @@ from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
 
 REMOTE = 1e3  # times the extent of the blocks that can move: from there on coordinates are counted from among them
+CLOSURE, OVERLAP = 0.01, 0.01  # energy error, and overlap in smallest edges, above which a run is to be doubted
 WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are lost in round-off
 
 

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.model.scales import WEIGHTLESS, own_weights
+from dem_cli.model.scales import CLOSURE, OVERLAP, WEIGHTLESS, own_weights
 from dem_cli.solve.motion import falls
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.solve.simulation import Simulation
 
-CLOSURE, OVERLAP = 0.01, 0.01  # energy error, and overlap in smallest edges, above which a run warns
 SHEAR = (0.01, 10.0)  # ks/kn of given joints that structures were tested with
 LEANS = 0.006  # displacement before failure, in widths of blocks, from which loads were more than 0.5 % off
 UNEVEN = 1e3  # how much faster than another a block may fall in pseudo-time before it is worth a word
