@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from dem_cli.errors import UsageError
-from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import Series
-from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.shapes import rest_vertices
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures, style
+from dem_cli.post import measures, style, view
 
 _FRAME_MS = 80  # of a picture: 12.5 per second
 _LAST_MS = 1200  # the last one stays longer
@@ -25,8 +24,6 @@ _EDGES = (
     (_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE),
     (style.STONE, style.STONE_EDGE), (style.GROUND, style.STONE_EDGE),
 )  # fmt: skip
-_FALLEN = 0.8  # of the size of the structure: what falls farther leaves the picture
-_CARRIED = 0.6  # of the width of the structure: a base that moves farther is drawn in its own frame
 
 
 def draw_animation(results: Results, path: Path) -> None:
@@ -76,9 +73,9 @@ class _Scene:
         self.model = model
         frames = results.frames
         self.scale = min(measures.visible_scale(model, frame) for frame in frames)
-        self.carried = _carried(results, self.scale)
+        self.carried = view.carried(results, self.scale)
         corners = [self._corners(frame) for frame in frames]
-        low, high = _window(model, corners)
+        low, high = view.window(model, corners)
         series = results.series
         self.strip = series is not None and bool((series.base[:, 0] != 0.0).any())
         width, height = _size(high - low)
@@ -95,16 +92,9 @@ class _Scene:
         self.figure.set_layout_engine("none")
 
     def _corners(self, frame: Frame) -> np.ndarray:
-        """Corners as drawn: displacements scaled, carried along by the ground [m], (n_vertices, 2)."""
-        shown = measures.scaled(self.model, frame, self.scale)
-        return placed_vertices(self.model, shown.positions, shown.orientations) + self._ground(frame)
-
-    def _ground(self, frame: Frame) -> np.ndarray:
-        """Where the ground is in this picture [m], (2,)."""
-        series = self.results.series
-        if not self.carried or series is None:
-            return np.zeros(self.model.dimension)
-        return np.array([np.interp(frame.time, series.time, path) for path in series.base[:, 2].T])
+        """Corners as drawn, carried along by the ground [m], (n_vertices, 2)."""
+        moved = view.ground(self.results.series, frame) if self.carried else 0.0
+        return view.corners(self.model, frame, self.scale, moved)
 
     def _draw_structure(self, low: np.ndarray, high: np.ndarray) -> None:
         from matplotlib.collections import PolyCollection
@@ -143,30 +133,6 @@ class _Scene:
         self.figure.canvas.draw()
         buffer = np.asarray(self.figure.canvas.buffer_rgba())
         return (buffer.shape[1], buffer.shape[0]), buffer.tobytes()
-
-
-def _carried(results: Results, scale: float) -> bool:
-    """Whether blocks are drawn in space: the base moves, but not out of the picture, and nothing is exaggerated."""
-    series = results.series
-    if series is None or scale != 1.0 or not len(series.time):
-        return False
-    travel = float(np.ptp(series.base[:, 2], axis=0).max())
-    return 0.0 < travel <= _CARRIED * measures.size(results.model)
-
-
-def _window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """What all pictures show: wherever free blocks come, but not far away; of the ground what is near."""
-    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
-    start = corners[0][free] if free.any() else corners[0]
-    reach = _FALLEN * float(np.ptp(start, axis=0).max())
-    moving = np.concatenate([c[free] if free.any() else c for c in corners])
-    everything = np.concatenate(corners)
-    low = np.maximum(moving.min(axis=0), start.min(axis=0) - reach)
-    high = np.minimum(moving.max(axis=0), start.max(axis=0) + reach)
-    margin = 0.06 * float((high - low).max())
-    low = np.maximum(np.minimum(everything.min(axis=0), low), low - 2.0 * margin)  # with some ground
-    high = np.minimum(np.maximum(everything.max(axis=0), high), high + 2.0 * margin)
-    return low - margin, high + margin
 
 
 def _size(extent: np.ndarray) -> tuple[float, float]:

@@ -53,7 +53,7 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
     if results.kind in IN_SECONDS:
         return _instants(results)
     last = len(frames) - 1
-    first = _failure_frame(results)
+    first = failure_frame(results)
     if first is None:
         name = "last state under load"
         first = max((i for i in range(len(frames)) if frames[i].stage != "collapse"), default=last)
@@ -78,7 +78,7 @@ def _instants(results: Results) -> list[tuple[str, Frame]]:
     return [(text, frames[i]) for i, text in sorted(chosen.items())]
 
 
-def _failure_frame(results: Results) -> int | None:
+def failure_frame(results: Results) -> int | None:
     """The frame on the way into failure, under the lowest load that the structure did not stand."""
     if results.summary.get("failure_load") is None:
         return None
@@ -198,21 +198,12 @@ def _draw_thrust(axis: Any, model: Model, frame: Frame) -> None:
         strokes = [(found.points[a], found.points[b]) for chain in lines for a, b in zip(chain, chain[1:])]
         widths = [(widths[a] + widths[b]) / 2 for chain in lines for a, b in zip(chain, chain[1:])]
     else:
-        reach = 0.4 * _block_reach(model, found.blocks)
+        reach = 0.4 * measures.block_reach(model, found.blocks)
         arms = found.forces / sizes[:, np.newaxis] * reach[:, np.newaxis]
         strokes = list(zip(found.points - arms, found.points + arms))
     axis.add_collection(
         LineCollection(strokes, colors=style.THRUST, linewidths=widths, alpha=0.8, capstyle="round", zorder=4)
     )
-
-
-def _block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
-    """Half the smaller extent of the smaller block at each joint [m]."""
-    extents = np.full(model.n_blocks, np.inf)
-    for part, block in enumerate(model.part_blocks):
-        corners = model.vertices[model.part_starts[part] : model.part_starts[part + 1]]
-        extents[block] = min(extents[block], np.ptp(corners, axis=0).min())
-    return 0.5 * extents[pairs].min(axis=1)
 
 
 def _legend(figure: Any, has_line: bool) -> None:

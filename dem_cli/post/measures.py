@@ -75,6 +75,15 @@ def _walk(links: dict[int, list[int]]) -> list[np.ndarray]:
     return found
 
 
+def block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
+    """Half the smaller extent of the smaller block at each joint [m]."""
+    extents = np.full(model.n_blocks, np.inf)
+    for part, block in enumerate(model.part_blocks):
+        corners = model.vertices[model.part_starts[part] : model.part_starts[part + 1]]
+        extents[block] = min(extents[block], np.ptp(corners, axis=0).min())
+    return 0.5 * extents[pairs].min(axis=1)
+
+
 def size(model: Model) -> float:
     """Diagonal of the box around the blocks that can move [m]."""
     corners = placed_vertices(model, model.centroids, np.zeros((model.n_blocks, 1)))

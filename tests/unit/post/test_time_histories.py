@@ -100,10 +100,10 @@ def test_animation(results, tmp_path):
 
 
 def test_the_ground_is_seen_to_move_unless_it_goes_far(results):
-    assert animation._carried(results, 1.0)
-    assert not animation._carried(results, 10.0)
+    assert view.carried(results, 1.0)
+    assert not view.carried(results, 10.0)
     far = results.series._replace(base=100.0 * results.series.base)
-    assert not animation._carried(type(results)(**{**vars(results), "series": far}), 1.0)
+    assert not view.carried(type(results)(**{**vars(results), "series": far}), 1.0)
 
 
 def test_an_animation_of_other_runs(tmp_path):

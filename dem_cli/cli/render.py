@@ -1,0 +1,95 @@
+"""`dem render`: stills and movies of a run in a stone look."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from dem_cli.cli import console
+from dem_cli.errors import UsageError
+
+STILL, MOVIES = ".png", (".gif", ".mp4")
+_SMALLEST, _LARGEST = 200, 8000  # pixels
+
+
+class Size(click.ParamType):
+    """1200x800, or 1200 and a height that suits."""
+
+    name = "WIDTH[xHEIGHT]"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
+        sides = [int(side) for side in match.groups() if side] if match else []
+        if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
+            self.fail(f"{value}: give a width from {_SMALLEST} to {_LARGEST} pixels, or both sides such as 1200x800")
+        return (sides[0], sides[1] if len(sides) > 1 else None)
+
+
+@click.command("render", short_help="Stills and movies of a run.")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Default: DIR/render.png or .gif.")
+@click.option("--movie", type=click.Choice(("gif", "mp4")), help="All frames one after the other.")
+@click.option(
+    "--frame", default="last", show_default=True, metavar="WHICH",
+    help="Of a still: last, failure, a number from 0, or a time such as 2.5s.",
+)  # fmt: skip
+@click.option("--view", type=click.Choice(("front", "3d")), default="front", show_default=True)
+@click.option(
+    "--scale", type=click.FloatRange(min=0.0, min_open=True), metavar="FACTOR",
+    help="Of displacements; default: as they are, or larger where nobody would see them.",
+)  # fmt: skip
+@click.option(
+    "--colour", "--color", type=click.Choice(("stone", "displacement", "rotation", "velocity")), default="stone",
+    show_default=True, help="Of the blocks.",
+)  # fmt: skip
+@click.option("--joints/--no-joints", default=True, show_default=True, help="Colour joints that slide or are open.")
+@click.option(
+    "--forces", type=click.Choice(("bars", "arrows")), is_flag=False, flag_value="bars",
+    help="Joint forces: bars as thick as they are large, or arrows as long.",
+)  # fmt: skip
+@click.option("--size", type=Size(), help="Of the picture [pixels], such as 1200x800.")
+@click.option("--fps", type=click.FloatRange(0.5, 60.0), default=12.5, show_default=True, help="Pictures per second.")
+def command(
+    folder: Path,
+    output: Path | None,
+    movie: str | None,
+    frame: str,
+    view: str,
+    scale: float | None,
+    colour: str,
+    joints: bool,
+    forces: str | None,
+    size: tuple[int, int | None] | None,
+    fps: float,
+) -> None:
+    """Render the results in DIR: a picture of one frame, or a movie of all."""
+    from dem_cli.output.folder import write_error
+    from dem_cli.output.reader import read
+    from dem_cli.post.render import Look, render_apart
+
+    path = target(folder, output, movie)
+    if path.suffix in MOVIES and frame != "last":
+        raise UsageError("--frame is for stills; a movie shows all frames")
+    read(folder)  # what is wrong with the results is said before anything is started
+    look = Look(frame, view, scale, colour, joints, forces, size, fps)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        render_apart(folder, path, look)
+    except OSError as error:
+        raise write_error(error, path) from None
+    console.show(str(path))
+
+
+def target(folder: Path, output: Path | None, movie: str | None) -> Path:
+    """The file to write; UsageError where its name and --movie disagree."""
+    suffix = f".{movie}" if movie else STILL
+    if output is None:
+        return folder / f"render{suffix}"
+    named = output.suffix.lower()
+    if named not in (STILL, *MOVIES):
+        raise UsageError(f"-o {output}: the name has to end in .png, .gif or .mp4")
+    if movie and named != suffix:
+        raise UsageError(f"-o {output}: --movie {movie} writes {suffix}")
+    return output

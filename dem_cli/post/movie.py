@@ -1,0 +1,68 @@
+"""Pictures one after the other as a GIF or an MP4 file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+
+FORMATS = ("gif", "mp4")
+FPS = 12.5
+_FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
+_COLOURS = 255
+
+
+def check(kind: str) -> None:
+    """UsageError where what a format needs is not installed."""
+    if kind == "mp4" and find_spec("imageio_ffmpeg") is None:
+        raise UsageError("MP4 needs imageio-ffmpeg: pip install 'dem-cli[movie]' (--movie gif works without)")
+
+
+def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
+    """Write pictures (height, width, 3) of bytes, of equal size; the format is that of the file's name."""
+    part = path.with_name(f".part-{path.name}")
+    try:
+        {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _write_gif(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
+    from PIL import Image
+
+    palette = _palette(pages)
+    images = [Image.fromarray(page).quantize(palette=palette, dither=Image.Dither.NONE) for page in pages]
+    each = max(20, 10 * round(100.0 / fps))  # ms; browsers slow down what is shorter
+    times = [each] * len(images)
+    times[0], times[-1] = max(each, round(1000 * _FIRST)), max(each, round(1000 * _LAST))
+    with path.open("wb") as file:
+        images[0].save(
+            file, "GIF", save_all=True, append_images=images[1:], duration=times, loop=0, optimize=True, disposal=1
+        )
+
+
+def _palette(pages: Sequence[np.ndarray]) -> object:
+    """One set of colours for all pictures, from the first, the middle and the last."""
+    from PIL import Image
+
+    some = [pages[0], pages[len(pages) // 2], pages[-1]]
+    return Image.fromarray(np.concatenate(some)).quantize(_COLOURS, Image.Quantize.MEDIANCUT)
+
+
+def _write_mp4(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
+    import imageio_ffmpeg
+
+    height, width = pages[0].shape[:2]
+    film = imageio_ffmpeg.write_frames(
+        str(path), (width, height), fps=fps, codec="libx264", quality=7, macro_block_size=2, ffmpeg_log_level="error"
+    )
+    film.send(None)
+    for page in [pages[0]] * round(fps * _FIRST) + list(pages) + [pages[-1]] * round(fps * _LAST):
+        film.send(np.ascontiguousarray(page))
+    film.close()

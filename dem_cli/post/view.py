@@ -1,0 +1,60 @@
+"""What part of space a moving picture shows, and whether the ground moves in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.reader import Results
+from dem_cli.output.record import Frame
+from dem_cli.output.series import Series
+from dem_cli.output.shapes import placed_vertices
+from dem_cli.post import measures
+
+_FALLEN = 0.8  # of the size of the structure: what falls farther leaves the picture
+_CARRIED = 0.6  # of the width of the structure: a base that moves farther is drawn in its own frame
+_GROUND = 0.06  # of the size of what is seen: half the ground that is shown beside it
+
+
+def carried(results: Results, scale: float) -> bool:
+    """Whether blocks are drawn in space: the base moves, but not out of the picture, and nothing is exaggerated."""
+    series = results.series
+    if series is None or scale != 1.0 or not len(series.time):
+        return False
+    travel = float(np.ptp(series.base[:, 2], axis=0).max())
+    return 0.0 < travel <= _CARRIED * measures.size(results.model)
+
+
+def ground(series: Series | None, frame: Frame) -> np.ndarray:
+    """How far the ground has moved at a frame [m], (d,)."""
+    if series is None:
+        return np.zeros(frame.positions.shape[1])
+    return np.array([np.interp(frame.time, series.time, path) for path in series.base[:, 2].T])
+
+
+def corners(model: Model, frame: Frame, scale: float, moved: np.ndarray | float = 0.0) -> np.ndarray:
+    """Corners as drawn: displacements times `scale`, all of it `moved` along [m], (n_vertices, d)."""
+    shown = measures.scaled(model, frame, scale)
+    return placed_vertices(model, shown.positions, shown.orientations) + moved
+
+
+def window(
+    model: Model, places: Sequence[np.ndarray], around: float = _GROUND
+) -> tuple[np.ndarray, np.ndarray]:
+    """What all pictures show: wherever free blocks come, but not far away; of the ground what is near.
+
+    around: empty space on all sides, over the size of what is seen.
+    """
+    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    start = places[0][free] if free.any() else places[0]
+    reach = _FALLEN * float(np.ptp(start, axis=0).max())
+    moving = np.concatenate([c[free] if free.any() else c for c in places])
+    everything = np.concatenate(places)
+    low = np.maximum(moving.min(axis=0), start.min(axis=0) - reach)
+    high = np.minimum(moving.max(axis=0), start.max(axis=0) + reach)
+    size = float((high - low).max())
+    low = np.maximum(np.minimum(everything.min(axis=0), low), low - 2.0 * _GROUND * size)
+    high = np.minimum(np.maximum(everything.max(axis=0), high), high + 2.0 * _GROUND * size)
+    return low - around * size, high + around * size
