@@ -32,7 +32,7 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
     results = read(folder)
     written = []
     for name, draw in PICTURES.items():
-        if _has_data(name, results):
+        if has_data(name, results):
             draw(results, output / name)
             written.append(output / name)
     if animate:
@@ -43,7 +43,7 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
     return written
 
 
-def _has_data(name: str, results: Results) -> bool:
+def has_data(name: str, results: Results) -> bool:
     """Whether there is anything to draw; a capacity curve needs a load that changes."""
     no_rows = np.zeros(0)
     if name == "fragility.png":
