@@ -21,6 +21,7 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "run": "Solve a case and write its results.",
     "check": "Validate a case and print its model; solve nothing.",
     "sweep": "Run a case many times, over the values in its [sweep].",
+    "verify": "Run all cases with a known answer and compare.",
     "calibrate": "Find the joint profile that comes closest to a test.",
     "limit": "Failure load by rigid-block limit analysis.",
     "motion": "Measure, write and draw the ground motions of a case.",

@@ -22,7 +22,7 @@ def solve_one(
     folder: str | Path | None = None,
     text: str | None = None,
 ) -> dict[str, Any]:
-    """The summary of a case with its overrides; where it cannot be run, {"status": "failed", "reason": why}.
+    """The summary of a case with its overrides; where it cannot be run, status "failed", reason and exit_code.
 
     folder: where the results go; None keeps none. text: what the case file holds, if not read from `path`.
     Says nothing on the terminal.
@@ -40,7 +40,7 @@ def solve_one(
             wish = Wish(threads=1)
             return execute(loaded, model, output, started, quiet=True, wish=wish, recover=folder is None)[0]
     except DemError as error:
-        return {"status": "failed", "reason": str(error)}
+        return {"status": "failed", "reason": str(error), "exit_code": error.exit_code}
 
 
 def do_job(job: Job) -> Summary:

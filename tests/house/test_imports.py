@@ -14,6 +14,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
     "bench": {"api", "case", "contact", "kernels", "laws", "limit", "model", "output", "post", "solve"},
     "api": {"case", "model", "structures", "laws", "solve", "output.record", "calibrate.table", "motion"},
+    "verify": {"case", "output.reference", "output.summary"},
     "case": {"case"},
     "sweep": {"api", "case", "output", "kernels.jit"},
     "post": {"output", "model", "motion"},

@@ -1,0 +1,122 @@
+"""docs/verification.md: every case with a known answer, ours beside it. Made from the records alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from dem_cli.verify.records import Record, counts, on_shelves
+from dem_cli.verify.words import VERDICTS, allowed, off, share, shown
+
+ABOUT = {
+    "verification": "Exact answers: closed forms, limit analysis, motions integrated apart from dem to full accuracy. "
+    "They say whether the equations are solved right.",
+    "validation": "Experiments. They say whether these are the right equations, with the properties that the authors "
+    "give.",
+    "cross-code": "Answers of other programs to the same question, as their authors printed them.",
+}
+HEAD = ("case", "quantity", "ours", "reference", "error", "error", "allowed", "")
+INTRO = """# What dem gets right, and what it misses
+
+Written by `dem verify cases --write docs/verification.md`; do not edit. Every case file under `cases/` that has a
+`[reference]` was run as it stands and compared. A test fails when this page does not belong to the case files.
+
+*error*: ours less the reference, in the unit of the quantity and over the reference; of a range, beyond its nearer end.
+*allowed*: what passes, fixed in the case file before the run: of exact answers from the resolution of the failure load
+and the joint stiffness. A *known miss* is declared in its case file with the reason; if it is suddenly met, that fails
+too.
+"""
+
+
+def page(records: Iterable[Record], version: str) -> str:
+    """The page as Markdown. Paths of cases are taken as seen from the page."""
+    records = sorted(records, key=lambda record: record["case"])
+    lines = [INTRO, *_summary(records), ""]
+    for shelf in ABOUT:
+        of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
+        if of_shelf:
+            lines += [f"## {shelf.capitalize()}", "", ABOUT[shelf], "", *_table(of_shelf), "", *_sources(of_shelf)]
+    broken = [record for record in records if "error" in record]
+    if broken:
+        lines += ["## Not solved", "", *(f"* {_link(r)}: {_cell(r['error'])}" for r in broken), ""]
+    return "\n".join([*lines, f"dem {version}."]) + "\n"
+
+
+def _summary(records: Sequence[Record]) -> list[str]:
+    """Counts, and the worst errors, by shelf."""
+    rows = []
+    for shelf in ABOUT:
+        of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
+        if not of_shelf:
+            continue
+        found = counts(of_shelf)
+        answers = [answer for record in of_shelf for answer in record["references"] if answer["state"] == "passed"]
+        sizes = sorted(abs(size) for size in map(share, answers) if size is not None)
+        middle = _percent(sizes[len(sizes) // 2], False) if sizes else "–"
+        worst = _percent(sizes[-1], False) if sizes else "–"
+        cells = (found["cases"], found["references"], found["passed"], found["missed"], found["failed"] + found["met"])
+        rows.append([f"[{shelf}](#{shelf})", *map(str, cells), middle, worst])
+    head = ("shelf", "cases", "references", "met", "known misses", "failed", "median error", "largest error")
+    remark = f"{len(records)} cases; some stand on more than one shelf. Errors are those of references that are met."
+    return [*_rows(head, rows), "", remark]
+
+
+def _table(records: Sequence[Record]) -> list[str]:
+    rows = []
+    for record in records:
+        for number, answer in enumerate(record["references"]):
+            name = f"{_link(record)}<br>{_cell(record['title'])}" if number == 0 else ""
+            rows.append([name, *_answer(answer)])
+    return _rows(HEAD, rows)
+
+
+def _answer(answer: dict[str, Any]) -> list[str]:
+    size = share(answer)
+    values = (shown(answer["found"]), shown(answer["value"], 6), off(answer))
+    verdict = VERDICTS[answer["state"]]
+    return [
+        f"`{answer['quantity']}`",
+        *map(_cell, values),
+        _percent(size) if size is not None and off(answer) != "inside" else "",
+        allowed(answer),
+        verdict if answer["state"] == "passed" else f"**{verdict}**",
+    ]
+
+
+def _sources(records: Sequence[Record]) -> list[str]:
+    """Where the values come from, and why some are missed."""
+    lines = ["Sources:", ""]
+    for record in records:
+        said = [answer["source"] for answer in record["references"] if answer["source"]]
+        if said:
+            lines.append(f"* {_link(record)}: {'; '.join(dict.fromkeys(map(_cell, said)))}.")
+    missed = [
+        f"* {_link(record)}, `{answer['quantity']}`: {_cell(answer['missed'])}."
+        for record in records
+        for answer in record["references"]
+        if answer["state"] == "missed"
+    ]
+    return [*lines, "", *(["Known misses:", "", *missed, ""] if missed else [])]
+
+
+def _link(record: Record) -> str:
+    path = PurePosixPath(record["case"])
+    return f"[{path.parent.name}/{path.stem}]({path})"
+
+
+def _cell(text: str) -> str:
+    """Text that does not end a cell of a table."""
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def _percent(value: float, signed: bool = True) -> str:
+    """A share in per cent: two digits, never more than three places."""
+    size = abs(100.0 * value)
+    places = 0 if size >= 99.5 else 1 if size >= 9.95 else 2 if size >= 0.0995 else 3
+    text = f"{100.0 * value:+.{places}f}" if signed else f"{size:.{places}f}"
+    return "0.000 %" if size < 5e-4 else f"{text} %".replace("-", "−")
+
+
+def _rows(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    return ["| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows)]

@@ -1,0 +1,108 @@
+"""What is kept of a verified case, and of all of them: verification.json."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from dem_cli.errors import UsageError
+from dem_cli.output.reference import as_declared, error, verdicts
+from dem_cli.output.summary import plain
+from dem_cli.verify.find import SHELVES
+
+Record = dict[str, Any]  # of a case: see `record`
+STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
+
+
+def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
+    """A case that was solved: file, title, kind of analysis, status, seconds, and one dict for each reference.
+
+    Those are the verdicts of output/reference.py with `source`, and `error`: what was found less what was expected.
+    """
+    status = str(summary["status"])
+    answers = [
+        {**answer, "source": reference.source, "error": error(answer["found"], answer["value"])}
+        for answer, reference in zip(verdicts(summary, references), references, strict=True)
+    ]
+    kept = {"case": path.as_posix(), "sha256": digest(path), "title": title, "kind": summary["kind"], "status": status}
+    kept |= {"seconds": rounded(seconds), "references": [dict(answer, state=state(answer)) for answer in answers]}
+    if status.startswith("not converged"):
+        kept["error"] = "; ".join([status, *summary.get("warnings", ())])
+    return plain(kept)
+
+
+def failed(path: Path, reason: str, bad: bool) -> Record:
+    """A case that could not be solved; bad: the case file is wrong."""
+    kept = {"case": path.as_posix(), "title": path.stem, "error": reason, "bad": bad, "references": [], "seconds": 0.0}
+    return kept | {"sha256": digest(path)}
+
+
+def state(answer: Mapping[str, Any]) -> str:
+    """One of STATES."""
+    if as_declared(answer):
+        return "passed" if answer["passed"] else "missed"
+    return "met" if answer["passed"] and "missed" in answer else "failed"
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a case file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+
+
+def rounded(seconds: float) -> float:
+    """Two digits: more would change from run to run."""
+    return float(f"{seconds:.2g}")
+
+
+def on_shelves(records: Iterable[Record], shelves: Sequence[str]) -> list[Record]:
+    """Records with no references but those of some shelves; none: all."""
+    if not shelves:
+        return list(records)
+    wanted = [dict(r, references=[a for a in r["references"] if SHELVES[a["kind"]] in shelves]) for r in records]
+    return [r for r in wanted if r["references"] or "error" in r]
+
+
+def counts(records: Iterable[Record]) -> dict[str, int]:
+    """How many cases and references there are, and how many references in each state; cases without an answer."""
+    records = list(records)
+    states = [answer["state"] for record in records for answer in record["references"]]
+    found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in STATES}
+    return found | {"not solved": sum("error" in record for record in records)}
+
+
+def all_well(records: Iterable[Record]) -> bool:
+    """Whether everything is as the cases say."""
+    found = counts(records)
+    return not (found["failed"] or found["met"] or found["not solved"])
+
+
+def load(file: Path) -> list[Record]:
+    """Records of an earlier `dem verify --write`, their cases as seen from here; none where there is no such file."""
+    if not file.is_file():
+        return []
+    try:
+        kept = json.loads(file.read_text(encoding="utf-8"))["cases"]
+        return [{**one, "case": moved(one["case"], file.parent, Path())} for one in kept]
+    except (ValueError, KeyError, TypeError, OSError) as error:
+        raise UsageError(f"{file}: is not what `dem verify --write` left ({error}); remove it") from None
+
+
+def dump(records: Iterable[Record], file: Path, version: str) -> str:
+    """JSON text of records, their cases as seen from the file."""
+    cases = sorted(({**r, "case": moved(r["case"], Path(), file.parent)} for r in records), key=lambda r: r["case"])
+    return json.dumps({"version": version, "cases": cases}, indent=1, ensure_ascii=False) + "\n"
+
+
+def moved(path: str, before: Path, after: Path) -> str:
+    """A path relative to one folder as one relative to another."""
+    return Path(os.path.relpath(before / path, after)).as_posix()
+
+
+def merged(old: Iterable[Record], new: Iterable[Record]) -> list[Record]:
+    """The new records, and the old ones of other cases that still exist."""
+    found = {r["case"]: r for r in old if Path(r["case"]).is_file()}
+    return list((found | {r["case"]: r for r in new}).values())
