@@ -118,15 +118,18 @@ STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analys
 
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
     """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
-    lines = [str(summary["title"])]
-    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
-    rows += safety_rows(summary)
-    rows += [*_sureness_rows(summary), *_cost_rows(summary)]
-    rows += [("warning", text) for text in summary.get("warnings", ())]
+    rows = answer_rows(summary) + [("warning", text) for text in summary.get("warnings", ())]
     if verbose:
         rows += [("skipped", text) for text in summary.get("skipped", ())]
     rows.append(("written to", f"{folder} ({', '.join(files)})"))
-    return "\n".join(lines + [f"  {label:<14} {text}" for label, text in rows])
+    return "\n".join([str(summary["title"]), *(f"  {label:<14} {text}" for label, text in rows)])
+
+
+def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of each line of an answer of any kind, without warnings."""
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
+    rows += safety_rows(summary)
+    return [*rows, *_sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
