@@ -14,12 +14,12 @@ NAMED = ("materials", "joints")  # tables of named tables: a new name is taken f
 
 
 class Override(NamedTuple):
-    """A key path, as typed and resolved, its new value, and where it was asked for."""
+    """A key path, as typed and resolved, its new value, and where in the file it stands (a sweep; () is --set)."""
 
     text: str
     path: KeyPath
     value: Any
-    origin: str = "--set "
+    place: KeyPath = ()
 
 
 def parse(text: str) -> Override:

@@ -55,6 +55,13 @@ class Source:
         alone = one and path[:2] not in self.places.values
         return path[:1] + path[2:] if alone else path
 
+    def asked(self, override: Override) -> str:
+        """Where a value was asked for."""
+        if not override.place:
+            return "--set "
+        line, column = self.locate(override.place)
+        return f"{self.path}:{line}:{column}: {dotted(override.place[:1])}: "
+
     @contextmanager
     def located(self) -> Iterator[None]:
         """Gives mistakes that are found later, in what the case describes, their place in the file."""
@@ -68,11 +75,11 @@ class Source:
         path = self.as_written(problem.path)
         for override in self.overrides:
             if path and override.path == path[: len(override.path)]:
-                return f"{override.origin}{dotted(path)}: {problem.message}"
+                return f"{self.asked(override)}{dotted(path)}: {problem.message}"
         table = path[:-1]
         for override in self.overrides:  # a key missing in a table that only an override made
             if table and table not in self.places.values and override.path[: len(table)] == table:
-                return f"{override.origin}{override.text}: {dotted(path)}: {problem.message}"
+                return f"{self.asked(override)}{override.text}: {dotted(path)}: {problem.message}"
         line, column = self.locate(path, problem.at_key)
         where = f"{self.path}:{line}:{column}: "
         return where + (f"{dotted(path)}: " if path else "") + problem.message

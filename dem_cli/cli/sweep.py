@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 TABLE_EVERY = 15.0  # s between two states of sweep.csv while runs go on
 LISTED = 8  # failed runs that are shown
+LONGEST = 40  # letters of a value
 SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 
 
@@ -234,6 +235,14 @@ class Running:
         write_facts(self.folder, {"kind": "sweep", "version": __version__, "status": status} | (found or {}))
 
 
+def brief(value: Any) -> str:
+    """A value in few letters."""
+    from dem_cli.sweep.plan import show_value
+
+    text = f"{value:.6g}" if isinstance(value, float) else show_value(value)
+    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+
+
 def told(found: dict[str, Any], folder: Path) -> str:
     """The outcome as a user reads it."""
     from dem_cli.cli.run import shown
@@ -242,7 +251,7 @@ def told(found: dict[str, Any], folder: Path) -> str:
     lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved, {found['failed']:,} failed"
                  + (f", {found['waiting']:,} not done yet" if found["waiting"] else ""))  # fmt: skip
     for row in found["failures"][:LISTED]:
-        values = ", ".join(f"{key} = {row[key]}" for key in found["keys"])
+        values = ", ".join(f"{key} = {brief(row[key])}" for key in found["keys"])
         lines.append(f"  failed    {row['run']} ({values}): {row['reason']}")
     if found["failed"] > LISTED:
         lines.append(f"            and {found['failed'] - LISTED:,} more in sweep.csv")

@@ -73,7 +73,7 @@ def on_cluster(
     numbers = {job.id: number for number, job in enumerate(jobs)}
     futures = client.map(do, jobs, key=list(numbers), pure=False, batch_size=200)
     try:
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             error = future.exception() if future.status == "error" else None
             if isinstance(error, KilledWorker):
                 yield numbers[future.key], Died()

@@ -101,7 +101,8 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
                                f"one of {listing(DRAWN)} with its two numbers")  # fmt: skip
         if not values:
             raise _wrong(path, "an empty list leaves nothing to run")
-        axes[key] = [_change(table, key, value, path) for value in values]
+        listed = not isinstance(form, Mapping)
+        axes[key] = [_change(table, key, value, (*path, i) if listed else path) for i, value in enumerate(values)]
     if samples and table.samples is None:
         key, (path, _) = next(iter(samples.items()))
         raise _wrong(path, "drawn values need their number, such as samples = 100 under [sweep]")
@@ -161,7 +162,7 @@ def _override(key: str, value: Any, path: KeyPath) -> Override:
         raise _wrong(path, f"'{key}' is not a key of a case, such as joints.dry.friction or structure.0.courses")
     if found[0] == "sweep":
         raise _wrong(path, "a sweep does not change itself")
-    return Override(key, found, _plain(value), f"{dotted(path[:2])}: ")
+    return Override(key, found, _plain(value), path)
 
 
 def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[Change, ...]]:
