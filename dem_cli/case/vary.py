@@ -66,7 +66,7 @@ def impossible(what: str, found: Sequence[CaseProblem]) -> CaseError:
 def _put(data: dict[str, Any], path: list[str], value: float) -> None:
     """Change a nested table in place; tables that were left out are made."""
     node: Any = data
-    for part, following in zip(path, path[1:]):
+    for part in path[:-1]:
         if isinstance(node, list):
             node = _listed(node, int(part))
         else:

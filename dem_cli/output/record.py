@@ -126,7 +126,7 @@ class Observer(Protocol):
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
 
     def structure(self, model: Model) -> None:
-        """The structure that frames from now on show, where it is another one than that of the case; before any frame."""
+        """The structure that all frames show, where it is another one than that of the case; before any of them."""
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """All runs of an analysis that consists of many, at its end."""

@@ -52,6 +52,8 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
         return [(f"{frame.stage} {MECHANISM}", frame) for frame in frames]
     if results.kind in IN_SECONDS:
         return _instants(results)
+    if results.kind == "safety":
+        return _last_and_first(results)
     last = len(frames) - 1
     first = failure_frame(results)
     if first is None:
@@ -64,6 +66,17 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
     if first != last:
         panels.append((frames[last].stage, frames[last]))
     return panels
+
+
+def _last_and_first(results: Results) -> list[tuple[str, Frame]]:
+    """Of a safety analysis: the last structure that stands, and the first that fails as far as it was followed."""
+    summary, frames = results.summary, results.frames
+    name = "F" if summary["vary"] == "strength" else summary["vary"]
+    chosen = {frame.stage == "collapse": frame for frame in (frames[i] for i in range(len(frames)))}
+    return [
+        (f"{'fails' if fails else 'stands'} at {name} = {summary['fails_at' if fails else 'stands_at']:.5g}", frame)
+        for fails, frame in sorted(chosen.items(), key=lambda item: item[0])
+    ]
 
 
 def _instants(results: Results) -> list[tuple[str, Frame]]:
@@ -90,9 +103,10 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
     if name.endswith(MECHANISM):
         return f"{name}: λ = {frame.load:.4g}\nof any size: rigid blocks have no displacement at failure"
     factor, unit = style.length_unit(frame.displacement)
-    instant = f"{frame.time:.3g} s" if kind in IN_SECONDS else f"λ = {frame.load:.4g}"
+    instant = f": {frame.time:.3g} s" if kind in IN_SECONDS else f": λ = {frame.load:.4g}"
+    instant = "" if kind == "safety" and frame.load == 0.0 else instant
     drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
-    return f"{name}: {instant}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
+    return f"{name}{instant}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"
 
 
 def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -15,12 +15,14 @@ from dem_cli.post.energy import draw_energy
 from dem_cli.post.fragility import draw_fragility, has_curve
 from dem_cli.post.histories import draw_histories
 from dem_cli.post.modes import draw_modes, shapes
+from dem_cli.post.safety import draw_safety, has_runs
 
 PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "capacity.png": draw_capacity,
     "histories.png": draw_histories,
     "modes.png": draw_modes,
     "fragility.png": draw_fragility,
+    "safety.png": draw_safety,
     "collapse.png": draw_collapse,
     "energy.png": draw_energy,
 }
@@ -50,12 +52,16 @@ def has_data(name: str, results: Results) -> bool:
         return has_curve(results)
     if name == "modes.png":
         return bool(shapes(results))
+    if name == "safety.png":
+        return has_runs(results)
     if results.kind == "modes":  # the way into gravity is no result
         return False
     if name == "collapse.png":
         return len(results.frames) > 0
     if name == "histories.png":
         return results.series is not None and len(results.series.time) > 0
+    if results.kind == "safety":  # its rows are those of two structures
+        return False
     if name == "capacity.png":
         return results.kind not in IN_SECONDS and bool((results.history.get("load", no_rows) != 0.0).any())
     return len(results.history.get("load", no_rows)) > 0

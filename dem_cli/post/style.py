@@ -76,6 +76,8 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
     text = str(summary.get("title", ""))
     if summary.get("kind") == "limit" and summary.get("status") == "ok":
         text += ": limit analysis"
+    elif summary.get("kind") == "safety":
+        text += f": {_of_safety(summary)}"
     elif summary.get("collapsed") is not None:
         at = summary.get("collapse_time")
         text += (": collapsed" + (f" at {at:.3g} s" if at is not None else "")) if summary["collapsed"] else ": stood"
@@ -85,6 +87,14 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
         text += f": fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
     size = min(12.0, 12.0 * 8.5 * figure.get_figwidth() / len(text))
     figure.suptitle(text, x=0.01, ha="left", fontsize=size, fontweight="bold")
+
+
+def _of_safety(summary: Mapping[str, Any]) -> str:
+    """The answer of a safety analysis."""
+    name = "F" if summary.get("vary") == "strength" else summary.get("vary")
+    if summary.get("status") != "ok":
+        return str(summary.get("status"))
+    return f"stands at {name} = {summary['stands_at']:.5g}, fails at {summary['fails_at']:.5g}"
 
 
 def length_unit(largest: float) -> tuple[float, str]:

@@ -164,7 +164,7 @@ def _runs(case: Case) -> Rows:
     """Of a safety analysis: what is varied, and how many runs that takes. Raises CaseError where it cannot be."""
     if case.analysis.kind != "safety":
         return []
-    from dem_cli.solve.safety import expected, scale_of
+    from dem_cli.solve.safety_values import expected, scale_of
 
     scale, (fewest, most) = scale_of(case), expected(case)
     named = "F" if case.analysis.of_strength else case.analysis.vary
@@ -177,7 +177,7 @@ def _cost(case: Case, sim: Simulation) -> str:
     few, many = STEPS.get(kind, STEPS["pushover"])
     few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
     if kind == "safety":
-        from dem_cli.solve.safety import expected
+        from dem_cli.solve.safety_values import expected
 
         few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
     nanoseconds = NANOSECONDS[sim.kinematics]
