@@ -18,6 +18,7 @@ GROUPS = {  # name -> title, in the order of the page
     "precision": "Work against precision",
     "growth": "Growth with size",
     "threads": "Growth with threads",
+    "sweeps": "Sweeps",
     "features": "Cost of features",
     "others": "Beside pymunk and Box2D",
     "startup": "From shell to shell",

@@ -50,16 +50,22 @@ def _inspect(client: Any, address: str, folder: Path) -> None:
     probe = folder / f".probe-{secrets.token_hex(4)}"
     probe.write_text("")
     try:
-        blind = [worker for worker, sees in client.run(os.path.exists, str(probe)).items() if not sees]
-        if blind:
-            raise UsageError(f"--scheduler {address}: worker {blind[0]} does not see {folder}: put the results on a "
-                             "file system that all workers share")  # fmt: skip
-        for worker, theirs in client.run(program, on_error="return").items():
+        for worker, sees in _asked(client, os.path.exists, str(probe)):
+            if sees is not True:
+                raise UsageError(f"--scheduler {address}: worker {worker} does not see {folder}: put the results on a "
+                                 "file system that all workers share")  # fmt: skip
+        for worker, theirs in _asked(client, program):
             if theirs != program():
                 raise UsageError(f"--scheduler {address}: worker {worker} runs another program: {theirs!s:.300}; "
                                  f"here it is {program()}")  # fmt: skip
     finally:
         probe.unlink(missing_ok=True)
+
+
+def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tuple[str, Any]]:
+    """What each worker answers, be it an error; one that is just leaving says nothing."""
+    answers = client.run(function, *values, on_error="return")
+    return [(worker, answer) for worker, answer in answers.items() if not isinstance(answer, OSError)]
 
 
 def on_cluster(

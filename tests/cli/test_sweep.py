@@ -76,7 +76,7 @@ def test_a_grid_in_one_table(case, tmp_path):
         assert row["failure_mode"] == "sliding"
         summary = json.loads((tmp_path / "out" / "runs" / row["run"] / "summary.json").read_text())
         assert repr(summary["failure_load"]) == row["failure_load"]
-        again = tmp_path / "again"
+    again = tmp_path / "again"
     code, out, _ = dem("run", tmp_path / "out" / "runs" / rows[0]["run"] / "case.toml", "-o", again, "--json")
     assert (code, repr(json.loads(out)["failure_load"])) == (0, rows[0]["failure_load"])
     with sqlite3.connect(tmp_path / "out" / "sweep.sqlite") as base:
@@ -115,7 +115,7 @@ def test_more_values_leave_the_runs_that_are_there(case, tmp_path):
     dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
     before = {row["run"] for row in table(tmp_path / "out")}
     case.write_text(GRID.replace("[0.3, 0.4]", "[0.3, 0.35, 0.4]"), encoding="utf-8")
-    _, out, err = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    _, _, err = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
     assert "6 of 9 runs are there already" in err
     assert before < {row["run"] for row in table(tmp_path / "out")}
 
@@ -149,9 +149,8 @@ def test_a_fault_of_the_program_in_one_run_stops_nobody(case, tmp_path, monkeypa
         return solve(case, *rest, **more)
 
     monkeypatch.setattr(dem_cli.solve.run, "run", sometimes)
-    code, _, _ = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    assert dem("sweep", case, "-o", tmp_path / "out", "-j", 1)[0] == 1
     rows = table(tmp_path / "out")
-    assert code == 1
     assert [row["status"] for row in rows] == ["ok"] * 3 + ["failed"] * 3
     assert rows[3]["reason"] == "internal error: ZeroDivisionError: of one run"
     kept = json.loads((tmp_path / "out" / "runs" / rows[3]["run"] / "summary.json").read_text())
@@ -267,17 +266,17 @@ def test_ctrl_c_keeps_what_is_done(case, tmp_path):
 def cluster(tmp_path, workers: int = 2):
     """A scheduler and workers as processes of their own, as on a SLURM machine; gives the address."""
     place = tmp_path / "scheduler.json"
-    dask = [sys.executable, "-m", "distributed.cli"]
+    module, file = [sys.executable, "-m"], ["--no-dashboard", "--scheduler-file", str(place)]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": ENVIRONMENT, "cwd": tmp_path}
     running = [
         subprocess.Popen(
-            [*dask[:-1], "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-             "--scheduler-file", str(place)], **quiet)  # fmt: skip
+            [*module, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *file], **quiet
+        )
     ]
     running += [
         subprocess.Popen(
-            [*dask[:-1], "distributed.cli.dask_worker", "--scheduler-file", str(place), "--nthreads", "1", "--no-nanny",
-             "--no-dashboard"], **quiet)  # fmt: skip
+            [*module, "distributed.cli.dask_worker", "--nthreads", "1", "--no-nanny", *file], **quiet
+        )
         for _ in range(workers)
     ]
     try:

@@ -29,8 +29,11 @@ def problem(**table) -> str:
 
 def test_a_grid_has_every_combination_the_last_key_fastest():
     assert values(**{FRICTION: [0.5, 0.6], COURSES: [2, 3]}) == [
-        {FRICTION: 0.5, COURSES: 2}, {FRICTION: 0.5, COURSES: 3}, {FRICTION: 0.6, COURSES: 2}, {FRICTION: 0.6, COURSES: 3},
-    ]  # fmt: skip
+        {FRICTION: 0.5, COURSES: 2},
+        {FRICTION: 0.5, COURSES: 3},
+        {FRICTION: 0.6, COURSES: 2},
+        {FRICTION: 0.6, COURSES: 3},
+    ]
 
 
 def test_keys_without_quotes_are_the_same_keys():

@@ -1,0 +1,89 @@
+"""Many runs: runs per second over the number of processes, and what a run of a sweep costs beside its solution."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from dem_cli.bench.cases import KNOWN
+from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.table import lines_of, percent, seconds
+
+PICTURES: dict[str, Any] = {}
+WORKERS = "processes"
+RUNS, FEW = 1000, 20
+FRICTIONS = 'sweep."joints.dry.friction" = {{ from = 0.5, to = 0.7, count = {count} }}\n'
+
+
+class Swept(NamedTuple):
+    """What a sweep took [s], all its processes together for `cpu`, and what its runs found."""
+
+    wall: float
+    cpu: float
+    solving: float  # in the solver, as the runs say
+    worst: float  # largest relative error of a failure load
+
+
+def measure(options: Options) -> Found:
+    """`dem sweep` of COL14 over its friction, which does not change its failure load, from shell to shell."""
+    found = Found()
+    known, count = KNOWN["COL14"], FEW if options.quick else RUNS
+    cores = os.cpu_count() or 1
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        text = Path(__file__).with_name(f"{known.file}.toml").read_text(encoding="utf-8")
+        for number in (count, 2):
+            (place / f"{number}.toml").write_text(FRICTIONS.format(count=number) + text, encoding="utf-8")
+        sweep(place, 2, 1, known)  # kernels compiled
+        for jobs in sorted({1, 2, 4, 8, 16, cores}):
+            if jobs > cores:
+                break
+            done = [sweep(place, count, jobs, known) for _ in range(options.rounds(2))]
+            best = min(done, key=lambda one: one.wall)
+            numbers = {"runs": count, "cpu": best.cpu, "solving": best.solving, "error": best.worst}
+            found.records.append(record(known.name, WORKERS, jobs, [one.wall for one in done], **numbers))
+    if cores == 1:
+        found.notes.append("one core: only one process")
+    return found
+
+
+def sweep(place: Path, count: int, jobs: int, known: Any) -> Swept:
+    """One sweep, in a folder of its own."""
+    output = place / f"out-{time.monotonic_ns()}"
+    words = [sys.executable, "-m", "dem_cli", "sweep", str(place / f"{count}.toml"), "-o", str(output)]
+    begun, spent = time.perf_counter(), cpu_of_children()
+    subprocess.run([*words, "-j", str(jobs), "-q", "--json"], check=True, stdout=subprocess.DEVNULL)
+    wall, cpu = time.perf_counter() - begun, cpu_of_children() - spent
+    summaries = [json.loads(path.read_text(encoding="utf-8")) for path in output.glob("runs/*/summary.json")]
+    worst = max(abs(known.error(summary["failure_load"])) for summary in summaries)
+    return Swept(wall, cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
+
+
+def cpu_of_children() -> float:
+    """CPU seconds of all processes that were started here and have ended, and of theirs."""
+    spent = os.times()
+    return spent.children_user + spent.children_system
+
+
+def page(records: list[Record]) -> list[str]:
+    """The table."""
+    head = ("processes", "runs", "wall clock", "runs per second", "CPU per run", "of it in the solver", "largest error")
+    rows = []
+    for r in records:
+        n = r.found["runs"]
+        share = f"{1000 * r.found['solving'] / n:.1f} ms"
+        spent = f"{1000 * r.found['cpu'] / n:.1f} ms"
+        rows.append((str(r.value), f"{n:,}", seconds(r.best), f"{n / r.best:.1f}", spent, share,
+                     percent(r.found["error"])))  # fmt: skip
+    text = (
+        f"`dem sweep` of {records[0].case} over values of its friction, from shell to shell: start of the processes,"
+        " validation of all cases, a folder per run, tables. CPU of all processes together; the solver as runs"
+        " measure it, in wall clock."
+    )
+    return [text, "", *lines_of(head, rows)]
