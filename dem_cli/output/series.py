@@ -27,10 +27,14 @@ _TEXT = h5py.string_dtype()
 
 
 class Peak(NamedTuple):
-    """The largest value of a monitor, by size."""
+    """The largest values of a monitor: by size, to the positive side and to the negative one."""
 
-    peak: float  # with its sign
-    time: float  # when [s]
+    peak: float  # the larger of max and min by size, with its sign
+    time: float  # of the peak [s]
+    max: float
+    max_time: float  # [s]
+    min: float
+    min_time: float  # [s]
     residual: float  # the last value
 
 
@@ -69,18 +73,17 @@ class SeriesWriter:
         if not self.names:
             return
         values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
-        largest = np.abs(values).argmax(axis=0)
-        for i, row in enumerate(largest.tolist()):
-            here = Peak(float(values[row, i]), float(samples.times[row]), float(samples.monitors[-1, i]))
-            if i == len(self._peaks):
-                self._peaks.append(here)
-            elif abs(here.peak) > abs(self._peaks[i].peak):
-                self._peaks[i] = here
-            else:
-                self._peaks[i] = self._peaks[i]._replace(residual=here.residual)
+        for i, column in enumerate(values.T):
+            most, least = ((float(column[n]), float(samples.times[n])) for n in (column.argmax(), column.argmin()))
+            if i < len(self._peaks):  # the earlier one of two that are equal
+                before = self._peaks[i]
+                most = most if most[0] > before.max else (before.max, before.max_time)
+                least = least if least[0] < before.min else (before.min, before.min_time)
+            largest = least if -least[0] > most[0] or (-least[0] == most[0] and least[1] < most[1]) else most
+            self._peaks[i : i + 1] = [Peak(*largest, *most, *least, float(samples.monitors[-1, i]))]
 
     def peaks(self) -> dict[str, dict[str, float | str]]:
-        """Peak, its time, the last value and the unit of each monitor, by name."""
+        """Extremes with their times, the last value and the unit of each monitor, by name."""
         found = zip(self.names, self.quantities, self._peaks)
         return {name: {**peak._asdict(), "unit": UNITS[quantity]} for name, quantity, peak in found}
 

@@ -65,9 +65,15 @@ def test_peaks_keep_their_sign_over_all_stretches(tmp_path):
     for part in (slice(0, 5), slice(5, 11), slice(11, 11)):
         writer.samples(Samples(times[part], np.zeros((11, 3, 2))[part], values[part]))
     assert writer.measured({})["peaks"] == {
-        "top, left": {"peak": -5.0, "time": 0.8, "residual": 0.0, "unit": "m/s2"},
-        "hinge": {"peak": 0.25, "time": 1.0, "residual": 0.25, "unit": "m"},
-    }
+        "top, left": {
+            "peak": -5.0, "time": 0.8, "max": 2.0, "max_time": pytest.approx(0.3), "min": -5.0, "min_time": 0.8,
+            "residual": 0.0, "unit": "m/s2",
+        },
+        "hinge": {
+            "peak": 0.25, "time": 1.0, "max": 0.25, "max_time": 1.0, "min": 0.0, "min_time": 0.0,
+            "residual": 0.25, "unit": "m",
+        },
+    }  # fmt: skip
     writer.abandon()
 
 
