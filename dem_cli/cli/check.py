@@ -26,6 +26,11 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
     model = api.build_model(loaded)
     warn(loaded)
     found = rows(loaded.case, model)
+    if loaded.case.sweep is not None:
+        from dem_cli.cli.sweep import planned
+
+        plan = planned(loaded)
+        found.append(("sweep", f"{len(plan.runs):,} runs of `dem sweep` over {', '.join(plan.keys)}"))
     if find_spec("dem_cli.solve.estimate"):
         with loaded.located():
             found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)

@@ -190,6 +190,18 @@ def test_dry_run_prints_the_plan(case, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_check_says_how_many_runs_there_are(case):
+    code, out, _ = dem("check", case)
+    assert code == 0
+    assert "6 runs of `dem sweep` over joints.dry.friction, structure.0.courses" in out
+
+
+def test_the_template_is_a_sweep(tmp_path):
+    assert dem("new", "sweep", "-o", tmp_path / "new.toml")[0] == 0
+    code, out, _ = dem("sweep", tmp_path / "new.toml", "--dry-run")
+    assert (code, len(out.splitlines())) == (0, 11)
+
+
 def test_shards_share_a_folder(case, tmp_path):
     dem("sweep", case, "-o", tmp_path / "whole", "-j", 1)
     code, out, _ = dem("sweep", case, "-o", tmp_path / "parts", "-j", 1, "--shard", "2/2")

@@ -1,0 +1,64 @@
+"""What a user sees of many runs under way."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+from dem_cli.cli import count
+from dem_cli.cli.count import Count
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(count, "time", clock)
+    return clock
+
+
+def test_a_line_says_where_it_stands(clock):
+    bar = Count(1000, 400, stream=io.StringIO())
+    for _ in range(20):
+        clock.now += 0.5
+        bar.update(failed=False)
+    assert bar.line() == "420 of 1,000 runs, 2 runs/s, about 5 min left"
+    bar.update(failed=True)
+    assert "421 of 1,000 runs, 1 failed" in bar.line()
+
+
+def test_slow_runs_have_their_time(clock):
+    bar = Count(10, stream=io.StringIO())
+    clock.now += 90.0
+    bar.update()
+    assert bar.line() == "1 of 10 runs, 90 s a run, about 14 min left"
+
+
+def test_lines_come_every_ten_seconds_and_never_when_quiet(clock):
+    for quiet in (False, True):
+        stream = io.StringIO()
+        with Count(100, quiet=quiet, stream=stream) as bar:
+            for _ in range(50):
+                clock.now += 0.5
+                bar.update()
+        assert stream.getvalue().count("\n") == (0 if quiet else 2)
+
+
+def test_a_bar_on_a_terminal():
+    stream = io.StringIO()
+    stream.isatty = lambda: True  # type: ignore[method-assign]
+    with Count(3, stream=stream) as bar:
+        for _ in range(3):
+            bar.update(failed=True)
+    assert "3/3" in stream.getvalue()
+    assert "failed" in stream.getvalue()
