@@ -14,6 +14,7 @@ from dem_cli.sweep.identity import program
 from dem_cli.sweep.pool import Died
 from dem_cli.sweep.run import Job, Summary
 
+GONE = "the cluster went away; what was done is kept, run the same command again"
 PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
 
 
@@ -71,25 +72,40 @@ def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tupl
 def on_cluster(
     client: Any, do: Callable[[Job], Summary], jobs: Sequence[Job]
 ) -> Iterator[tuple[int, Summary | Died]]:
-    """Number and result of each job as they come. A job whose worker dies is done again by another, a few times."""
+    """Number and result of each job as they come.
+
+    A job whose worker dies is done again by another, a few times, by Dask; what seems to kill its workers is then done
+    alone, because innocent jobs that waited at the same worker are suspected too.
+    """
+    suspects: list[int] = []
+    for number, result in _asked_for(client, do, list(enumerate(jobs)), ""):
+        if isinstance(result, Died):
+            suspects.append(number)
+        else:
+            yield number, result
+    for number in suspects:
+        yield from _asked_for(client, do, [(number, jobs[number])], "-alone")
+
+
+def _asked_for(
+    client: Any, do: Callable[[Job], Summary], jobs: Sequence[tuple[int, Job]], suffix: str
+) -> Iterator[tuple[int, Summary | Died]]:
+    """Number and result of numbered jobs. Raises SolverError where the cluster goes away."""
     from dask.distributed import CancelledError, KilledWorker, as_completed
 
-    if not jobs:
-        return
-    numbers = {job.id: number for number, job in enumerate(jobs)}
-    futures = client.map(do, jobs, key=list(numbers), pure=False, batch_size=200)
+    numbers = {job.id + suffix: number for number, job in jobs}
+    futures = client.map(do, [job for _, job in jobs], key=list(numbers), pure=False, batch_size=200) if jobs else []
     try:
         for future in as_completed(futures, loop=client.loop):
-            error = future.exception() if future.status == "error" else None
-            if isinstance(error, KilledWorker):
+            if isinstance(future.exception() if future.status == "error" else None, KilledWorker):
                 yield numbers[future.key], Died()
             elif future.cancelled():
-                raise SolverError("the cluster went away; what was done is kept, run the same command again")
+                raise SolverError(GONE)
             else:
                 yield numbers[future.key], future.result()
             future.release()
     except CancelledError:
-        raise SolverError("the cluster went away; what was done is kept, run the same command again") from None
+        raise SolverError(GONE) from None
     except BaseException:
         client.cancel(futures)
         raise

@@ -1,0 +1,50 @@
+"""Jobs on a Dask cluster: one that kills its workers is found out, and its neighbours are not blamed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+SCRIPT = """
+import os, signal
+from pathlib import Path
+from typing import NamedTuple
+
+class Job(NamedTuple):
+    id: str
+    number: int
+
+def work(job):
+    if job.number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"number": job.number}
+
+if __name__ == "__main__":
+    import deadly
+    from dask.distributed import LocalCluster
+    from dem_cli.sweep.cluster import connected, on_cluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1") as cluster:
+        with connected(cluster.scheduler_address, Path(".")) as client:
+            for number, result in on_cluster(client, deadly.work, [deadly.Job(f"job-{n}", n) for n in range(6)]):
+                print("result", number, result["number"] if isinstance(result, dict) else type(result).__name__)
+"""
+
+
+@pytest.mark.slow
+def test_a_job_that_kills_its_workers(tmp_path):
+    pytest.importorskip("distributed")
+    (tmp_path / "deadly.py").write_text(SCRIPT, encoding="utf-8")
+    path = os.pathsep.join([str(ROOT), str(tmp_path)])
+    done = subprocess.run(
+        [sys.executable, "deadly.py"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True
+    )
+    found = sorted(line for line in done.stdout.splitlines() if line.startswith("result"))
+    expected = [f"result {n} {n}" for n in range(6)]
+    expected[3] = "result 3 Died"
+    assert found == expected, done.stderr
