@@ -42,7 +42,11 @@ def test_a_job_that_kills_its_workers(tmp_path):
     (tmp_path / "deadly.py").write_text(SCRIPT, encoding="utf-8")
     path = os.pathsep.join([str(ROOT), str(tmp_path)])
     done = subprocess.run(
-        [sys.executable, "deadly.py"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True
+        [sys.executable, "deadly.py"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": path},
+        capture_output=True,
+        text=True,
     )
     found = sorted(line for line in done.stdout.splitlines() if line.startswith("result"))
     expected = [f"result {n} {n}" for n in range(6)]
