@@ -29,7 +29,9 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "new": "Print a commented case file to start from.",
     "schema": "Print the JSON Schema of the case file.",
     "explain": "Say what a key of the case file means.",
-    "plot": "Draw the results of a run.",
+    "plot": "Draw the results of runs and sweeps.",
+    "render": "Stills and movies of a run.",
+    "report": "Write one page of HTML with all results of a run or sweep.",
     "export": "Write results in other formats.",
     "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }

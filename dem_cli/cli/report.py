@@ -1,0 +1,69 @@
+"""`dem report`: one page of HTML with everything that a run or a sweep left."""
+
+from __future__ import annotations
+
+import json
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+import click
+
+from dem_cli.cli import console
+from dem_cli.errors import UsageError
+
+NAME = "report.html"
+
+
+@click.command("report", short_help="Write one page of HTML with all results.")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help=f"Default: DIR/{NAME}.")
+@click.option("--open", "show", is_flag=True, help="Open it in the browser.")
+def command(folder: Path, output: Path | None, show: bool) -> None:
+    """Write one page of HTML with everything that `dem run` or `dem sweep` left in DIR.
+
+    The page is one file that loads nothing: answer, warnings, audit, a view of the structure to turn and play, charts,
+    tables, the case.
+    """
+    from dem_cli.report import page, run, sweep
+
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: no such folder")
+    target = output or folder / NAME
+    if target.is_dir():
+        raise UsageError(f"{target}: a folder; -o takes the name of a file")
+    if sweep.is_sweep(folder):
+        text = sweep.page(folder, target.parent)
+    else:
+        summary = _summary(folder)
+        text = run.page(folder, summary, said(summary))
+    page.write(target, text)
+    console.show(f"{target}  ({len(text.encode()) / 1e6:.1f} MB)")
+    if show:
+        webbrowser.open(target.resolve().as_uri())
+
+
+def said(summary: dict[str, Any]) -> Any:
+    """The lines that `dem run` prints of a summary, and its verdicts."""
+    from dem_cli.cli.reference import one_line
+    from dem_cli.output.reference import as_declared, from_summary
+    from dem_cli.report.run import Said
+
+    if not summary:  # of a killed run
+        return Said([], [])
+    answers = from_summary(summary.get("reference"))
+    verdicts = [("good" if as_declared(answer) else "bad", f"reference: {one_line(answer)}") for answer in answers]
+    return Said(console.answer_rows(summary), verdicts)
+
+
+def _summary(folder: Path) -> dict[str, Any]:
+    from dem_cli.output.folder import SUMMARY
+
+    path = folder / SUMMARY
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: not valid JSON ({error})") from None
+    return found if isinstance(found, dict) else {}

@@ -1,0 +1,226 @@
+"""What a page says in words: the answer in one line, how far the run can be trusted, and what the model is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.model.scales import CLOSURE, OVERLAP, smallest_edge
+from dem_cli.output.reader import Results
+from dem_cli.output.shapes import rest_vertices
+from dem_cli.output.store import IN_SECONDS
+from dem_cli.post import style
+
+KINDS = {
+    "pushover": "Pushover", "gravity": "Own weight", "settlement": "Settlement", "cycle": "Load path",
+    "time-history": "Time history", "fragility": "Fragility", "modes": "Natural modes", "safety": "Factor of safety",
+    "limit": "Limit analysis",
+}  # fmt: skip
+BALANCED = 1e-5  # unbalanced force over the block's own weight that solve/equilibrium.py accepts
+GOOD, LOOK, BAD = "good", "look", "bad"
+_MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
+
+
+class Answer(NamedTuple):
+    """The first thing that a reader sees."""
+
+    label: str
+    value: str
+    more: str  # how sure, and how it fails
+    tone: str  # GOOD, LOOK or BAD
+
+
+class Check(NamedTuple):
+    """One thing that tells a sound run from a doubtful one."""
+
+    name: str
+    value: str
+    tone: str  # "" where it says nothing by itself
+    words: str  # what is good
+
+
+def answer(summary: Mapping[str, Any]) -> Answer:
+    """Of any kind; a run that did not end well says so."""
+    status = str(summary.get("status", "unfinished"))
+    tone = GOOD if status == "ok" else BAD
+    found = (_ANSWERS.get(str(summary.get("kind"))) or _status)(summary)
+    if status != "ok" and found[1] != status:
+        found = (found[0], found[1], "; ".join(filter(None, (status, found[2]))))
+    return Answer(*found, tone)
+
+
+def _status(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    status = str(summary.get("status", "unfinished"))
+    moved = summary.get("largest_displacement")
+    more = "" if moved is None else f"largest displacement {_metres(moved)}"
+    return ("result", "stands" if summary.get("kind") == "gravity" and status == "ok" else status, more)
+
+
+def _load(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    if load is None:
+        turns = summary.get("turning_points")
+        loads = [turn["load"] for turn in turns or ()]
+        if loads:
+            return ("load multiplier", f"{min(loads):.4g} … {max(loads):.4g}", "followed the load path without failure")
+        return _status(summary)
+    more = f"between {bracket[0]:.4f} and {bracket[1]:.4f}" if bracket and None not in bracket else ""
+    mode = {"mixed": "sliding and rocking"}.get(mode := summary.get("failure_mode"), mode)
+    return ("failure load λ", f"{load:.4f}", ", ".join(filter(None, (more, mode and f"failure by {mode}"))))
+
+
+def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    if summary.get("collapsed") is None:
+        return _status(summary)
+    peaks = summary.get("peaks") or {}
+    more = [f"{name}: peak {_value(found['peak'], found['unit'])}" for name, found in list(peaks.items())[:1]]
+    at = summary.get("collapse_time")
+    fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
+    ground = summary.get("peak_ground_acceleration")
+    more += [] if ground is None else [f"peak ground acceleration {ground:.3g} m/s²"]
+    return ("result", fell if summary["collapsed"] else "stood", ", ".join(more))
+
+
+def _fragile(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    median = summary.get("median")
+    if median is None:
+        return ("half collapse at", "no median", str(summary.get("status", "")))
+    sure = summary.get("confidence")
+    more = f"dispersion {summary['dispersion']:.2g}"
+    if sure:
+        more += f", {100 * sure['level']:.0f} % confidence {sure['median'][0]:.4g} to {sure['median'][1]:.4g}"
+    unit = summary.get("unit_acceleration", 1.0)
+    more += f", {len(summary.get('collapse_intensities') or ())} records"
+    if unit == 1.0:
+        return ("half collapse at", f"{median:.4g} m/s²", more)
+    return ("half collapse at intensity", f"{median:.4g}", f"{median * unit:.3g} m/s², {more}")
+
+
+def _modes(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    found = summary.get("frequencies")
+    if not found:
+        return _status(summary)
+    more = f"highest {summary['highest_frequency']:.4g} Hz" if summary.get("highest_frequency") else ""
+    return ("first frequency", f"{found[0]:.4g} Hz", f"{len(found)} modes" + (f", {more}" if more else ""))
+
+
+def _safety(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    strength = summary.get("vary") == "strength"
+    value = summary.get("safety_factor" if strength else "critical_value")
+    stands, fails = summary.get("stands_at"), summary.get("fails_at")
+    label = "factor of safety" if strength else f"critical {summary.get('vary', 'value')}"
+    pairs = (("stands", stands), ("fails", fails))
+    more = ", ".join(f"{word} at {number:.5g}" for word, number in pairs if number is not None)
+    return (label, "none found" if value is None else f"{value:.4g}", more)
+
+
+_ANSWERS = {
+    "pushover": _load, "cycle": _load, "limit": _load, "time-history": _shaken, "fragility": _fragile, "modes": _modes,
+    "safety": _safety,
+}  # fmt: skip
+
+
+def audit(summary: Mapping[str, Any], results: Results | None) -> list[Check]:
+    """How far this run can be trusted, with what is good in plain words."""
+    status = str(summary.get("status", "unfinished"))
+    checks = [Check("status", status, GOOD if status == "ok" else BAD, "“ok”: the analysis reached its end.")]
+    closure = summary.get("energy_closure")
+    if closure is not None:
+        tone = GOOD if abs(closure) <= CLOSURE else BAD
+        words = f"What the loads put in is stored, moving or lost to friction and damping; good below {CLOSURE:.0%}."
+        checks.append(Check("energy that is missing", f"{abs(closure):.2g} of the largest entry", tone, words))
+    overlap = summary.get("largest_overlap")
+    if overlap is not None and results is not None:
+        share = overlap / smallest_edge(results.model)
+        hit = summary.get("kind") in IN_SECONDS  # blocks that fall sink in for a moment
+        tone = GOOD if share <= OVERLAP else LOOK if hit else BAD
+        text = f"{_metres(overlap)}, {share:.2g} of the smallest edge"
+        words = f"Stone does not sink into stone; good below {OVERLAP:.0%}{', but for blocks that fall' * hit}."
+        checks.append(Check("largest overlap", text, tone, words))
+    return checks + _balance(summary, results)
+
+
+def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Check]:
+    """Of the state under own weight, which every static analysis starts from, and of the last state."""
+    checks = []
+    words = f"Largest force on a block that nothing balances, over its own weight; at rest below {BALANCED:.0e}."
+    if results is not None and len(results.history.get("stage", ())):
+        rows = np.flatnonzero(results.history["stage"] == "gravity")
+        if len(rows):
+            value = float(results.history["unbalanced"][rows[-1]])
+            tone = GOOD if value <= BALANCED else LOOK
+            checks.append(Check("unbalanced under own weight", f"{value:.1g}", tone, words))
+    last = summary.get("unbalanced_force")
+    if last is not None and (not checks or f"{last:.1g}" != checks[0].value):
+        falls = summary.get("failure_load") is not None or summary.get("kind") == "safety"
+        tone = GOOD if last <= BALANCED else ""
+        moving = "The last state is one of failure: blocks move, and forces need not balance." if falls else words
+        checks.append(Check("unbalanced in the end", f"{last:.1g}", tone, moving))
+    return checks
+
+
+def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Size, mass and number of everything."""
+    free = ~model.fixed
+    corners = rest_vertices(model)[np.repeat(free[model.part_blocks], np.diff(model.part_starts))]
+    sides = " × ".join(_metres(float(side)) for side in np.ptp(corners, axis=0)) if free.any() else "–"
+    depth = sorted({f"{value:.3g}" for value in model.thickness[free].tolist()}, key=float)
+    rows = [
+        ("blocks", f"{model.n_blocks:,}, {int(model.fixed.sum()):,} of them fixed"),
+        ("joints", f"{summary['joints']:,}, {summary['contacts']:,} contact points" if "contacts" in summary else "–"),
+        ("mass that can move", f"{float(model.masses[free].sum()):.6g} kg"),
+        ("width × height" if model.dimension == 2 else "size", sides),
+    ]
+    if model.dimension == 2 and depth:
+        rows.append(("thickness", f"{depth[0]} m" if len(depth) == 1 else f"{depth[0]} to {depth[-1]} m"))
+    for i, name in enumerate(model.material_names):
+        own = free & (model.block_material == i)
+        if own.any():
+            rows.append((f"material “{name}”", f"{int(own.sum()):,} blocks, {float(model.masses[own].sum()):.6g} kg"))
+    return rows
+
+
+def all_numbers(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Everything in summary.json by its path; long lists are counted, not listed."""
+    found: list[tuple[str, str]] = []
+
+    def walk(path: str, value: Any) -> None:
+        if isinstance(value, Mapping):
+            for key, item in value.items():
+                walk(f"{path}.{key}" if path else str(key), item)
+        elif isinstance(value, list) and any(isinstance(item, (Mapping, list)) for item in value[:_MOST_IN_LIST]):
+            for i, item in enumerate(value[:_MOST_IN_LIST]):
+                walk(f"{path}.{i}", item)
+            if len(value) > _MOST_IN_LIST:
+                found.append((path, f"… {len(value)} in all, see summary.json"))
+        else:
+            found.append((path, _listed(value) if isinstance(value, list) else written(value)))
+
+    walk("", summary)
+    return found
+
+
+def _listed(values: Sequence[Any]) -> str:
+    shown = ", ".join(map(written, values[:_MOST_IN_LIST]))
+    return shown + (f", … {len(values)} in all" if len(values) > _MOST_IN_LIST else "") or "none"
+
+
+def written(value: Any) -> str:
+    """As summary.json has it: every digit of a number."""
+    if isinstance(value, bool) or value is None:
+        return {True: "true", False: "false", None: "–"}[value]
+    return str(value)
+
+
+def _metres(value: float) -> str:
+    factor, unit = style.length_unit(abs(value))
+    return f"{factor * value:.3g} {unit}"
+
+
+def _value(value: float | None, unit: str) -> str:
+    if value is None:
+        return "–"
+    return (_metres(value) if unit == "m" else f"{value:.3g} {unit}").replace("-", "−", value < 0)

@@ -1,0 +1,81 @@
+"""The page itself: a template, the style sheet and the scripts in one file, closed to the network.
+
+The policy in its head lets the browser run the scripts of this file by their hashes, show pictures that are in it, and
+load nothing else.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from dem_cli.output.folder import write_error
+
+ASSETS = Path(__file__).parent / "assets"
+TEMPLATE, STYLE, THREE = "page.html", "page.css", "three.min.js"
+SCRIPTS = ("chart.js", "scene.js", "player.js", "table.js", "main.js")
+
+
+def render(data: Mapping[str, Any], **shown: Any) -> str:
+    """The page as text. data: what the scripts read, view, charts or runs; shown: what the template shows."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    libraries = [asset(THREE)] if data.get("view") else []
+    scripts = [*libraries, "".join(["'use strict';\n", *map(asset, SCRIPTS)])]
+    templates = Environment(
+        loader=FileSystemLoader(ASSETS),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    text: str = templates.get_template(TEMPLATE).render(
+        policy=policy(scripts, [asset(STYLE)]), style=asset(STYLE), scripts=scripts, data=script_json(data), **shown
+    )
+    return text
+
+
+def script_json(data: Mapping[str, Any]) -> str:
+    """JSON that no text in it can leave the script element with. Raises ValueError on what JSON does not know."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def policy(scripts: Iterable[str], styles: Iterable[str]) -> str:
+    """Content-Security-Policy: these scripts and styles, pictures inside the file, and nothing from anywhere."""
+    return "; ".join((
+        "default-src 'none'",
+        f"script-src {' '.join(map(_hash, scripts))}",
+        f"style-src {' '.join(map(_hash, styles))}",
+        "img-src data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    ))  # fmt: skip
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+@cache
+def asset(name: str) -> str:
+    """A file of this package."""
+    return (ASSETS / name).read_text(encoding="utf-8")
+
+
+def write(path: Path, text: str) -> None:
+    """The whole page under its name, or nothing. Raises OutputError."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        part.write_text(text, encoding="utf-8", newline="\n")
+        os.replace(part, path)
+    except OSError as error:
+        raise write_error(error, path) from None
+    finally:
+        part.unlink(missing_ok=True)

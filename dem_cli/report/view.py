@@ -1,0 +1,196 @@
+"""What the interactive view of a page draws: blocks as polyhedra, and of each frame the poses, joints and forces.
+
+Everything has three columns, and hangs on blocks by arms in their own axes: the view can exaggerate displacements
+without new numbers, and 3D needs no other view.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.reader import Results
+from dem_cli.output.record import STATES, ContactRecord, Frame
+from dem_cli.output.shapes import in_space, rest_orientations, rotations
+from dem_cli.output.store import IN_SECONDS
+from dem_cli.post import measures
+from dem_cli.post import view as stage
+from dem_cli.post.solids import surface
+from dem_cli.report.pack import pack
+
+MOST_BYTES = 4_000_000  # of all frames; where there is more, frames are left out
+AS_BUILT = "as built"
+MODE = "mode"  # stage of frames that show natural modes
+_HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
+_FAINT = len(STATES)  # the code of these
+_SINGLE = 0.05  # length of a joint of one point, in sizes of its block
+
+
+def view(results: Results) -> dict[str, Any]:
+    """The scene as plain JSON; where the run kept no frames, the structure as it was built."""
+    model = results.model
+    frames = _shown(results.frames) or [_as_built(model)]
+    skin, series = surface(model), results.series
+    kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
+    chosen = [frames[i] for i in kept]
+    scales = [1.0 if frame.stage == MODE else measures.visible_scale(model, frame) for frame in chosen]
+    return {
+        "dimension": model.dimension,
+        "size": measures.size(model),
+        "ids": list(model.block_ids),
+        "materials": [model.material_names[i] for i in model.block_material],
+        "masses": pack(model.masses),
+        "fixed": pack(model.fixed),
+        "centroids": pack(in_space(model.centroids)),
+        "corners": pack(skin.points),
+        "corner_blocks": pack(skin.owners),
+        "faces": pack(skin.faces),
+        "face_blocks": pack(skin.face_owners),
+        "frames": [
+            {**_frame(model, frame, scale), "says": _says(frame, results)}
+            for frame, scale in zip(chosen, scales, strict=True)
+        ],
+        "left_out": len(frames) - len(chosen),
+        "scale": min(scales),
+        "start": _first_shown(chosen, results.summary),
+        "in_seconds": results.kind in IN_SECONDS,
+        "modes": chosen[0].stage == MODE,
+        "still": chosen[0].stage == AS_BUILT,
+        "ground": in_space(np.stack([stage.ground(series, frame) for frame in chosen])).tolist(),
+        "ground_moves": series is not None and bool(series.base[:, 2].any()),
+        "has_joints": any(len(frame.contacts.joint) for frame in chosen),
+        "carried": stage.carried(results, min(scales)),
+    }
+
+
+def turns(orientations: np.ndarray) -> np.ndarray:
+    """Rotation vectors [rad], (n, 3), of angles (n, 1) or of unit quaternions (n, 4), scalar first."""
+    if orientations.shape[1] == 1:
+        return np.column_stack((np.zeros((len(orientations), 2)), orientations))
+    sine = np.linalg.norm(orientations[:, 1:], axis=1)
+    angle = 2.0 * np.arctan2(sine, orientations[:, 0])
+    factor = np.divide(angle, sine, out=np.full(len(sine), 2.0), where=sine > 0.0)
+    return orientations[:, 1:] * factor[:, np.newaxis]
+
+
+def _shown(frames: Sequence[Frame]) -> list[Frame]:
+    """Of a modal analysis the modes only."""
+    modes = [frame for frame in frames if frame.stage == MODE]
+    return modes or list(frames)
+
+
+def _as_built(model: Model) -> Frame:
+    """Nothing has moved, nothing is known of the joints."""
+    d, n = model.dimension, model.n_blocks
+    none, vectors = np.zeros(0), np.zeros((0, d))
+    pairs, states = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int8)
+    contacts = ContactRecord(pairs[:, 0], pairs, vectors, vectors, none, np.zeros((0, d - 1)), none, none, states)
+    still = np.zeros((n, model.inertias.shape[1] + d))
+    return Frame(AS_BUILT, 0, 0.0, 0.0, model.centroids, rest_orientations(model), still, contacts)
+
+
+def _bytes(model: Model, frame: Frame) -> int:
+    return 24 * model.n_blocks + 50 * len(frame.contacts.joint)
+
+
+def _always(frames: Sequence[Frame], summary: Mapping[str, Any]) -> set[int]:
+    """First, last, and the one that the page opens at."""
+    return {0, len(frames) - 1, _first_shown(frames, summary)}
+
+
+def _within(budget: int, sizes: Sequence[int], always: set[int]) -> list[int]:
+    """Every n-th frame, n as small as the budget allows, and those that must be there."""
+    n = len(sizes)
+    for stride in range(1, n + 1):
+        kept = sorted(always | set(range(0, n, stride)))
+        if sum(sizes[i] for i in kept) <= budget:
+            return kept
+    return sorted(always)
+
+
+def _first_shown(frames: Sequence[Frame], summary: Mapping[str, Any]) -> int:
+    """The first mode, the collapse or else the farthest instant of a structure that shakes, else the last frame."""
+    if frames[0].stage == MODE:
+        return 0
+    if summary.get("collapsed"):
+        at = summary.get("collapse_time") or frames[-1].time
+        return int(np.abs([frame.time - at for frame in frames]).argmin())
+    if summary.get("collapsed") is False:
+        return int(np.argmax([frame.displacement for frame in frames]))
+    return len(frames) - 1
+
+
+def _frame(model: Model, frame: Frame, scale: float) -> dict[str, Any]:
+    return {
+        "stage": frame.stage,
+        "step": frame.step,
+        "load": frame.load,
+        "time": frame.time,
+        "displacement": frame.displacement,
+        "scale": scale,
+        "shifts": pack(in_space(frame.positions - model.centroids)),
+        "turns": pack(turns(frame.orientations)),
+        **_joints(model, frame),
+        **_forces(frame),
+    }
+
+
+def _says(frame: Frame, results: Results) -> str:
+    """What tells a frame from the others: its frequency, its instant, or its load where that changes."""
+    if frame.stage == MODE:
+        return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
+    if results.kind in IN_SECONDS:
+        return f"{frame.time:.3f} s"
+    loads = results.history.get("load", np.zeros(0))
+    return f"λ = {frame.load:.4g}".replace("-", "−") if loads.any() else ""
+
+
+def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:
+    """Points in the axes of the block that each hangs on [m], (n, 3)."""
+    turned = rotations(frame.orientations)[owners]
+    return in_space(np.einsum("nji,nj->ni", turned, points - frame.positions[owners]))
+
+
+def _joints(model: Model, frame: Frame) -> dict[str, Any]:
+    """A stroke from each contact point to the middle of its joint, with the state that colours it."""
+    contacts = frame.contacts
+    _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
+    sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]
+    middles = (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
+    ends, alone = contacts.points, counts[owner] == 1
+    if alone.any():
+        along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * measures.size(model)
+        tangents = _tangents(contacts) * np.where(alone, along, 0.0)[:, np.newaxis]
+        ends, middles = ends - tangents, middles + tangents
+    first = contacts.blocks[:, 0]
+    hairline = _HAIRLINE * measures.largest_displacement(model, frame)
+    states = np.where((contacts.state == STATES.index("open")) & (contacts.gap < hairline), _FAINT, contacts.state)
+    strokes = np.stack((_arms(frame, ends, first), _arms(frame, middles, first)), axis=1)
+    return {
+        "stroke_blocks": pack(contacts.blocks),
+        "strokes": pack(strokes.reshape(-1, 6)),
+        "states": pack(states, "u1"),
+    }
+
+
+def _tangents(contacts: ContactRecord) -> np.ndarray:
+    """A direction in each contact plane, (n, d)."""
+    normals = contacts.normals
+    if normals.shape[1] == 2:
+        return np.column_stack((-normals[:, 1], normals[:, 0]))
+    helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
+    across = np.cross(normals, helper)
+    return across / np.linalg.norm(across, axis=1)[:, np.newaxis]
+
+
+def _forces(frame: Frame) -> dict[str, Any]:
+    """The resultant of each joint that is pressed, at its centre of pressure."""
+    found = measures.resultants(frame.contacts)
+    return {
+        "force_blocks": pack(found.blocks),
+        "force_arms": pack(_arms(frame, found.points, found.blocks[:, 0])),
+        "forces": pack(in_space(found.forces)),
+    }
