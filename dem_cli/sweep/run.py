@@ -68,10 +68,21 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[str |
             continue
         name = name_of(facts(case, case_text(case)))
         jobs.append(Job(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))  # type: ignore[arg-type]
+    _buildable(loaded, next(job for job in jobs if job is not None) if len(wrong) < len(jobs) else None)
     mistaken = _mistaken(plan.runs, wrong)
     if mistaken:
         raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
     return Sweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
+
+
+def _buildable(loaded: LoadedCase, first: Job | None) -> None:
+    """Raises CaseError where neither the first run nor the case itself has blocks to be solved: all would fail."""
+    if first is None:
+        return
+    try:
+        api.build_model(api.load_case(first.path, first.overrides, first.text))
+    except CaseError:
+        api.build_model(api.load_case(loaded.path, loaded.overrides, loaded.text))
 
 
 def _light(loaded: LoadedCase, plan: Plan) -> tuple[Override, ...]:

@@ -175,6 +175,14 @@ def test_mistakes_are_found_before_anything_runs(case, tmp_path, sweep, message)
     assert not (tmp_path / "out").exists()
 
 
+def test_a_case_without_a_model_is_refused_at_once(case, tmp_path):
+    block = '[[block]]\nid = "b"\nvertices = [[0, 0], [1, 0], [1, 1], [0, 1]]\n'  # in the foot of the column
+    case.write_text(SMALL + block + '[sweep]\n"joints.dry.friction" = [0.4, 0.5]\n', encoding="utf-8")
+    code, _, err = dem("sweep", case, "-o", tmp_path / "out")
+    assert (code, "overlap" in err) == (2, True)
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_folder_of_something_else_is_refused(case, tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     code, _, err = dem("sweep", case, "-o", tmp_path)
