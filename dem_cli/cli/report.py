@@ -25,6 +25,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     The page is one file that loads nothing: answer, warnings, audit, a view of the structure to turn and play, charts,
     tables, the case.
     """
+    from dem_cli.post.table import is_sweep
     from dem_cli.report import page, run, sweep
 
     if not folder.is_dir():
@@ -32,7 +33,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     target = output or folder / NAME
     if target.is_dir():
         raise UsageError(f"{target}: a folder; -o takes the name of a file")
-    if sweep.is_sweep(folder):
+    if is_sweep(folder):
         text = sweep.page(folder, target.parent)
     else:
         summary = _summary(folder)

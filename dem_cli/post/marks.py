@@ -47,7 +47,7 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
     contacts = frame.contacts
     hairline = _HAIRLINE * measures.largest_displacement(model, frame) / scale
     ends = contacts.points
-    middles = _middles(contacts)
+    middles = middles(contacts)
     along = middles - ends
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     single = lengths[:, 0] < 0.25 * width  # one point, or points that are one: a short stripe
@@ -69,7 +69,7 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
     return Stripes(points.reshape(-1, 3), faces.ravel(), np.repeat(contacts.state, 6), np.repeat(faint, 6))
 
 
-def _middles(contacts: ContactRecord) -> np.ndarray:
+def middles(contacts: ContactRecord) -> np.ndarray:
     """Middle of all points of its joint, for each point [m], (n, 2)."""
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
     sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.output.folder import write_error
+from dem_cli.output.summary import plain
 
 ASSETS = Path(__file__).parent / "assets"
 TEMPLATE, STYLE, THREE = "page.html", "page.css", "three.min.js"
@@ -42,8 +43,8 @@ def render(data: Mapping[str, Any], **shown: Any) -> str:
 
 
 def script_json(data: Mapping[str, Any]) -> str:
-    """JSON that no text in it can leave the script element with. Raises ValueError on what JSON does not know."""
-    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    """JSON that no text in it can leave the script element with; what is not finite becomes null."""
+    text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 

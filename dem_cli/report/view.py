@@ -16,7 +16,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.shapes import in_space, rest_orientations, rotations
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures
+from dem_cli.post import marks, measures
 from dem_cli.post import view as stage
 from dem_cli.post.solids import surface
 from dem_cli.report.pack import pack
@@ -158,9 +158,7 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
     """A stroke from each contact point to the middle of its joint, with the state that colours it."""
     contacts = frame.contacts
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
-    sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]
-    middles = (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
-    ends, alone = contacts.points, counts[owner] == 1
+    middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
     if alone.any():
         along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * measures.size(model)
         tangents = _tangents(contacts) * np.where(alone, along, 0.0)[:, np.newaxis]
