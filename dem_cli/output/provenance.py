@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from functools import cache
 from importlib import metadata
 
 from dem_cli import __version__
@@ -12,6 +13,12 @@ PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
 
 def provenance() -> dict[str, str]:
     """Versions by name; packages that are not installed are left out."""
+    return dict(_versions())
+
+
+@cache
+def _versions() -> dict[str, str]:
+    """Looked up once in a process: it reads files."""
     versions = {"dem": __version__, "python": platform.python_version(), "machine": platform.machine()}
     for name in PACKAGES:
         try:
