@@ -49,8 +49,7 @@ def value_at(case: Case, text: str) -> float | int:
 def with_value(case: Case, text: str, value: float) -> Case:
     """The case with another value of a number, validated. Raises CaseError, at analysis.between."""
     data = case.model_dump(exclude_unset=True)
-    path = parts_of(text)
-    _put(data, path, value)
+    _put(data, case.model_dump(), parts_of(text), value)
     try:
         return type(case).model_validate(data)
     except ValidationError as error:
@@ -63,24 +62,18 @@ def impossible(what: str, found: Sequence[CaseProblem]) -> CaseError:
     return CaseError([CaseProblem(("analysis", "between"), f"{what} is not possible: {plain((problems or found)[0])}")])
 
 
-def _put(data: dict[str, Any], path: list[str], value: float) -> None:
-    """Change a nested table in place; tables that were left out are made."""
+def _put(data: dict[str, Any], whole: Any, path: list[str], value: float) -> None:
+    """Change a nested table in place; tables and lists that were left out are taken from the `whole` case."""
     node: Any = data
     for part in path[:-1]:
-        if isinstance(node, list):
-            node = _listed(node, int(part))
-        else:
-            node.setdefault(part, {})
-            node = _listed(node, part)
-    key: Any = int(path[-1]) if isinstance(node, list) else path[-1]
-    node[key] = value
-
-
-def _listed(node: Any, key: Any) -> Any:
-    """The value at a key, made a list where it was a tuple: it is going to be changed."""
-    if isinstance(node[key], tuple):
-        node[key] = list(node[key])
-    return node[key]
+        key: Any = int(part) if isinstance(node, list) else part
+        whole = whole[key]
+        if isinstance(node, dict) and key not in node:
+            node[key] = {} if isinstance(whole, dict) else whole
+        if isinstance(node[key], tuple):
+            node[key] = list(node[key])  # it is going to be changed
+        node = node[key]
+    node[int(path[-1]) if isinstance(node, list) else path[-1]] = value
 
 
 def _missing(node: Any, part: str, depth: int, text: str) -> str:

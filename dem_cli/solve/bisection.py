@@ -101,7 +101,7 @@ def first_change(tried: list[tuple[float, bool]]) -> Ends:
     for (value, stands), (following, also) in zip(tried, tried[1:]):
         if stands != also:
             return Ends(value, following) if stands else Ends(following, value)
-    return Ends(tried[-1][0], None) if tried[-1][1] else Ends(None, tried[-1][0])
+    return Ends(tried[-1][0], None) if tried[-1][1] else Ends(None, tried[0][0])
 
 
 def changes(tried: dict[float, bool]) -> int:

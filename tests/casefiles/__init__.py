@@ -26,6 +26,11 @@ def known_to_the_oracle(path: Path) -> bool:
     return not any(key in joint for joint in read(path)["joints"].values() for key in ("profile", "softening"))
 
 
+def with_failure_load(path: Path) -> bool:
+    """Whether its [reference] is a failure load."""
+    return "failure_load" in read(path).get("reference", ())
+
+
 def case_id(path: Path) -> str:
     return str(path.relative_to(CASES).with_suffix(""))
 

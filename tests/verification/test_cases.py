@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from casefiles import CASES, FILES, case_id, known_to_the_oracle, read, scene
+from casefiles import CASES, FILES, case_id, known_to_the_oracle, read, scene, with_failure_load
 
 from dem_cli.api import load_case
 from dem_cli.model.assemble import assembly
 
-REFERENCED = [path for path in FILES if "reference" in read(path) and known_to_the_oracle(path)]
+REFERENCED = [path for path in FILES if with_failure_load(path) and known_to_the_oracle(path)]
 NO_REFERENCE = {"wedged_block", "overhang_falls", "leaning_column", "settlement_portal", "uneven_courses_mu050"}
 WALLS = ("wall_",)  # between the loads without and with friction in the head joints
 GUESSED = {"wall_21_imperfect_a"}  # which block the thesis means is a guess: near these loads, by the tolerance
