@@ -37,7 +37,7 @@ def solve_one(
         model = api.build_model(loaded)
         with tempfile.TemporaryDirectory() if folder is None else nullcontext(folder) as place:
             output = Path(place) / "results" if folder is None else Path(place)
-            wish = Wish(threads=1)
+            wish = Wish(threads=1, resume=folder is not None)  # what a killed one of many runs left is taken up
             return execute(loaded, model, output, started, quiet=True, wish=wish, recover=folder is None)[0]
     except DemError as error:
         return {"status": "failed", "reason": str(error), "exit_code": error.exit_code}

@@ -282,6 +282,43 @@ def test_ctrl_c_keeps_what_is_done(case, tmp_path):
     assert not [path for path in (tmp_path / "out" / "runs").iterdir() if path.name.startswith(".")]
 
 
+SHAKEN = """
+[motion]
+kind = "pulse"
+shape = "sine"
+amplitude = 4.0
+frequency = 4.0
+
+[damping]
+contact_fraction = 0.3
+"""
+
+
+def test_many_runs_in_a_run_are_taken_up_too(case, tmp_path, monkeypatch):
+    """A killed fragility study leaves its journal; the sweep goes on with it."""
+    from dem_cli.solve.batch import Batcher
+
+    study = 'kind = "fragility"\nintensities = [0.2, 0.4, 0.6]\n'
+    text = SMALL.replace("follow = 0.01\n", study).replace("courses = 2", "courses = 2\nbase_extension = 1.0")
+    case.write_text(text + SHAKEN + '[sweep]\n"joints.dry.friction" = [0.5]\n', encoding="utf-8")
+    answer, count = Batcher.answer, [0]
+
+    def twice(self, trial):
+        count[0] += 1
+        if count[0] > 2:
+            raise KeyboardInterrupt
+        return answer(self, trial)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Batcher, "answer", twice)
+        assert dem("sweep", case, "-o", tmp_path / "out", "-j", 1)[0] == 130
+    code, out, err = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    assert code == 0, out + err
+    run = table(tmp_path / "out")[0]["run"]
+    summary = json.loads((tmp_path / "out" / "runs" / run / "summary.json").read_text())
+    assert (summary["runs"], summary["runs_done_before"]) == (3, 2)
+
+
 @contextmanager
 def cluster(tmp_path, workers: int = 2):
     """A scheduler and workers as processes of their own, as on a SLURM machine; gives the address."""
