@@ -17,7 +17,7 @@ from dem_cli.output.record import Observer
 from dem_cli.solve import bisection
 from dem_cli.solve.audit import CLOSURE
 from dem_cli.solve.bisection import Ends, Undecided
-from dem_cli.solve.run import Outcome
+from dem_cli.solve.run import Outcome, why_moving
 from dem_cli.solve.safety_bound import Bound, bound
 from dem_cli.solve.safety_trial import Told, decide, fall
 from dem_cli.solve.safety_values import changed, checked_model, scale_of, weaker
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from dem_cli.solve.safety_table import SafetyAnalysis
 
 BEYOND = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
-NOT_CONVERGED = "not converged"
+NOT_CONVERGED, INTERRUPTED = "not converged", "interrupted"
 
 
 def run(case: Case, model: Model, observer: Observer) -> Outcome:
@@ -64,10 +64,14 @@ class Study:
             ends = self._nearest()
             what = self._named(undecided.value)
             status = f"{NOT_CONVERGED}: neither equilibrium nor failure was proven at {what}"
+        except KeyboardInterrupt:
+            if not self.answers:
+                raise
+            status, ends = INTERRUPTED, self._nearest()
         if status == "ok" and None in ends:
             status = self._nowhere(ends)
         self._check(ends, known)
-        self._show(ends)
+        self._show(ends, 0.0 if status == INTERRUPTED else self.analysis.follow)
         return Outcome(self._answer(status, ends, known) | self._facts(ends))
 
     # -- runs --------------------------------------------------------------------------------------
@@ -115,6 +119,9 @@ class Study:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
+        moving = why_moving(self.case, self.model)
+        if moving:
+            return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)
         return bound(self.variant, self.scale, self.analysis.resolution)
 
@@ -191,7 +198,7 @@ class Study:
 
     # -- what is to be seen ------------------------------------------------------------------------
 
-    def _show(self, ends: Ends) -> None:
+    def _show(self, ends: Ends, follow: float) -> None:
         """Rows and frames of the last structure that stands and of the first that fails, and its collapse."""
         standing, failing = (self.told.get(v) if v is not None else None for v in ends)
         base = failing or standing
@@ -203,10 +210,10 @@ class Study:
             self._hand_over(standing, base)
         if failing is None:
             return
-        if self.analysis.follow == 0.0:
+        if follow == 0.0:
             self._hand_over(failing, base)
             return
-        quiet = fall(failing, self.observer, self.analysis.follow, self.case.output.frames)
+        quiet = fall(failing, self.observer, follow, self.case.output.frames)
         if quiet is not None:
             self.warnings.append(f"the collapse was not followed to its end: {quiet}")
 

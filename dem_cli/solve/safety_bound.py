@@ -82,6 +82,8 @@ def stands(case: Case, model: Model) -> bool | None:
     from dem_cli.limit.cone import friction_of
 
     structure = start_structure(model, joint_properties(case, model))
+    if not structure.dead.any():
+        return True  # nothing to carry
     friction = friction_of(structure.joints, law_of(case))
     return carried(_under_load(structure, case), friction)[0]
 
