@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import click
@@ -17,6 +18,36 @@ overrides_option = click.option(
     metavar="KEY=VALUE",
     help="Change one value, such as --set joints.dry.friction=0.5; may be repeated.",
 )
+
+_SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
+
+
+class Size(click.ParamType):
+    """1200x800, or 1200 and a height that suits."""
+
+    name = "WIDTH[xHEIGHT]"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
+        sides = [int(side) for side in match.groups() if side] if match else []
+        if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
+            self.fail(f"{value}: give a width from {_SMALLEST} to {_LARGEST} pixels, or both sides such as 1200x800")
+        return (sides[0], sides[1] if len(sides) > 1 else None)
+
+
+class Limits(click.ParamType):
+    """0:0.02, the lower and the upper end of an axis."""
+
+    name = "LOW:HIGH"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        try:
+            low, high = map(float, str(value).split(":"))
+        except ValueError:
+            low, high = 0.0, 0.0
+        if not low < high:
+            self.fail(f"{value}: give two numbers, the lower one first, such as 0:0.02")
+        return low, high
 
 
 def warn(loaded: LoadedCase) -> None:

@@ -1,22 +1,103 @@
-"""`dem plot`: the pictures of a run."""
+"""`dem plot`: the pictures of a run; any columns of runs and sweeps as charts."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from dem_cli.cli import console
+from dem_cli.cli.options import Limits, Size
+from dem_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.post.chart import Paper
+
+CHART, SWEEP = "plot.png", "sweep.png"
+FORMATS = (".png", ".svg", ".pdf")
 
 
-@click.command("plot", short_help="Draw the results of a run.")
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.command("plot", short_help="Draw the results of runs and sweeps.")
+@click.argument("folders", metavar="DIR...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option("-x", metavar="COLUMN", help="Of a chart: what goes to the right.")
+@click.option("-y", "ys", metavar="COLUMN", multiple=True, help="What goes upwards; may be repeated.")
+@click.option("--by", metavar="KEY", multiple=True, help="A curve for each value of this key of the case; colours it.")
+@click.option("--where", metavar="KEY=VALUE", multiple=True, help="Of a sweep: only runs that have this value.")
+@click.option("--map", "as_map", is_flag=True, help="Of a sweep: a heat map of -y over two keys (-x, --by).")
+@click.option("--list", "listed", is_flag=True, help="Print the columns that there are; draw nothing.")
 @click.option(
-    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Default: beside the results."
-)
-@click.option("--animate", is_flag=True, help="Draw collapse.gif as well.")
-def command(folder: Path, output: Path | None, animate: bool) -> None:
-    """Draw what the results in DIR hold: capacity.png, histories.png, collapse.png, energy.png, spectra.png."""
+    "-o", "--output", metavar="PATH", type=click.Path(path_type=Path),
+    help="A file ending in .png, .svg or .pdf; where all pictures are drawn, a folder.",
+)  # fmt: skip
+@click.option("--size", type=Size(), help="Of a chart [pixels], such as 1200x800.")
+@click.option("--log", type=click.Choice(("x", "y", "xy")), help="Logarithmic axes.")
+@click.option("--xlim", type=Limits(), help="Ends of the x axis, such as 0:0.02.")
+@click.option("--ylim", type=Limits(), help="Ends of the y axis.")
+@click.option("--animate", is_flag=True, help="With all pictures of a run: collapse.gif as well.")
+def command(
+    folders: Sequence[Path],
+    x: str | None,
+    ys: Sequence[str],
+    by: Sequence[str],
+    where: Sequence[str],
+    as_map: bool,
+    listed: bool,
+    output: Path | None,
+    size: tuple[int, int | None] | None,
+    log: str | None,
+    xlim: tuple[float, float] | None,
+    ylim: tuple[float, float] | None,
+    animate: bool,
+) -> None:
+    """Draw what the results in DIR hold.
+
+    \b
+    dem plot RUN                                  all its pictures
+    dem plot RUN -x "top displacement" -y load    a chart of two columns
+    dem plot RUN RUN ... --by joints.dry.friction a curve for each run
+    dem plot SWEEP                                the answer over the swept keys
+    dem plot SWEEP -x displacement -y load        a curve for each of its runs (dem sweep --keep all)
+    """
+    from dem_cli.cli import chart
+    from dem_cli.post.chart import Paper
+    from dem_cli.post.table import is_sweep
+
+    for folder in folders:
+        if not folder.is_dir():
+            raise UsageError(f"{folder}: no such folder")
+    sweeps = [folder for folder in folders if is_sweep(folder)]
+    if sweeps and len(folders) > 1:
+        raise UsageError(f"{sweeps[0]}: a sweep is drawn alone, not beside other folders")
+    if (where or as_map) and not sweeps:
+        raise UsageError("--where and --map are for the folder of a sweep")
+    paper = Paper(size, frozenset(log or ""), xlim, ylim)
+    asked = bool(x or ys or by or listed or len(folders) > 1)
+    if not sweeps and not asked:
+        if paper != Paper() or (output is not None and output.suffix.lower() in FORMATS):
+            raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
+        draw_pictures(folders[0], output, animate)
+        return
+    if animate:
+        raise UsageError("--animate comes with all pictures of a run, without -x and -y")
+    if listed:
+        console.show("\n".join(chart.listing(folders, bool(sweeps))))
+        return
+    target = output or default(folders, bool(sweeps), bool(x or ys))
+    draw_chart(folders, bool(sweeps), x, list(ys), list(by), where, as_map, target, paper)
+    console.show(str(target))
+
+
+def default(folders: Sequence[Path], sweep: bool, chosen: bool) -> Path:
+    """Where a chart goes: beside the results; of several folders, here."""
+    if len(folders) > 1:
+        return Path(CHART)
+    return folders[0] / (SWEEP if sweep else CHART)
+
+
+def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
+    """All pictures of one run."""
     from dem_cli.cli.motion import draw_spectra_of_run
     from dem_cli.output.folder import write_error
     from dem_cli.post.plots import draw_all
@@ -32,3 +113,23 @@ def command(folder: Path, output: Path | None, animate: bool) -> None:
         console.show(str(path))
     if not written:
         console.note(f"{folder}: nothing to draw, the run kept neither frames nor a history")
+
+
+def draw_chart(
+    folders: Sequence[Path], sweep: bool, x: str | None, ys: list[str], by: list[str], where: Sequence[str],
+    as_map: bool, target: Path, paper: Paper,
+) -> None:  # fmt: skip
+    """One chart, of runs or of a sweep."""
+    from dem_cli.cli import chart
+    from dem_cli.output.folder import write_error
+    from dem_cli.post.chart import check_format
+
+    check_format(target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if sweep:
+            chart.of_sweep(folders[0], x, ys, by, where, as_map, target, paper)
+        else:
+            chart.of_runs(folders, x, ys, by, target, paper)
+    except OSError as error:
+        raise write_error(error, target) from None

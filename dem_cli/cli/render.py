@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import click
 
 from dem_cli.cli import console
+from dem_cli.cli.options import Size
 from dem_cli.errors import UsageError
 
 STILL, MOVIES = ".png", (".gif", ".mp4")
-_SMALLEST, _LARGEST = 200, 8000  # pixels
-
-
-class Size(click.ParamType):
-    """1200x800, or 1200 and a height that suits."""
-
-    name = "WIDTH[xHEIGHT]"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
-        match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
-        sides = [int(side) for side in match.groups() if side] if match else []
-        if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
-            self.fail(f"{value}: give a width from {_SMALLEST} to {_LARGEST} pixels, or both sides such as 1200x800")
-        return (sides[0], sides[1] if len(sides) > 1 else None)
 
 
 @click.command("render", short_help="Stills and movies of a run.")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Default: DIR/render.png or .gif.")
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Default: render.* in DIR.")
 @click.option("--movie", type=click.Choice(("gif", "mp4")), help="All frames one after the other.")
 @click.option(
     "--frame", default="last", show_default=True, metavar="WHICH",

@@ -44,6 +44,7 @@ OWN_NAMES = frozenset(
         "motion.png",
         "modes.png",
         "safety.png",
+        "plot.png",
         "render.png",
         "render.gif",
         "render.mp4",

@@ -47,14 +47,14 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
     contacts = frame.contacts
     hairline = _HAIRLINE * measures.largest_displacement(model, frame) / scale
     ends = contacts.points
-    middles = middles(contacts)
-    along = middles - ends
+    centres = middles(contacts)
+    along = centres - ends
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     single = lengths[:, 0] < 0.25 * width  # one point, or points that are one: a short stripe
     tangents = np.stack((contacts.normals[:, 1], -contacts.normals[:, 0]), axis=1)
     along = np.where(single[:, np.newaxis], tangents, along / np.where(lengths > 0.0, lengths, 1.0))
     starts = np.where(single[:, np.newaxis], ends - width * along, ends)
-    stops = np.where(single[:, np.newaxis], ends + width * along, middles)
+    stops = np.where(single[:, np.newaxis], ends + width * along, centres)
     faint = (contacts.state == STATES.index("open")) & (contacts.gap < hairline)
     widths = np.where(faint, _THIN * width, width)[:, np.newaxis]
     across = 0.5 * widths * np.stack((-along[:, 1], along[:, 0]), axis=1)

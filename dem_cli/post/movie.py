@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from dem_cli.errors import UsageError
 FORMATS = ("gif", "mp4")
 FPS = 12.5
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
-_COLOURS = 255
+_COLOURS, _PAPER = 256, 242
 
 
 def check(kind: str) -> None:
@@ -47,12 +48,17 @@ def _write_gif(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
         )
 
 
-def _palette(pages: Sequence[np.ndarray]) -> object:
+def _palette(pages: Sequence[np.ndarray]) -> Any:
     """One set of colours for all pictures, from the first, the middle and the last."""
     from PIL import Image
 
     some = [pages[0], pages[len(pages) // 2], pages[-1]]
-    return Image.fromarray(np.concatenate(some)).quantize(_COLOURS, Image.Quantize.MEDIANCUT)
+    found = Image.fromarray(np.concatenate(some)).quantize(_COLOURS, Image.Quantize.MEDIANCUT)
+    colours = np.array(found.getpalette(), dtype=np.uint8)[: 3 * _COLOURS].reshape(-1, 3)
+    colours[colours.min(axis=1) > _PAPER] = 255  # Pillow takes what is near as well, and paper is white
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours.ravel().tolist())
+    return palette
 
 
 def _write_mp4(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:

@@ -16,7 +16,7 @@ from dem_cli.post import measures, style
 from dem_cli.post.sheet import Bar
 
 QUANTITIES = ("stone", "displacement", "rotation", "velocity")
-_MAP = "YlGnBu"
+_MAP, _FROM, _TO = "YlGnBu", 0.03, 0.8  # light where nothing happens; not so dark that edges get lost
 
 
 def colours(results: Results, frames: Sequence[Frame], quantity: str) -> tuple[list[np.ndarray] | None, Bar | None]:
@@ -29,16 +29,16 @@ def colours(results: Results, frames: Sequence[Frame], quantity: str) -> tuple[l
     if quantity == "velocity" and results.kind not in IN_SECONDS:
         raise UsageError("--colour velocity: only time histories have velocities in metres per second")
     import matplotlib
-    from matplotlib.colors import to_rgb
+    from matplotlib.colors import ListedColormap, to_rgb
 
     model = results.model
     rows = [block_values(model, frame, quantity) for frame in frames]
     highest = max(float(row[~model.fixed].max(initial=0.0)) for row in rows)
     factor, label = _label(quantity, highest, results.kind in IN_SECONDS)
-    shades = matplotlib.colormaps[_MAP]
+    shades = ListedColormap(matplotlib.colormaps[_MAP](np.linspace(_FROM, _TO, 256)))
     ground = model.fixed[:, np.newaxis]
     drawn = [np.where(ground, to_rgb(style.GROUND), shades(row / (highest or 1.0))[:, :3]) for row in rows]
-    return drawn, Bar(label, 0.0, factor * highest or 1.0, _MAP)
+    return drawn, Bar(label, 0.0, factor * highest or 1.0, shades)
 
 
 def block_values(model: Model, frame: Frame, quantity: str) -> np.ndarray:

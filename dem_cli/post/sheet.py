@@ -20,7 +20,7 @@ class Bar(NamedTuple):
     label: str  # with its unit
     low: float
     high: float
-    colours: str  # name of the colour map
+    colours: Any  # colour map
 
 
 class Layout(NamedTuple):

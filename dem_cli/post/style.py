@@ -16,6 +16,9 @@ STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
 COLLAPSE = "#c0392b"
 DPI = 160
+_METADATA: Any = {  # nothing that differs from day to day
+    ".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}
+}  # fmt: skip
 
 _STYLE: Any = {
     "font.size": 10,
@@ -48,7 +51,7 @@ def figure(path: Path, **options: Any) -> Iterator[Any]:
     with canvas() as make:
         drawn = make(**options)
         yield drawn
-        drawn.savefig(path, dpi=DPI, metadata={"Software": None})
+        drawn.savefig(path, dpi=DPI, metadata=_METADATA.get(path.suffix.lower()))
 
 
 @contextmanager

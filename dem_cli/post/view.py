@@ -13,7 +13,7 @@ from dem_cli.output.series import Series
 from dem_cli.output.shapes import placed_vertices
 from dem_cli.post import measures
 
-_FALLEN = 0.8  # of the size of the structure: what falls farther leaves the picture
+_FALLEN = 0.8  # of the size of the structure: what falls farther is not shown
 _CARRIED = 0.6  # of the width of the structure: a base that moves farther is drawn in its own frame
 _GROUND = 0.06  # of the size of what is seen: half the ground that is shown beside it
 
@@ -48,12 +48,12 @@ def window(
     around: empty space on all sides, over the size of what is seen.
     """
     free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
-    start = places[0][free] if free.any() else places[0]
-    reach = _FALLEN * float(np.ptp(start, axis=0).max())
-    moving = np.concatenate([c[free] if free.any() else c for c in places])
-    everything = np.concatenate(places)
-    low = np.maximum(moving.min(axis=0), start.min(axis=0) - reach)
-    high = np.minimum(moving.max(axis=0), start.max(axis=0) + reach)
+    moving = [c[free] if free.any() else c for c in places]
+    reach = _FALLEN * float(np.ptp(moving[0], axis=0).max())
+    nearest, farthest = moving[0].min(axis=0) - reach, moving[0].max(axis=0) + reach
+    everything, corners = np.concatenate(places), np.concatenate(moving)
+    near = corners[((corners >= nearest) & (corners <= farthest)).all(axis=1)]
+    low, high = (near if len(near) else moving[0]).min(axis=0), (near if len(near) else moving[0]).max(axis=0)
     size = float((high - low).max())
     low = np.maximum(np.minimum(everything.min(axis=0), low), low - 2.0 * _GROUND * size)
     high = np.minimum(np.maximum(everything.max(axis=0), high), high + 2.0 * _GROUND * size)

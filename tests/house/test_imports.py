@@ -51,6 +51,7 @@ ONLY_HERE = {  # third parties that stay in the packages named
     "pymunk": {"bench"},
     "Box2D": {"bench"},
     "pyvista": {"post"},
+    "imageio_ffmpeg": {"post"},
     "numba": {"kernels"},
     "tomli": {"case"},
     "tomllib": {"case"},
