@@ -16,7 +16,7 @@ from dem_cli.output.store import ResultWriter
 pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
-from dem_cli.post import animation, histories, plots, style
+from dem_cli.post import animation, histories, plots, style, view
 
 
 @pytest.fixture
