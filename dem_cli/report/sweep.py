@@ -102,11 +102,11 @@ def keys(table: SweepTable) -> list[tuple[str, str]]:
 
 def links(table: SweepTable, place: Path) -> dict[str, str]:
     """Of each run the best file to open, seen from `place`."""
-    found, base = {}, Path(os.path.relpath(table.folder, place)).as_posix()
+    found, base = {}, Path(os.path.relpath(table.folder / RUNS, place)).as_posix()
     for run in filter(None, table.columns["run"]):
         name = next((name for name in PAGES if (table.folder / RUNS / run / name).is_file()), None)
         if name:
-            found[run] = quote(f"{base}/{RUNS}/{run}/{name}")
+            found[run] = quote(f"{base}/{run}/{name}")
     return found
 
 

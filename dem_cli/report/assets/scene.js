@@ -306,7 +306,7 @@ class Scene {
     });
   }
 
-  /** Turn to the front and show all free blocks, where they were and where they are now, but none that fell far. */
+  /** Turn to the front and show all free blocks, where they were and where they are now, but no corner that fell far. */
   fit() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], rest = [], now = [];
     const ground = this.ground();
@@ -320,8 +320,9 @@ class Scene {
       high[k] = Math.max(high[k], value);
     });
     rest.forEach(widen);
-    const reach = 0.8 * Math.max(high[0] - low[0], high[1] - low[1]), [bottom, top] = [low.slice(), high.slice()];
-    now.forEach((point) => widen(point.map((value, k) => Math.min(Math.max(value, bottom[k] - reach), top[k] + reach))));
+    const reach = 0.8 * Math.max(...high.map((value, k) => value - low[k]).slice(0, this.data.dimension));
+    const [bottom, top] = [low.slice(), high.slice()];
+    now.filter((point) => point.every((value, k) => value > bottom[k] - reach && value < top[k] + reach)).forEach(widen);
     this.middle = low.map((value, k) => (value + high[k]) / 2);
     this.extent = [1.16 * (high[0] - low[0]), 1.16 * (high[1] - low[1])];
     if (this.data.dimension === 3) this.extent = [1.2, 1.2].map((f) => f * Math.hypot(...high.map((value, k) => value - low[k])));

@@ -1,0 +1,258 @@
+"""`dem report`: what is in the page, without a browser. tests/cli/test_report_page.py opens it."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import tomllib
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from synthetic import wall_model
+from synthetic.pages import evil, sweep, wall
+from synthetic.shaking import write_shaking
+
+from dem_cli.cli.main import main
+from dem_cli.output.store import ResultWriter
+from dem_cli.report import facts
+from dem_cli.report.page import ASSETS, SCRIPTS, STYLE, TEMPLATE, THREE, policy, script_json
+from dem_cli.report.view import turns, view
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(autouse=True)
+def no_pictures(monkeypatch, request):
+    """Still pictures take longer than all the rest: only the test that asks for them has them."""
+    if "pictures" not in request.node.name:
+        monkeypatch.setitem(sys.modules, "matplotlib", None)
+
+
+class Page(HTMLParser):
+    """Tags, and the text inside some of them."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.tags, self.scripts, self.inside, self.texts = [], [], [], []
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        self.inside.append(tag)
+
+    def handle_endtag(self, tag):
+        while self.inside and self.inside.pop() != tag:
+            pass
+
+    def handle_data(self, data):
+        if self.inside and self.inside[-1] == "script":
+            self.scripts.append(data)
+        elif "style" not in self.inside:
+            self.texts.append(data)
+
+    def data(self):
+        return json.loads(next(text for text in self.scripts if text.startswith("{")))
+
+    def named(self, tag):
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def dem(*arguments):
+    result = CliRunner().invoke(main, [str(a) for a in arguments])
+    return result.exit_code, result.output
+
+
+def report(folder, *options):
+    code, output = dem("report", folder, *options)
+    assert code == 0, output
+    return Page(folder / "report.html")
+
+
+def test_the_page_is_beside_the_results_or_where_one_says(tmp_path):
+    folder = wall(tmp_path / "wall")
+    code, output = dem("report", folder)
+    size = (folder / "report.html").stat().st_size
+    assert (code, output) == (0, f"{folder / 'report.html'}  ({size / 1e6:.1f} MB)\n")
+    assert dem("report", folder, "-o", tmp_path / "page.html")[0] == 0
+    assert (tmp_path / "page.html").read_bytes() == (folder / "report.html").read_bytes()
+    assert not list(folder.glob(".*"))
+
+
+def test_nothing_in_the_page_points_outside(tmp_path):
+    page = report(wall(tmp_path / "wall"))
+    for _, attributes in page.tags:
+        for name in ("src", "href", "action", "data", "poster", "srcset"):
+            assert attributes.get(name, "data:").startswith("data:")
+    (content,) = [meta["content"] for meta in page.named("meta") if "Security" in meta.get("http-equiv", "")]
+    assert content.startswith("default-src 'none'; script-src 'sha256-")
+    assert "unsafe" not in content
+    assert "http" not in content
+
+
+def test_the_policy_knows_scripts_by_what_is_in_them():
+    # printf 'x' | openssl dgst -sha256 -binary | base64
+    assert "'sha256-LXEWQrcmsEQBYnyp+6wy9chTD7GQPMTbAiWHF5IaSIE='" in policy(["x"], [])
+
+
+def test_texts_of_the_user_are_texts(tmp_path):
+    page = report(evil(tmp_path / "evil"))
+    assert len(page.scripts) == 3  # data, three.js, ours
+    assert not [attributes for attributes in page.named("img") if attributes["src"] == "x"]
+    assert any("<script>document.title" in text for text in page.texts)
+    assert any("</pre><script>" in text for text in page.texts)
+    assert page.data()["view"]["ids"][3] == "</script><img src=x onerror=document.title='hacked'>"
+
+
+def test_data_cannot_leave_its_element():
+    text = script_json({"a": "</script><!--\u2028", "b": float("nan")})
+    assert "<" not in text
+    assert "\u2028" not in text
+    assert json.loads(text) == {"a": "</script><!--\u2028", "b": None}
+
+
+def test_a_run_that_was_killed_has_a_page(tmp_path):
+    folder = wall(tmp_path / "wall")
+    (folder / "summary.json").unlink()
+    page = report(folder)
+    assert "unfinished" in page.texts
+    assert len(page.data()["view"]["frames"]) == 12
+
+
+def test_a_run_of_which_only_the_summary_was_kept(tmp_path):
+    folder = wall(tmp_path / "wall")
+    (folder / "results.h5").unlink()
+    page = report(folder)
+    assert page.data() == {"view": None, "charts": []}
+    assert "0.6402" in page.texts
+    assert not page.named("canvas")
+
+
+def test_still_pictures(tmp_path):
+    pytest.importorskip("matplotlib")
+    (image,) = report(wall(tmp_path / "wall")).named("img")
+    assert image["src"].startswith("data:image/png;base64,iVBOR")
+    assert image["alt"] == "The structure at failure and at the end"
+
+
+def test_without_matplotlib_only_these_are_missing(tmp_path):
+    page = report(wall(tmp_path / "wall"))
+    assert not page.named("img")
+    assert [chart["id"] for chart in page.data()["charts"]] == ["capacity", "monitor-0", "energy"]
+
+
+def test_charts_of_a_time_history(tmp_path):
+    folder = tmp_path / "shaken"
+    folder.mkdir()
+    page = report(write_shaking(folder))
+    found = {chart["id"]: chart for chart in page.data()["charts"]}
+    assert list(found) == ["displacement", "rotation", "opening", "acceleration", "base", "energy"]
+    assert [line["name"] for line in found["displacement"]["lines"]] == ["top displacement x", "top displacement y"]
+    assert found["displacement"]["verticals"][0]["value"] == 4.2
+    assert any("collapsed at 4.2 s" in text for text in page.texts)
+    scene = page.data()["view"]
+    assert scene["frames"][scene["start"]]["time"] == pytest.approx(4.2, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("nowhere",), "nowhere: no such folder"),
+        (("empty",), "empty: holds no results of dem run or dem sweep"),
+        (("wall", "-o", "empty"), "empty: a folder; -o takes the name of a file"),
+        (("broken",), "broken/sweep.csv: not a table of a sweep, or one without runs"),
+    ],
+)
+def test_mistakes(tmp_path, monkeypatch, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "sweep.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    wall(tmp_path / "wall")
+    assert dem("report", *arguments) == (2, f"error: {message}\n")
+
+
+def test_a_page_that_cannot_be_written_leaves_nothing(tmp_path):
+    folder = wall(tmp_path / "wall")
+    code, output = dem("report", folder, "-o", tmp_path / "no" / "page.html")
+    assert code == 2 or code == 3
+    assert "cannot write" in output
+    assert not (tmp_path / "no").exists()
+
+
+def test_a_sweep(tmp_path):
+    page = report(sweep(tmp_path / "sweep"))
+    runs = page.data()["runs"]
+    assert runs["axes"] == {"x": "joints.dry.friction", "y": "failure_load", "family": "structure.0.bond"}
+    assert runs["main"][:5] == ["run", "joints.dry.friction", "structure.0.bond", "status", "reason"]
+    assert runs["links"] == {"a0": "runs/a0/summary.json"}
+    assert any("7 solved, 1 failed, failure load 0.3 to 0.7" in text for text in page.texts)
+
+
+def test_links_of_a_sweep_follow_the_page(tmp_path):
+    folder = sweep(tmp_path / "my sweep")
+    assert dem("report", folder, "-o", tmp_path / "page.html")[0] == 0
+    assert Page(tmp_path / "page.html").data()["runs"]["links"] == {"a0": "my%20sweep/runs/a0/summary.json"}
+
+
+def test_rotation_vectors_of_quaternions():
+    half = 0.5 * np.array([0.0, 0.3, -2.0])
+    axis = np.array([1.0, 2.0, 2.0]) / 3.0
+    quaternions = np.column_stack((np.cos(half), np.sin(half)[:, None] * axis))
+    np.testing.assert_allclose(turns(quaternions), 2.0 * half[:, None] * axis, atol=1e-15)
+    np.testing.assert_array_equal(turns(np.array([[0.2], [-1.0]])), [[0, 0, 0.2], [0, 0, -1.0]])
+
+
+def test_a_long_run_is_thinned_and_keeps_what_matters(tmp_path, monkeypatch):
+    from dem_cli.output.reader import read
+
+    folder = wall(tmp_path / "wall")
+    results = read(folder)
+    assert view(results)["left_out"] == 0
+    monkeypatch.setattr("dem_cli.report.view.MOST_BYTES", 10_000)
+    few = view(results)
+    assert few["left_out"] > 5
+    steps = [frame["step"] for frame in few["frames"]]
+    assert (steps[0], steps[-1]) == (0, 1100)
+    assert few["start"] == len(steps) - 1
+
+
+def test_a_run_without_frames_shows_what_was_built(tmp_path):
+    folder = tmp_path / "still"
+    folder.mkdir()
+    ResultWriter(folder, wall_model(), "", {}, (), "fragility").close({"title": "t", "kind": "fragility", "status": "ok"})
+    page = report(folder)
+    assert [frame["stage"] for frame in page.data()["view"]["frames"]] == ["as built"]
+
+
+def test_what_counts_as_balanced_is_what_the_solver_asks_for():
+    from dem_cli.solve.equilibrium import GRAVITY_TOLERANCE
+
+    assert facts.BALANCED == GRAVITY_TOLERANCE
+
+
+def test_colours_of_stages_and_lines_are_in_the_style_sheet():
+    from dem_cli.output.record import STAGES, STATES
+    from dem_cli.report import charts
+
+    style = (ASSETS / "page.css").read_text(encoding="utf-8")
+    names = [f"line-{name}" for name in (*STAGES, *map(str, range(charts._PALETTE)), "ink", "failure", "limit")]
+    for name in (*names, *STATES, "hairline", "stone", "ground", "ghost", "force", "accent"):
+        assert len(re.findall(rf"--{name}:", style)) >= 2, f"--{name}, light and dark"
+
+
+def test_everything_the_page_is_made_of_is_packaged():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    patterns = project["tool"]["setuptools"]["package-data"]["dem_cli.report"]
+    kept = {path for pattern in patterns for path in ASSETS.parent.glob(pattern)}
+    assert kept == set(ASSETS.iterdir())
+    assert {path.name for path in kept} >= {TEMPLATE, STYLE, THREE, *SCRIPTS}
+
+
+def test_three_comes_with_its_licence():
+    head = (ASSETS / THREE).read_text(encoding="utf-8")[:2000]
+    assert "The MIT License" in head
+    assert "Copyright © 2010-2026 three.js authors" in head
