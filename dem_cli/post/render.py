@@ -9,6 +9,7 @@ import multiprocessing
 import os
 import re
 import tempfile
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -54,11 +55,16 @@ def render_apart(folder: Path, path: Path, look: Look) -> None:
         if find_spec(name) is None:
             raise UsageError("rendering needs pyvista: pip install 'dem-cli[viz]'")
     movie.check(path.suffix[1:])
+    in_own_process(render, folder, path, look)
+
+
+def in_own_process(work: Callable[..., object], *arguments: object) -> None:
+    """Do `work` where it can die alone. Raises what it raises, and OutputError where it dies."""
     with tempfile.NamedTemporaryFile() as log:
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(1, context, initializer=_say_into, initargs=(log.name,)) as pool:
             try:
-                pool.submit(render, folder, path, look).result()
+                pool.submit(work, *arguments).result()
             except BrokenProcessPool:
                 said = Path(log.name).read_text(encoding="utf-8", errors="replace")
                 raise OutputError(_death(said)) from None

@@ -10,7 +10,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import Series
-from dem_cli.output.shapes import placed_vertices
+from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.post import measures
 
 _FALLEN = 0.8  # of the size of the structure: what falls farther is not shown
@@ -48,12 +48,18 @@ def window(
     around: empty space on all sides, over the size of what is seen.
     """
     free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
-    moving = [c[free] if free.any() else c for c in places]
-    reach = _FALLEN * float(np.ptp(moving[0], axis=0).max())
-    nearest, farthest = moving[0].min(axis=0) - reach, moving[0].max(axis=0) + reach
-    everything, corners = np.concatenate(places), np.concatenate(moving)
-    near = corners[((corners >= nearest) & (corners <= farthest)).all(axis=1)]
-    low, high = (near if len(near) else moving[0]).min(axis=0), (near if len(near) else moving[0]).max(axis=0)
+    shown = free if free.any() else ~free
+    rest = rest_vertices(model)
+    reach = _FALLEN * float(np.ptp(rest[shown], axis=0).max())
+    nearest, farthest = rest[shown].min(axis=0) - reach, rest[shown].max(axis=0) + reach
+    near = []
+    for corners in places:
+        ground = (corners - rest)[~free].mean(axis=0) if not free.all() else 0.0  # carries everything along
+        inside = ((corners - ground >= nearest) & (corners - ground <= farthest)).all(axis=1)
+        near.append(corners[shown & inside])
+    everything, seen = np.concatenate(places), np.concatenate(near)
+    seen = seen if len(seen) else rest[shown]
+    low, high = seen.min(axis=0), seen.max(axis=0)
     size = float((high - low).max())
     low = np.maximum(np.minimum(everything.min(axis=0), low), low - 2.0 * _GROUND * size)
     high = np.minimum(np.maximum(everything.max(axis=0), high), high + 2.0 * _GROUND * size)

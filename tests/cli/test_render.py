@@ -1,0 +1,217 @@
+"""`dem render`: what is in the picture, and one clear message where nothing can be drawn."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from synthetic import HEIGHT, LENGTH, history_rows, wall_frames, wall_model, wall_summary
+from synthetic.shaking import write_shaking
+
+from dem_cli.cli.main import main
+from dem_cli.errors import OutputError, UsageError
+from dem_cli.output.reader import read
+from dem_cli.output.store import ResultWriter
+
+pytest.importorskip("pyvista")
+pytest.importorskip("matplotlib")
+from PIL import Image
+
+from dem_cli.post import gl, movie, paint, render, style
+from dem_cli.post.render import Look
+
+ASK = "from dem_cli.post.gl import choose_window; choose_window()"
+
+
+@pytest.fixture(scope="module")
+def graphics():
+    """Skips where nothing can be rendered; continuous integration has what is needed."""
+    asked = subprocess.run([sys.executable, "-c", ASK], capture_output=True, text=True)
+    if asked.returncode:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(f"no graphics libraries: {asked.stderr[-300:]}")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    target = tmp_path_factory.mktemp("run")
+    model = wall_model()
+    frames = wall_frames(model, 6)
+    writer = ResultWriter(target, model, "", {}, ["top"])
+    for row in history_rows(frames):
+        writer.row(row)
+    for frame in frames:
+        writer.frame(frame)
+    writer.close(wall_summary())
+    return target
+
+
+def dem(*arguments):
+    result = CliRunner().invoke(main, [str(a) for a in arguments])
+    return result.exit_code, result.output
+
+
+def near(picture, colour, within=12):
+    """Pixels of about this colour."""
+    wanted = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
+    return np.abs(picture.astype(int) - wanted).max(axis=-1) <= within
+
+
+def drawn(folder, monkeypatch, width=600, **look):
+    """A page, rendered in this process."""
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", ""))
+    gl.choose_window()
+    look = Look(**look)
+    results = read(folder)
+    return render.draw(results, render.chosen(results, look.frame), look, width)[0]
+
+
+def test_blocks_have_their_size(graphics, folder, monkeypatch):
+    """Front view at true scale: the area of all pixels that are not paper is that of the blocks."""
+    page = drawn(folder, monkeypatch, frame="0", joints=False, scale=1.0)
+    below = page[44:]
+    stone = (below < 250).any(axis=-1)
+    rows, columns = np.flatnonzero(stone.any(axis=1)), np.flatnonzero(stone.any(axis=0))
+    across = columns[-1] - columns[0] + 1
+    metre = across / (4 * LENGTH)  # the base is the widest block
+    assert (rows[-1] - rows[0] + 1) / metre == pytest.approx(7 * HEIGHT, rel=0.02)
+    assert stone.sum() / metre**2 == pytest.approx(4 * LENGTH * HEIGHT + 6 * HEIGHT * 3 * LENGTH, rel=0.02)
+
+
+def test_joints_are_coloured_by_state(graphics, folder, monkeypatch):
+    page = drawn(folder, monkeypatch, frame="last")
+    body = page[70:-40]  # without the legend
+    assert near(body, style.STATE_COLOURS["open"]).sum() > 100
+    assert near(body, style.STATE_COLOURS["sliding"]).sum() > 100
+    bare = drawn(folder, monkeypatch, frame="last", joints=False)
+    assert not near(bare, style.STATE_COLOURS["open"]).any()
+
+
+def test_forces_and_colours_in_an_oblique_view(graphics, folder, monkeypatch):
+    plain = drawn(folder, monkeypatch, view="3d", frame="2")
+    forces = drawn(folder, monkeypatch, view="3d", frame="2", forces="arrows", colour="rotation")
+    blue = (forces[..., 2].astype(int) - forces[..., 0] > 60)[70:-60]
+    assert blue.sum() > 200
+    assert not (plain[..., 2].astype(int) - plain[..., 0] > 60)[70:-60].any()
+
+
+def test_a_still_of_its_size(graphics, folder, tmp_path):
+    code, output = dem("render", folder, "-o", tmp_path / "a.png", "--size", "640x480", "--forces")
+    assert (code, output) == (0, f"{tmp_path / 'a.png'}\n")
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (640, 480)
+
+
+def test_a_movie_has_all_frames(graphics, folder):
+    assert dem("render", folder, "--movie", "gif", "--size", "400", "--fps", "10")[0] == 0
+    delays = []
+    with Image.open(folder / "render.gif") as film:
+        assert film.n_frames == 6
+        for k in range(film.n_frames):
+            film.seek(k)
+            delays.append(film.info["duration"])
+            assert film.convert("RGB").getpixel((399, 60)) == (255, 255, 255)
+    assert delays == [600, 100, 100, 100, 100, 1400]
+
+
+def test_mp4_of_a_shaken_wall(graphics, tmp_path):
+    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    folder = write_shaking(tmp_path, 5)
+    code, output = dem("render", folder, "-o", tmp_path / "film.mp4", "--size", "401x301", "--colour", "velocity")
+    assert code == 0, output
+    film = imageio_ffmpeg.read_frames(str(tmp_path / "film.mp4"))
+    facts = next(film)
+    film.close()
+    assert facts["size"] == (400, 300)
+    assert facts["fps"] == pytest.approx(12.5)
+
+
+def test_no_graphics_libraries(monkeypatch):
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
+    monkeypatch.setattr(gl, "loaded", lambda name: None)
+    monkeypatch.setattr(sys, "platform", "linux")
+    with pytest.raises(UsageError, match="apt-get install libegl1 libgl1-mesa-dri"):
+        gl.choose_window()
+
+
+def test_a_library_that_is_missing_is_none():
+    assert gl.loaded("libno-such-thing.so.9") is None
+
+
+def test_a_renderer_that_dies_is_reported():
+    with pytest.raises(OutputError, match="the renderer died"):
+        render.in_own_process(os.abort)
+
+
+def test_the_reason_is_the_last_that_was_said():
+    said = "\x1b[31m2026 ( 0.7s) [ 7F] vtkOSOpenGL:150  WARN| no library of that name\x1b[0m\n\n"
+    assert "no library of that name" in render._death(said)
+    assert "\x1b" not in render._death(said)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--frame", "6"), "the run kept 6 frames, 0 to 5"),
+        (("--frame", "1s"), "only time histories have a time"),
+        (("--frame", "soon"), "give last, failure, a number from 0 to 5"),
+        (("--colour", "velocity"), "only time histories"),
+        (("-o", "a.jpg"), "has to end in .png, .gif or .mp4"),
+        (("-o", "a.png", "--movie", "gif"), "--movie gif writes .gif"),
+        (("--movie", "gif", "--frame", "2"), "--frame is for stills"),
+        (("--size", "10x10"), "200 to 8000 pixels"),
+    ],
+)
+def test_wrong_arguments(graphics, folder, arguments, says):
+    code, output = dem("render", folder, *arguments)
+    assert code == 2
+    assert says in output
+    assert len(output.splitlines()) <= 4
+
+
+def test_no_results(tmp_path):
+    code, output = dem("render", tmp_path)
+    assert (code, output) == (2, f"error: {tmp_path}: holds no results of dem run (no results.h5)\n")
+
+
+@pytest.mark.parametrize("missing", ["pyvista", "imageio_ffmpeg"])
+def test_an_extra_that_is_missing(folder, tmp_path, monkeypatch, missing):
+    whether = {"find_spec": lambda name: None if name == missing else object()}
+    monkeypatch.setattr(render, "find_spec", whether["find_spec"])
+    monkeypatch.setattr(movie, "find_spec", whether["find_spec"])
+    code, output = dem("render", folder, "--movie", "mp4", "-o", tmp_path / "a.mp4")
+    assert code == 2
+    assert "pip install 'dem-cli[" in output
+    assert len(output.splitlines()) == 1
+
+
+def test_frames_by_name_number_and_time(folder, tmp_path):
+    results = read(folder)
+    assert render.chosen(results, "last")[0].step == 500
+    assert render.chosen(results, "-2")[0].step == 400
+    assert render.chosen(results, "failure")[0].load == pytest.approx(0.64)
+    shaken = read(write_shaking(tmp_path, 6))
+    assert render.chosen(shaken, "2.1s")[0].time == pytest.approx(2.0)
+
+
+def test_captions_say_how_many_times_larger(folder):
+    results = read(folder)
+    frame = results.frames[1]
+    assert "displacements drawn 500 times larger" in render.caption(results, frame, 500.0)
+    assert "true scale" in render.caption(results, frame, 1.0)
+    assert "λ = −0.1" in render.caption(results, frame._replace(load=-0.1), 1.0)
+
+
+def test_colours_run_from_nothing_to_the_largest(folder):
+    results = read(folder)
+    frame = results.frames[-1]
+    drawn, bar = paint.colours(results, [frame], "displacement")
+    moved = np.linalg.norm(frame.positions - results.model.centroids, axis=1)
+    assert bar.label == "displacement of the block [mm]"
+    assert bar.high == pytest.approx(1e3 * moved.max())
+    still = ~results.model.fixed & (moved == 0.0)
+    assert np.ptp(drawn[0][still], axis=0).max() == 0.0
+    assert drawn[0][np.argmax(moved)].sum() < drawn[0][still][0].sum()  # darker
