@@ -16,6 +16,7 @@ GROUPS = {  # name -> title, in the order of the page
     "kernels": "Cost of a step",
     "joints": "Cost of joint models",
     "precision": "Work against precision",
+    "time_histories": "Time histories",
     "growth": "Growth with size",
     "threads": "Growth with threads",
     "sweeps": "Sweeps",

@@ -43,7 +43,7 @@ def command(
 ) -> None:
     """Measure cost and error of dem: all groups, or those named.
 
-    Groups: kernels, joints, precision, growth, threads, features, others, startup.
+    Groups: kernels, joints, precision, time_histories, growth, threads, sweeps, features, others, startup.
     """
     one_thread()
     from dem_cli.bench.page import NAME, keep, render, write
