@@ -22,13 +22,21 @@ def read(path: Path) -> dict:
 
 
 def known_to_the_oracle(path: Path) -> bool:
-    """Plane joints whose friction stays."""
-    return not any(key in joint for joint in read(path)["joints"].values() for key in ("profile", "softening"))
+    """One kind of plane joint whose friction stays."""
+    (joint, *others) = read(path)["joints"].values()
+    return not others and joint.get("law", "coulomb") == "coulomb" and not {"profile", "softening"} & set(joint)
 
 
-def with_failure_load(path: Path) -> bool:
-    """Whether its [reference] is a failure load."""
-    return "failure_load" in read(path).get("reference", ())
+def references(path: Path) -> list[dict]:
+    """Its [reference] tables."""
+    found = read(path).get("reference", [])
+    return found if isinstance(found, list) else [found]
+
+
+def failure_load(path: Path, kind: str = "exact") -> dict | None:
+    """The first of its references that is a failure load of this kind, as a table; None: none is."""
+    found = (one for one in references(path) if "failure_load" in one and one.get("kind", "exact") == kind)
+    return next(found, None)
 
 
 def case_id(path: Path) -> str:
@@ -90,9 +98,9 @@ def lower(block: tuple, by: float) -> tuple:
 
 
 def scene(path: Path) -> Scene:
-    """The structure of a case file with its loads; needs one joint law for all (Coulomb)."""
+    """The structure of a case file with its loads; its limit load needs one joint law for all (Coulomb)."""
     tables = read(path)
-    (joint,) = tables["joints"].values()
+    joint = next(iter(tables["joints"].values()))
     blocks = blocks_of(tables)
     polygons = [part for block in blocks for part in block[1]]
     bodies = np.repeat(np.arange(len(blocks)), [len(block[1]) for block in blocks])

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from casefiles import CASES, read, scene
+from casefiles import CASES, failure_load, scene
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -44,8 +44,8 @@ def agree(name: str) -> None:
     assert row.associated.load == pytest.approx(bound, rel=1e-5)
     assert judge.reference(row) <= bound * (1.0 + judge.ABOVE)
     assert row.gravity.load <= bound * (1.0 + judge.ABOVE)
-    said = read(file).get("reference", {"source": ""})
-    if said["source"].startswith("zero-dilation path"):
+    said = failure_load(file)
+    if said and said["source"].startswith("zero-dilation path"):
         assert judge.reference(row) == pytest.approx(said["failure_load"], rel=2e-3)
 
 

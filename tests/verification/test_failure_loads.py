@@ -7,10 +7,14 @@ import subprocess
 import sys
 
 import pytest
-from casefiles import CASES, FILES, case_id, read, scene, with_failure_load
+from casefiles import CASES, FILES, case_id, failure_load, read, scene
 
 LARGE = {"top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11"}  # 360 blocks: solved for docs/loads.json
-REFERENCED = [path for path in FILES if with_failure_load(path) and path.stem not in LARGE]
+SMALL = {  # of one or two blocks: solved by test_manual.py, all in one process
+    "barton_block", "cohesion_block", "crushing_block", "groove_30", "incline_down", "incline_up", "interface_slides",
+    "lever", "slope_of_slip", "stepped_column", "tension_block",
+}  # fmt: skip
+REFERENCED = [path for path in FILES if failure_load(path) and path.stem not in LARGE | SMALL]
 SLOW = {"wall_3", "wall_2", "wall_with_door", "top_load_b1", "top_load_b2", "uneven_courses_tall", "heavy_beam"}
 MODES = {
     "wall_21_mu050": "sliding",
@@ -39,7 +43,7 @@ def marked(path):
 
 @pytest.mark.parametrize("path", [marked(path) for path in REFERENCED])
 def test_failure_load(path, tmp_path):
-    reference = read(path)["reference"]
+    reference = failure_load(path)
     summary = run(path, tmp_path)
     assert summary["status"] == "ok"
     assert summary["failure_load"] == pytest.approx(reference["failure_load"], abs=reference["tolerance"])
