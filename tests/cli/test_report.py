@@ -223,7 +223,8 @@ def test_a_long_run_is_thinned_and_keeps_what_matters(tmp_path, monkeypatch):
 def test_a_run_without_frames_shows_what_was_built(tmp_path):
     folder = tmp_path / "still"
     folder.mkdir()
-    ResultWriter(folder, wall_model(), "", {}, (), "fragility").close({"title": "t", "kind": "fragility", "status": "ok"})
+    summary = {"title": "t", "kind": "fragility", "status": "ok"}
+    ResultWriter(folder, wall_model(), "", {}, (), "fragility").close(summary)
     page = report(folder)
     assert [frame["stage"] for frame in page.data()["view"]["frames"]] == ["as built"]
 

@@ -1,0 +1,390 @@
+"""Reports in a real browser, headless and cut off from the network: what is drawn, and what mouse and keys do.
+
+Where CI is set a missing browser is a failure; elsewhere these tests are skipped. Debian: chromium, chromium-driver.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import shutil
+import sys
+import time
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from synthetic import LENGTH, wall_frames, wall_model
+from synthetic.pages import HOSTILE, evil, sweep, wall
+from synthetic.shaking import write_shaking
+
+from dem_cli.cli.main import main
+from dem_cli.output.summary import scalars
+from dem_cli.post.measures import scaled
+from dem_cli.post.solids import placed, pose, surface
+
+STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
+SKY, DARK_SKY = (0xF4, 0xF1, 0xEA), (0x1E, 0x20, 0x23)
+TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
+OPTIONS = (
+    "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+    "--disable-gpu-compositing", "--disable-dev-shm-usage", "--disable-background-networking", "--no-first-run",
+    "--disable-component-update", "--force-device-scale-factor=1", "--window-size=1100,1500",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """One Chromium for all tests of this file."""
+    chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    driver = shutil.which("chromedriver")
+    if not chromium or not driver:
+        missing = "no chromium and chromedriver on this machine"
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(missing)
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for option in OPTIONS:
+        options.add_argument(option)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    session = webdriver.Chrome(options=options, service=Service(driver))
+    session.execute_cdp_cmd("Network.enable", {})
+    offline = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
+    session.execute_cdp_cmd("Network.emulateNetworkConditions", offline)
+    yield session
+    session.quit()
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """Reports by name, each written once."""
+    root = tmp_path_factory.mktemp("pages")
+    (root / "shaken").mkdir()
+    folders = {
+        "wall": wall(root / "wall"),
+        "evil": evil(root / "evil"),
+        "sweep": sweep(root / "sweep"),
+        "shaken": write_shaking(root / "shaken"),
+    }
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "matplotlib", None)  # still pictures are not the point here
+        for folder in folders.values():
+            assert CliRunner().invoke(main, ["report", str(folder)]).exit_code == 0
+    return folders
+
+
+class Opened:
+    """A page in the browser."""
+
+    def __init__(self, browser, folder):
+        self.browser, self.folder = browser, folder
+        browser.get_log("browser"), browser.get_log("performance")
+        browser.get((folder / "report.html").as_uri())
+
+    def run(self, script, *arguments):
+        return self.browser.execute_script(script, *arguments)
+
+    def find(self, selector):
+        return self.browser.find_element("css selector", selector)
+
+    def part(self, name):
+        return self.find(f'[data-part="{name}"]')
+
+    def screen(self):
+        """The window as it is drawn, (height, width, 3)."""
+        from PIL import Image
+
+        self.run("dem.player && dem.player.scene.draw()")
+        return np.asarray(Image.open(io.BytesIO(self.browser.get_screenshot_as_png())).convert("RGB")).astype(int)
+
+    def place(self, block):
+        """Where the centroid of a block is in the window."""
+        return np.array(self.run("return dem.player.scene.on_screen(arguments[0])", block))
+
+    def colour(self, place, screen=None):
+        x, y = np.rint(place).astype(int)
+        return tuple((self.screen() if screen is None else screen)[y, x])
+
+    def keys(self, element, *keys):
+        element.send_keys(*keys)
+
+    def complaints(self):
+        """Lines of the console, but for the driver's, which finds that pictures of the window take time."""
+        said = [entry["message"] for entry in self.browser.get_log("browser")]
+        return [text for text in said if "GL Driver Message (OpenGL, Performance" not in text]
+
+    def box(self, selector):
+        """Left, top, width and height of an element in the window."""
+        script = "return document.querySelector(arguments[0]).getBoundingClientRect().toJSON()"
+        found = self.run(script, selector)
+        return np.array([found[name] for name in ("left", "top", "width", "height")])
+
+    def requests(self):
+        """Addresses that the page asked for."""
+        messages = [json.loads(entry["message"])["message"] for entry in self.browser.get_log("performance")]
+        return [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
+
+
+@pytest.fixture
+def opened(browser, pages):
+    return lambda name: Opened(browser, pages[name])
+
+
+def near(found, wanted, tolerance=3):
+    return max(abs(a - b) for a, b in zip(found, wanted, strict=True)) <= tolerance
+
+
+@pytest.mark.parametrize("name", ["wall", "evil", "sweep", "shaken"])
+def test_no_page_complains_or_asks_for_anything(opened, name):
+    page = opened(name)
+    page.screen()
+    assert page.complaints() == []
+    assert [url for url in page.requests() if not url.startswith((page.folder.as_uri(), "data:"))] == []
+    assert page.run("return document.title") != "hacked"
+
+
+def test_the_policy_holds(opened):
+    page = opened("wall")
+    page.run("document.addEventListener('securitypolicyviolation', (e) => (window.broken = e.effectiveDirective))")
+    for script, broken in (
+        ("fetch('https://example.org').catch(() => 0)", "connect-src"),
+        ("document.body.append(Object.assign(new Image(), {src: 'https://example.org/a.png'}))", "img-src"),
+        ("const s = document.createElement('script'); s.text = 'alert(1)'; document.body.append(s)", "script-src-elem"),
+    ):
+        page.run(script)
+        assert until(lambda: page.run("return window.broken"), broken)
+
+
+def until(ask, wanted, seconds=10.0):
+    """Whether the answer comes in time."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if ask() == wanted:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_hostile_texts_are_shown_as_they_are(opened):
+    page = opened("evil")
+    assert page.find("h1").text == HOSTILE
+    assert page.run("return document.querySelectorAll('main img, .warnings b').length") == 0
+    assert "</pre><script>" in page.find("#case").get_attribute("textContent")
+    page.run("dem.player.select(3)")
+    assert page.run("return dem.player.data.ids[3]").startswith("</script><img")
+
+
+def test_blocks_are_drawn_where_they_are_and_move_with_the_slider(opened):
+    model, frames = wall_model(), wall_frames(wall_model())
+    page = opened("wall")
+    last = page.place(TOP_RIGHT)
+    screen = page.screen()
+    assert near(page.colour(page.place(FOOT), screen), STONE)
+    assert near(page.colour(last, screen), STONE)
+    slider = page.part("slider")
+    page.keys(slider, *["\ue012"] * 11)  # arrow left, to the first frame
+    assert page.run("return dem.player.at") == 0
+    assert page.part("says").text.startswith("gravity")
+    first, foot = page.place(TOP_RIGHT), page.place(FOOT)
+    between = model.centroids[TOP_RIGHT] - model.centroids[FOOT]
+    scale = (first - foot)[0] / between[0]  # pixels a metre
+    assert first - foot == pytest.approx(scale * between * (1, -1), abs=0.5)
+    moved = (frames[-1].positions - frames[0].positions)[TOP_RIGHT]
+    assert last - first == pytest.approx(scale * moved * (1, -1), abs=0.5)
+    right = scale * (0.25 * LENGTH + 0.5 * moved[0])
+    beyond = (first[0] + right, first[1])  # beside the wall at the start, stone at the end
+    assert near(page.colour(beyond), SKY)
+    page.keys(slider, "\ue010")  # end
+    assert near(page.colour(beyond), STONE)
+
+
+def test_every_corner_is_where_the_results_have_it(opened):
+    model, frames = wall_model(), wall_frames(wall_model())
+    page, skin = opened("wall"), surface(model)
+    for at, scale in ((11, 1.0), (9, 1.0), (11, 3.0)):
+        page.run("dem.player.scene.set(arguments[0], arguments[1])", at, scale)
+        drawn = np.array(page.run("return Array.from(dem.player.scene.places)")).reshape(-1, 3)
+        which = page.run("return dem.player.scene.vertexCorners")
+        shown = scaled(model, frames[at], scale)
+        expected = placed(skin, pose(shown.positions, shown.orientations))[which]
+        np.testing.assert_allclose(drawn, expected, atol=1e-7)
+
+
+def test_the_whole_structure_is_on_the_canvas(opened):
+    page = opened("wall")
+    left, top, width, height = np.rint(page.box("canvas")).astype(int)
+    seen = page.screen()[top + 40 : top + height - 60, left + 2 : left + width - 2]
+    stone = (np.abs(seen - STONE).max(axis=2) <= 3).mean()
+    assert 0.2 < stone < 0.8
+    places = np.array([page.place(block) for block in range(1, 22)])
+    assert (places > (left, top)).all()
+    assert (places < (left + width, top + height)).all()
+
+
+def test_keys_and_play(opened):
+    page = opened("wall")
+    canvas = page.part("canvas")
+    page.keys(canvas, "\ue011")  # home
+    assert page.run("return dem.player.at") == 0
+    page.keys(canvas, "\ue014", "\ue014")  # right, right
+    assert page.run("return dem.player.at") == 2
+    page.keys(canvas, "nn")
+    assert page.part("block").get_attribute("value") == "1"
+    before = page.run("return dem.player.scene.camera.zoom")
+    page.keys(canvas, "+")
+    assert page.run("return dem.player.scene.camera.zoom") == pytest.approx(1.25 * before)
+    page.keys(canvas, " ")
+    assert page.part("play").get_attribute("aria-label") == "Pause"
+    assert until(lambda: page.run("return dem.player.at"), 11)
+    assert until(lambda: page.part("play").get_attribute("aria-label"), "Play")
+
+
+def test_pointer_and_inspector(opened):
+    from selenium.webdriver import ActionChains
+
+    page = opened("wall")
+    canvas, place = page.part("canvas"), page.place(TOP_RIGHT)
+    box = page.box("canvas")
+    offset = np.rint(place - box[:2] - 0.5 * box[2:]).astype(int).tolist()
+    ActionChains(page.browser, duration=0).move_to_element_with_offset(canvas, *offset).perform()
+    assert until(lambda: page.part("tip").is_displayed(), True)
+    assert page.part("tip").text.startswith(f"wall-{TOP_RIGHT}\n")
+    ActionChains(page.browser, duration=0).move_to_element_with_offset(canvas, *offset).click().perform()
+    assert page.part("block").get_attribute("value") == str(TOP_RIGHT)
+    frames = wall_frames(wall_model())
+    moved = np.linalg.norm((frames[-1].positions - frames[0].positions)[TOP_RIGHT])
+    text = page.part("inspector").text
+    assert f"{1e3 * moved:.3g} mm" in text
+    assert f"{np.degrees(abs(frames[-1].orientations[TOP_RIGHT, 0])):.3g}°" in text
+    assert not near(page.colour(place), STONE)  # it is marked
+
+
+def test_colours_exaggeration_and_forces(opened):
+    page = opened("wall")
+    page.part("joints").click()
+    most = int(np.argmax(np.linalg.norm(wall_frames(wall_model())[-1].positions - wall_model().centroids, axis=1)))
+    page.run("const c = dem.player.part('colour'); c.value = 'displacement'; c.dispatchEvent(new Event('change'))")
+    screen = page.screen()
+    assert near(page.colour(page.place(most), screen), RAMP_END)
+    assert near(page.colour(page.place(FOOT), screen), STONE)
+    page.keys(page.part("slider"), "\ue011")
+    page.keys(page.part("slider"), "\ue014")
+    still = page.place(TOP_RIGHT)
+    page.part("automatic").click()
+    scale = page.run("return dem.player.scale()")
+    assert scale > 100
+    assert page.part("drawn").text == f"× {scale:g}"
+    page.part("automatic").click()
+    assert page.place(TOP_RIGHT) == pytest.approx(still)
+    before = page.screen()
+    page.part("forces").click()
+    assert (np.abs(page.screen() - before).max(axis=2) > 40).sum() > 100
+
+
+def test_the_capacity_curve_and_the_view_follow_each_other(opened):
+    page = opened("wall")
+    mark = "const c = document.querySelector('.now circle'); return ['cx', 'cy'].map((name) => +c.getAttribute(name))"
+    end = page.run(mark)
+    page.keys(page.part("slider"), "\ue011")
+    start = page.run(mark)
+    assert start[0] < end[0] - 100
+    frame = wall_frames(wall_model())[8]
+    script = "return [dem.charts[0].px(1e3 * arguments[0]), dem.charts[0].py(arguments[1])]"
+    expected = page.run(script, frame.displacement, frame.load)
+    from selenium.webdriver import ActionChains
+
+    svg = page.find("#chart-capacity svg")
+    offset = np.rint(expected - 0.5 * page.box("#chart-capacity svg")[2:]).astype(int).tolist()
+    ActionChains(page.browser, duration=0).move_to_element_with_offset(svg, *offset).click().perform()
+    assert page.run("return dem.player.at") == 8
+    assert page.run(mark) == pytest.approx(expected)
+    assert "collapse: " in page.find("#chart-capacity .reading").text
+
+
+def test_the_tables_hold_summary_json(opened):
+    page = opened("wall")
+    script = "return [...document.querySelectorAll('#numbers tr')].map((r) => [...r.cells].map((c) => c.textContent))"
+    rows = dict(page.run(script))
+    summary = json.loads((page.folder / "summary.json").read_text(encoding="utf-8"))
+    for path, value in scalars(summary).items():
+        listed = path.rpartition(".")
+        text = rows[path] if path in rows else rows[listed[0]].split(", ")[int(listed[2])]
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            assert float(text) == value, path
+        else:
+            assert text == ("–" if value is None else str(value).lower() if isinstance(value, bool) else str(value))
+    assert page.find("#summary").text.splitlines()[0] == "failure load 0.6402 (between 0.6395 and 0.6409)"
+    assert page.find(".verdict").text == "reference: 0.64 ± 0.001: passed"
+
+
+def test_a_time_history_opens_at_its_collapse_on_a_ground_that_moves(opened):
+    page = opened("shaken")
+    assert "collapsed at 4.2 s" in page.find(".answer").text
+    assert page.run("return dem.player.scene.frame.time") == pytest.approx(4.2, abs=0.1)
+    base, wanted = page.place(0), page.run("return dem.player.data.ground[dem.player.at][0]")
+    moving = page.part("carried").is_selected()
+    page.part("carried").click()
+    shift = (page.place(0) - base)[0] * (-1 if moving else 1)
+    metre = np.abs((page.place(2) - page.place(1))[0]) / LENGTH
+    assert shift == pytest.approx(metre * wanted, abs=1.0)
+    assert len(page.run("return document.querySelectorAll('#chart-displacement .line')")) == 2
+
+
+def test_a_sweep_is_sorted_filtered_and_drawn(opened):
+    page = opened("sweep")
+
+    def cells(column):
+        script = "return [...document.querySelectorAll('#runs tbody tr')].map((r) => r.cells[arguments[0]].textContent)"
+        return page.run(script, column)
+
+    def head(text):
+        buttons = page.browser.find_elements("css selector", "#runs thead button")
+        return next(button for button in buttons if button.text.split()[0] == text)
+
+    assert cells(0) == [f"a{i}" for i in range(8)]
+    head("failure_load").click()
+    assert cells(5) == ["0.3", "0.3", "0.5", "0.5", "0.5", "0.7", "0.7", "–"]
+    head("failure_load").click()
+    assert cells(5)[0] == "0.7"
+    assert cells(5)[-1] == "–"
+    page.part("filter").send_keys("friction>=0.5 running")
+    assert sorted(cells(0)) == ["a2", "a4", "a6"]
+    assert page.part("count").text == "3 of 8 runs"
+    assert len(page.run("return document.querySelectorAll('#chart-sweep circle:not(.pointer)')")) == 3
+    page.part("filter").clear()
+    page.part("filter").send_keys("thin")
+    assert cells(4) == ["<i>too thin</i>"]
+    page.part("filter").send_keys("\ue009a\ue003")  # control-a, backspace
+    assert [line["name"] for line in page.run("return dem.runs.chart.spec.lines")] == ["running", "stack"]
+    assert page.run("return document.querySelector('#runs a').getAttribute('href')") == "runs/a0/summary.json"
+
+
+def test_small_screens_and_the_dark(opened, browser):
+    phone = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+    dark = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
+    try:
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", dark)
+        for name in ("sweep", "wall"):
+            page = opened(name)
+            assert page.run("return document.documentElement.scrollWidth") == 390
+        corner = page.box("canvas")[:2] + np.array((6, 60))
+        assert near(page.colour(corner), DARK_SKY)
+        page.find("#theme").click()
+        assert near(page.colour(corner), SKY)
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_paper(opened):
+    page = opened("wall")
+    page.run("addEventListener('beforeprint', () => (window.unfolded = document.querySelector('details.print').open))")
+    found = page.browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
+    assert found["data"].startswith("JVBERi")  # %PDF
+    assert page.run("return window.unfolded") is True
+    assert page.run("return document.querySelector('details.print').open") is False
