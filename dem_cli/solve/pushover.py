@@ -118,6 +118,7 @@ def _too_fast(peak: float | None, high: float | None) -> list[str]:
 def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
     from dem_cli.limit.analysis import limit_loads, taken_as_plane
+    from dem_cli.limit.path import OK
 
     case, model = job.case, job.model
     properties = joint_properties(case, model)
@@ -133,7 +134,9 @@ def _limit_analysis(job: Job, search: Search) -> dict[str, Any]:
         return {}
     summary = loads.summary()
     if by_path:
-        summary["non_associated"] = search.start["load"]
+        status, load = search.start["status"], search.start["load"]
+        summary["non_associated" if status == OK else "non_associated_at_least"] = load
+        summary["non_associated_status"] = status
     bound = loads.associated.upper
     if search.found and bound is not None and search.low > (1.0 + ABOVE) * bound:
         job.warnings.append(
