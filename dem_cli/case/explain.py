@@ -25,6 +25,8 @@ PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
     "sweep": "docs/guide/sweeps.md",
     "analysis.fragility": "docs/fragility.md",
     "analysis.modes": "docs/modes.md",
+    "analysis.safety": "docs/safety.md",
+    "analysis.time-history": "docs/guide/shaking.md",
     "analysis": "docs/numerics.md",
 }
 

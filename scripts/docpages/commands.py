@@ -26,6 +26,8 @@ progress, remarks and errors go to stderr. Exit codes are the same everywhere:
 Made from the program itself by `scripts/docs --write`; do not edit.
 """
 
+KEPT = "\b\n"  # in front of a paragraph whose lines are not to be filled
+
 
 def text() -> str:
     """The whole page."""
@@ -36,20 +38,24 @@ def text() -> str:
         found = main.get_command(context, name)
         assert found is not None
         parts += section(name, found, click.Context(found, info_name=name, parent=context))
-    return "\n\n".join(part.strip() for part in parts) + "\n"
+    return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
 def section(name: str, found: click.Command, context: click.Context) -> list[str]:
     """Heading, usage, what it does, a table of options."""
-    records = [param.get_help_record(context) for param in found.get_params(context)]
-    rows = [(f"`{option}`".replace("|", "\\|"), safe(about)) for option, about in filter(None, records)]
-    about = inspect.cleandoc(found.help or "").replace("\b\n", "")
+    records = [param.get_help_record(context) for param in found.get_params(context) if param.name != "help"]
+    rows = [(f"`{option}`".replace("|", "\\|"), safe(about)) for option, about in filter(None, records) if about]
     return [
         f"## dem {name}",
         f"```text\n{re.sub(r'^Usage: ', '', found.get_usage(context))}\n```",
-        safe(about),
-        "\n".join(lines_of(("option", "means"), rows)),
+        *map(paragraph, inspect.cleandoc(found.help or "").split("\n\n")),
+        "\n".join(lines_of(("option", "means"), rows)) if rows else "",
     ]
+
+
+def paragraph(words: str) -> str:
+    """A paragraph of a help text; one that click is told to leave as it is stays so."""
+    return f"```text\n{words.removeprefix(KEPT)}\n```" if words.startswith(KEPT) else safe(words)
 
 
 def safe(words: str) -> str:

@@ -3,7 +3,7 @@
 * A toml block with a title is a whole case. One without changes the last whole case of the page: its tables replace or
   extend those there. Each must be valid; one whose first line is `# NAME.toml` is written to that file.
 * A bash block is run, line by line. A line whose remark says how many minutes it takes is only parsed, one that says
-  `exit 2` must end so.
+  `exit 2` must end so; `dem render`, which needs graphics libraries, is only parsed.
 * Every line of a text block right after a bash block must be in what its commands printed; times may differ.
 """
 
@@ -89,7 +89,7 @@ class Reader:
         if words[0] == "scripts/run":
             words = ["dem", "run", *words[1:], "--plot"]
         assert words[0] == "dem", f"no test knows how to run {line!r}"
-        if MINUTES.search(line):
+        if MINUTES.search(line) or words[1] == "render":
             parse(words[1:])
             return
         code, said = dem(*words[1:])
