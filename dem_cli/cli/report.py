@@ -53,7 +53,8 @@ def said(summary: dict[str, Any]) -> Any:
     if not summary:  # of a killed run
         return Said([], [])
     answers = from_summary(summary.get("reference"))
-    verdicts = [("good" if as_declared(answer) else "bad", f"reference: {one_line(answer)}") for answer in answers]
+    tones = ["bad" if not as_declared(answer) else "look" if "missed" in answer else "good" for answer in answers]
+    verdicts = [(tone, f"reference: {one_line(answer)}") for tone, answer in zip(tones, answers, strict=True)]
     return Said(console.answer_rows(summary), verdicts)
 
 

@@ -103,7 +103,7 @@ class Opened:
 
     def place(self, block):
         """Where the centroid of a block is in the window."""
-        return np.array(self.run("return dem.player.scene.on_screen(arguments[0])", block))
+        return np.array(self.run("return dem.player.scene.eye.place(arguments[0])", block))
 
     def colour(self, place, screen=None):
         x, y = np.rint(place).astype(int)
@@ -234,9 +234,9 @@ def test_keys_and_play(opened):
     assert page.run("return dem.player.at") == 2
     page.keys(canvas, "nn")
     assert page.part("block").get_attribute("value") == "1"
-    before = page.run("return dem.player.scene.camera.zoom")
+    before = page.run("return dem.player.scene.eye.camera.zoom")
     page.keys(canvas, "+")
-    assert page.run("return dem.player.scene.camera.zoom") == pytest.approx(1.25 * before)
+    assert page.run("return dem.player.scene.eye.camera.zoom") == pytest.approx(1.25 * before)
     page.keys(canvas, " ")
     assert page.part("play").get_attribute("aria-label") == "Pause"
     assert until(lambda: page.run("return dem.player.at"), 11)

@@ -20,9 +20,9 @@ class Player {
     this.controls();
     this.pointer();
     this.keys();
-    new ResizeObserver(() => this.scene.resize()).observe(this.canvas);
+    new ResizeObserver(() => this.scene.eye.resize()).observe(this.canvas);
     this.scene.set(this.at, this.scale());
-    this.scene.fit();
+    this.scene.eye.fit();
     this.go(this.at);
   }
 
@@ -54,13 +54,13 @@ class Player {
     on("colour", "change", (event) => { this.scene.colouring = event.target.value; this.scene.tint(); this.legend(); });
     for (const name of ["joints", "forces", "ghost", "carried"])
       on(name, "change", (event) => { this.scene.show[name] = event.target.checked; this.refresh(); });
-    on("fit", "click", () => this.scene.fit());
-    on("nearer", "click", () => this.scene.zoom(1.25));
-    on("farther", "click", () => this.scene.zoom(0.8));
+    on("fit", "click", () => this.scene.eye.fit());
+    on("nearer", "click", () => this.scene.eye.zoom(1.25));
+    on("farther", "click", () => this.scene.eye.zoom(0.8));
     on("turn", "click", (event) => {
       const pressed = event.currentTarget.getAttribute("aria-pressed") !== "true";
       event.currentTarget.setAttribute("aria-pressed", String(pressed));
-      this.scene.turnable(pressed);
+      this.scene.eye.turnable(pressed);
     });
     const list = this.part("block");
     this.data.ids.forEach((id, i) => list.add(new Option(id, i)));
@@ -177,7 +177,7 @@ class Player {
     const leave = () => { tip.hidden = true; this.hover(-1); };
     this.canvas.addEventListener("pointermove", (event) => {
       if (event.buttons) return leave();
-      const block = this.scene.at_pointer(event.clientX, event.clientY);
+      const block = this.scene.eye.under(event.clientX, event.clientY);
       if (block < 0) return leave();
       this.hover(block);
       const [displacement, rotation] = this.facts(block);
@@ -191,7 +191,7 @@ class Player {
     this.canvas.addEventListener("pointerdown", (event) => { this.down = [event.clientX, event.clientY]; });
     this.canvas.addEventListener("click", (event) => {
       const dragged = this.down && Math.hypot(event.clientX - this.down[0], event.clientY - this.down[1]) > 4;
-      if (!dragged) this.select(this.scene.at_pointer(event.clientX, event.clientY));
+      if (!dragged) this.select(this.scene.eye.under(event.clientX, event.clientY));
     });
   }
 
@@ -205,7 +205,7 @@ class Player {
     const does = {
       " ": () => this.play(), ArrowRight: () => this.go(this.at + 1), ArrowLeft: () => this.go(this.at - 1),
       Home: () => this.go(0), End: () => this.go(this.data.frames.length - 1),
-      "+": () => this.scene.zoom(1.25), "-": () => this.scene.zoom(0.8), 0: () => this.scene.fit(),
+      "+": () => this.scene.eye.zoom(1.25), "-": () => this.scene.eye.zoom(0.8), 0: () => this.scene.eye.fit(),
       n: () => this.select((this.scene.picked + 1) % this.scene.n), Escape: () => this.select(-1),
     };
     this.canvas.addEventListener("keydown", (event) => {
