@@ -16,12 +16,12 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
 
 from dem_cli.case.base import OneOrMore
 from dem_cli.case.words import Kind, allowed, is_table, kind_of
 
 NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
+NOTHING = (None, (), {}, "")
 TAGS = ("kind", "law")  # keys that say which kind of table it is
 UNITS = (
     "-", "m", "s", "kg", "N", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m", "J/m2",
@@ -119,10 +119,14 @@ class Key(NamedTuple):
         said = DEFAULT.search(self.description)
         if said:
             return said[1]
-        value = self.field.default
-        if value is PydanticUndefined or value is None or value in ((), "", {}):
-            return ""
-        return toml(value.model_dump() if isinstance(value, BaseModel) else value)
+        value = self._default
+        return "" if value in NOTHING else toml(value)
+
+    @property
+    def _default(self) -> Any:
+        """The declared default as plain values; None where there is none."""
+        value = None if self.required else self.field.get_default(call_default_factory=True)
+        return value.model_dump() if isinstance(value, BaseModel) else value
 
     @property
     def only_tables(self) -> bool:
@@ -137,11 +141,8 @@ class Key(NamedTuple):
     @property
     def example(self) -> str:
         """A line with it, without the table; empty for a table of tables that has sections of its own."""
-        values = self.field.examples or [self.field.default]
-        if get_origin(self.kind.type) is Literal and not self.field.examples:
-            values = [get_args(self.kind.type)[0] if self.field.is_required() else self.field.default]
-        value = values[0].model_dump() if isinstance(values[0], BaseModel) else values[0]
-        return "" if value is PydanticUndefined or value in (None, (), {}, "") else f"{self.name} = {toml(value)}"
+        value = self.field.examples[0] if self.field.examples else self._default
+        return "" if value in NOTHING else f"{self.name} = {toml(value)}"
 
 
 def tables(model: type[BaseModel]) -> list[Table]:
