@@ -21,9 +21,13 @@ if TYPE_CHECKING:
 def command(case: str, overrides: tuple[str, ...]) -> None:
     """Validate CASE and print its model: blocks, joints, mass, time step and estimated cost."""
     from dem_cli import api
+    from dem_cli.cli.reference import check_quantities
+    from dem_cli.cli.run import monitor_names
 
     loaded = api.load_case(case, overrides)
     model = api.build_model(loaded)
+    with loaded.located():
+        check_quantities(loaded.case, monitor_names(loaded.case.monitor))
     warn(loaded)
     found = rows(loaded.case, model)
     if loaded.case.sweep is not None:

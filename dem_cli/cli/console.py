@@ -12,8 +12,8 @@ from typing import Any, TextIO
 
 from dem_cli.cli.fragility import fragility_rows
 from dem_cli.cli.modes import mode_rows
-from dem_cli.cli.safety import safety_rows
 from dem_cli.cli.reference import reference_rows
+from dem_cli.cli.safety import safety_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s

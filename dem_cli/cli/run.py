@@ -16,6 +16,7 @@ from dem_cli.cli import console
 from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.many import Wish, batch_of, check, finish, with_names
 from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.reference import check_quantities
 from dem_cli.errors import DemError, SolverError
 
 if TYPE_CHECKING:
@@ -150,10 +151,11 @@ def execute(
     from dem_cli.output.provenance import provenance
     from dem_cli.output.store import ResultWriter
 
-    case = loaded.case
+    case, names = loaded.case, monitor_names(loaded.case.monitor)
+    with loaded.located():
+        check_quantities(case, names)
     with Interrupts() as interrupts, OutputFolder(output, force=force, recover=recover) as folder:
         with interrupts.shielded():
-            names = monitor_names(case.monitor)
             text, kind = case_text(case), case.analysis.kind
             quantities = [("absolute " if m.absolute else "") + m.quantity for m in case.monitor]
             writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)

@@ -8,6 +8,7 @@ from typing import Any
 from dem_cli.output.record import HistoryRow
 from dem_cli.output.series import UNITS
 
+PARTS = ("value", "load", "unit")  # what is said of a monitor
 AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium
 
 
@@ -39,5 +40,5 @@ class Held:
         answer = {}
         for i, (name, unit) in enumerate(zip(self.names, self.units) if rows else ()):
             nearest = min(rows, key=lambda row, i=i: abs(row.monitors[i]))  # type: ignore[misc]
-            answer[name] = {"value": nearest.monitors[i], "load": nearest.load, "unit": unit}
+            answer[name] = dict(zip(PARTS, (nearest.monitors[i], nearest.load, unit)))
         return answer
