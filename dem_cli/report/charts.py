@@ -139,10 +139,11 @@ def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
             continue
         steps, control = history["step"], history["displacement"]
         factor, unit = _unit(name, values)
-        x, y = (factor * values, history["load"]) if loaded else (control, factor * values)
+        metre, length = style.length_unit(float(control.max()))
+        x, y = (factor * values, history["load"]) if loaded else (metre * control, factor * values)
         drawn = [line(name, *with_breaks(steps, x, y), "0")]
         labels = f"{name} [{unit}]", "load multiplier λ"
-        labels = labels if loaded else ("control displacement [m]", labels[0])
+        labels = labels if loaded else (f"control displacement [{length}]", labels[0])
         rows = [_row_of(history, frame) for frame in frames]
         marks = [[float(x[row]), float(y[row])] for row in rows]
         found.append({"id": f"monitor-{len(found)}", "title": f"Monitor: {name}", "x": labels[0], "y": labels[1],

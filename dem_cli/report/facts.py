@@ -56,7 +56,7 @@ def _status(summary: Mapping[str, Any]) -> tuple[str, str, str]:
     status = str(summary.get("status", "unfinished"))
     moved = summary.get("largest_displacement")
     more = "" if moved is None else f"largest displacement {_metres(moved)}"
-    return ("result", "stands" if summary.get("kind") == "gravity" and status == "ok" else status, more)
+    return ("result", _ENDS.get(str(summary.get("kind")), status) if status == "ok" else status, more)
 
 
 def _load(summary: Mapping[str, Any]) -> tuple[str, str, str]:
@@ -65,11 +65,21 @@ def _load(summary: Mapping[str, Any]) -> tuple[str, str, str]:
         turns = summary.get("turning_points")
         loads = [turn["load"] for turn in turns or ()]
         if loads:
-            return ("load multiplier", f"{min(loads):.4g} … {max(loads):.4g}", "followed the load path without failure")
+            ends = f"{min(loads):.4g} … {max(loads):.4g}".replace("-", "−")
+            return ("load multiplier", ends, "followed the load path without failure")
         return _status(summary)
     more = f"between {bracket[0]:.4f} and {bracket[1]:.4f}" if bracket and None not in bracket else ""
     mode = {"mixed": "sliding and rocking"}.get(mode := summary.get("failure_mode"), mode)
     return ("failure load λ", f"{load:.4f}", ", ".join(filter(None, (more, mode and f"failure by {mode}"))))
+
+
+def _limit(summary: Mapping[str, Any]) -> tuple[str, str, str]:
+    loads = summary.get("limit_analysis") or {}
+    found = {name.replace("_", "-"): loads[name] for name in ("non_associated", "associated") if loads.get(name)}
+    if not found:
+        return _status(summary)
+    more = ", ".join(f"{name} {load:.4f}" for name, load in found.items())
+    return ("failure load λ", f"{next(iter(found.values())):.4f}", more)
 
 
 def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
@@ -117,8 +127,9 @@ def _safety(summary: Mapping[str, Any]) -> tuple[str, str, str]:
     return (label, "none found" if value is None else f"{value:.4g}", more)
 
 
+_ENDS = {"gravity": "stands", "settlement": "followed to the end"}  # what status "ok" means
 _ANSWERS = {
-    "pushover": _load, "cycle": _load, "limit": _load, "time-history": _shaken, "fragility": _fragile, "modes": _modes,
+    "pushover": _load, "cycle": _load, "limit": _limit, "time-history": _shaken, "fragility": _fragile, "modes": _modes,
     "safety": _safety,
 }  # fmt: skip
 

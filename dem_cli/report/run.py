@@ -53,6 +53,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: Said) -> str:
         case=case,
         provenance=results.provenance if results else {"dem": str(summary.get("version", "–"))},
         version=summary.get("version", "–"),
+        command="limit" if summary.get("kind") == "limit" else "run",
         runs=None,
     )
 

@@ -48,6 +48,7 @@ def page(folder: Path, place: Path) -> str:
         case=case.read_text(encoding="utf-8") if case.is_file() else "",
         provenance={},
         version=_facts(folder / FACTS).get("version", "–"),
+        command="sweep",
         runs=runs,
     )
 

@@ -125,10 +125,10 @@ class Player {
   say() {
     const frame = this.data.frames[this.at], scale = this.scale(), words = this.data.modes ? [] : [frame.stage];
     if (frame.says) words.push(frame.says);
-    if (frame.displacement && !this.data.modes) words.push(`moved ${metres(frame.displacement)}`);
+    if (frame.displacement && !this.data.of_any_size) words.push(`moved ${metres(frame.displacement)}`);
     this.part("says").textContent = words.join(" · ");
     this.part("slider").setAttribute("aria-valuetext", words.join(", "));
-    this.part("drawn").textContent = scale !== 1 ? `× ${number(scale, 3)}` : this.data.modes ? "of any size" : "true scale";
+    this.part("drawn").textContent = this.data.of_any_size ? "of any size" : scale === 1 ? "true scale" : `× ${number(scale, 3)}`;
     this.legend();
     this.inspect();
   }
