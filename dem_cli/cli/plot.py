@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 CHART, SWEEP = "plot.png", "sweep.png"
 FORMATS = (".png", ".svg", ".pdf")
+NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
 
 
 @click.command("plot", short_help="Draw the results of runs and sweeps.")
@@ -26,6 +27,7 @@ FORMATS = (".png", ".svg", ".pdf")
 @click.option("--by", metavar="KEY", multiple=True, help="A curve for each value of this key of the case; colours it.")
 @click.option("--where", metavar="KEY=VALUE", multiple=True, help="Of a sweep: only runs that have this value.")
 @click.option("--map", "as_map", is_flag=True, help="Of a sweep: a heat map of -y over two keys (-x, --by).")
+@click.option("--picture", type=click.Choice(NAMES), help="Only this one of all pictures of a run.")
 @click.option("--list", "listed", is_flag=True, help="Print the columns that there are; draw nothing.")
 @click.option(
     "-o", "--output", metavar="PATH", type=click.Path(path_type=Path),
@@ -43,6 +45,7 @@ def command(
     by: Sequence[str],
     where: Sequence[str],
     as_map: bool,
+    picture: str | None,
     listed: bool,
     output: Path | None,
     size: tuple[int, int | None] | None,
@@ -74,6 +77,11 @@ def command(
         raise UsageError("--where and --map are for the folder of a sweep")
     paper = Paper(size, frozenset(log or ""), xlim, ylim)
     asked = bool(x or ys or by or listed or len(folders) > 1)
+    if picture is not None:
+        if sweeps or asked or paper != Paper():
+            raise UsageError("--picture is for one run, without columns and sizes")
+        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
+        return
     if not sweeps and not asked:
         if paper != Paper() or (output is not None and output.suffix.lower() in FORMATS):
             raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
@@ -113,6 +121,21 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
         console.show(str(path))
     if not written:
         console.note(f"{folder}: nothing to draw, the run kept neither frames nor a history")
+
+
+def draw_picture(folder: Path, name: str, path: Path) -> None:
+    """One of the pictures of a run."""
+    from dem_cli.output.folder import write_error
+    from dem_cli.post.chart import check_format
+    from dem_cli.post.plots import draw_one
+
+    check_format(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draw_one(folder, f"{name}.png", path)
+    except OSError as error:
+        raise write_error(error, path) from None
+    console.show(str(path))
 
 
 def draw_chart(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results, read
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.capacity import draw_capacity
@@ -43,6 +44,14 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
         draw_animation(results, output / ANIMATION)
         written.append(output / ANIMATION)
     return written
+
+
+def draw_one(folder: Path, name: str, path: Path) -> None:
+    """One of the pictures, into a file of any format of matplotlib. Raises UsageError where it has no data."""
+    results = read(folder)
+    if not has_data(name, results):
+        raise UsageError(f"{folder}: nothing to draw for {name.removesuffix('.png')} in a run of kind {results.kind!r}")
+    PICTURES[name](results, path)
 
 
 def has_data(name: str, results: Results) -> bool:

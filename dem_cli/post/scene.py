@@ -12,7 +12,7 @@ from dem_cli.post import marks, solids, style
 
 _STONES = ("#e6dac3", "#c3bfba", "#d9bfa3", "#cdd2cc", "#e8e2d6")  # by material
 _TINT = 0.045  # by which stones differ
-_EDGE = "#57503f"
+_EDGE, _EDGE_WIDTH, _THINNEST_EDGE = "#57503f", 0.55, 0.75  # colour; points; pixels
 _FINER = 2  # pixels are means of so many by so many
 _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # from the structure to the eye
 VIEWS = tuple(_DIRECTIONS)
@@ -57,6 +57,8 @@ class Scene:
         self.plotter = pyvista.Plotter(off_screen=True, window_size=(_FINER * width, _FINER * height), lighting="none")
         self.metres = _AROUND * max(eye.height / height, eye.width / width)  # of a pixel
         self.points = points
+        self.nearer = self.metres * eye.direction  # edges are drawn before faces
+        self.edge = _FINER * max(_EDGE_WIDTH * points, _THINNEST_EDGE)
         self.reach = _REACH * self.metres * min(width, height)
         self._set_up(eye, height, deep)
         self.stones = stone_colours(model)
@@ -113,7 +115,7 @@ class Scene:
         pairs = self.surface.edges
         edges = np.column_stack([np.full(len(pairs), 2), pairs]).ravel()
         self.plotter.add_mesh(
-            self.pyvista.PolyData(points, lines=edges), color=_EDGE, line_width=0.55 * _FINER * self.points,
+            self.pyvista.PolyData(points + self.nearer, lines=edges), color=_EDGE, line_width=self.edge,
             lighting=False, name="edges", reset_camera=False, render=False,
         )  # fmt: skip
 
