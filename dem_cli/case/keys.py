@@ -21,7 +21,7 @@ from dem_cli.case.base import OneOrMore
 from dem_cli.case.words import Kind, allowed, is_table, kind_of
 
 NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
-NOTHING = (None, (), {}, "")
+NOTHING: tuple[Any, ...] = (None, (), {}, "")
 TAGS = ("kind", "law")  # keys that say which kind of table it is
 UNITS = (
     "-", "m", "s", "kg", "N", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m", "J/m2",

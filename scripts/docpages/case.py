@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from itertools import combinations
+from pathlib import Path
 
 from pydantic import BaseModel, ValidationError
 
 from dem_cli.api import make_case_model
 from dem_cli.bench.table import lines_of
+from dem_cli.case.explain import Entry
 from dem_cli.case.keys import Key, Table, tables
 
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 HEAD = ("key", "what it may be", "unit", "default", "meaning")
 INTRODUCTION = """# Case file: every table and key
 
@@ -59,9 +62,10 @@ def section(found: Sequence[Table]) -> list[str]:
         parts += ["All have:", *rows_of(shared)] if shared else []
         for table in kinds:
             own = [key for key in plain(table) if key.name not in names and not key.names_kind]
-            parts += [f'### `{first.tag} = "{table.kinds[0]}"`', paragraphs(table), *rows_of(own), example(table)]
+            parts += [f'### `{first.tag} = "{table.kinds[0]}"`', paragraphs(table) + more(table)]
+            parts += [*rows_of(own), example(table)]
     else:
-        parts += [paragraphs(first), *rows_of(plain(first)), example(first)]
+        parts += [paragraphs(first) + more(first), *rows_of(plain(first)), example(first)]
     inner = [table for table in found if table.path != first.path]
     for declared in dict.fromkeys(table.declared for table in inner):
         alike = [table for table in inner if table.declared is declared]
@@ -123,6 +127,13 @@ def paragraphs(table: Table) -> str:
     """What the table is, each paragraph a sentence or more."""
     lines = [capital(line) for line in safe(table.about).split("\n") if line]
     return "\n\n".join(line if line.endswith((".", "?")) else f"{line}." for line in lines)
+
+
+def more(table: Table) -> str:
+    """A link to the page that says most about a table, where there is one beside this."""
+    page = Entry(table, None, table.kinds).page.removeprefix("docs/")
+    title = (DOCS / page).read_text(encoding="utf-8").split("\n")[0].removeprefix("# ")
+    return "" if page == "case.md" else f" More: [{title}]({page})."
 
 
 def capital(words: str) -> str:
