@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
+WIDTH, INDENT = 84, "    "
 INTRODUCTION = """# Gallery
 
 Every picture is drawn by the program from the case and by the commands below it; nothing is retouched.
@@ -28,6 +30,17 @@ def section(picture: dict) -> str:
             f"## {picture['title']}",
             f"![{picture['title']}](gallery/{Path(picture['picture']).name})",
             picture["caption"].strip(),
-            "```bash\n" + "\n".join(commands) + "\n```",
+            "```bash\n" + "\n".join(map(folded, commands)) + "\n```",
         ]
     )
+
+
+def folded(command: str) -> str:
+    """A command on as many lines as it needs, broken before options."""
+    lines = [""]
+    for part in re.split(r" (?=-)", command):
+        if lines[-1] and len(lines[-1]) + 1 + len(part) > WIDTH:
+            lines.append(INDENT + part)
+        else:
+            lines[-1] += f" {part}" if lines[-1] else part
+    return " \\\n".join(lines)
