@@ -38,7 +38,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: Said) -> str:
     drawn = charts(results, scene["frames"]) if results and scene else []
     return render(
         {"view": scene, "charts": drawn},
-        title=str(summary.get("title", folder.resolve().name)),
+        title=str(summary.get("title") or folder.resolve().name),
         kind=KINDS.get(str(summary.get("kind")), "Run"),
         answer=answer(summary),
         verdicts=said.verdicts,

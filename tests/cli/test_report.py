@@ -93,6 +93,16 @@ def test_nothing_in_the_page_points_outside(tmp_path):
     assert "http" not in content
 
 
+def test_it_opens_in_the_browser_where_one_asks(tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr("webbrowser.open", seen.append)
+    folder = wall(tmp_path / "a wall")
+    report(folder)
+    assert seen == []
+    report(folder, "--open")
+    assert seen == [(folder / "report.html").as_uri()]
+
+
 def test_the_policy_knows_scripts_by_what_is_in_them():
     # printf 'x' | openssl dgst -sha256 -binary | base64
     assert "'sha256-LXEWQrcmsEQBYnyp+6wy9chTD7GQPMTbAiWHF5IaSIE='" in policy(["x"], [])
@@ -227,6 +237,52 @@ def test_a_run_without_frames_shows_what_was_built(tmp_path):
     ResultWriter(folder, wall_model(), "", {}, (), "fragility").close(summary)
     page = report(folder)
     assert [frame["stage"] for frame in page.data()["view"]["frames"]] == ["as built"]
+
+
+SURE = {"level": 0.9, "median": [1.44, 1.74]}
+ANSWERS = [  # kind, what else is in the summary, label, value, more
+    ("gravity", {"largest_displacement": 2e-6}, "result", "stands", "largest displacement 2 µm"),
+    ("settlement", {"largest_displacement": 0.02}, "result", "followed to the end", "largest displacement 20 mm"),
+    ("pushover", {"failure_load": 0.64, "failure_load_bracket": [0.64, 0.65], "failure_mode": "mixed"},
+     "failure load λ", "0.6400", "between 0.6400 and 0.6500, failure by sliding and rocking"),
+    ("cycle", {"failure_load": None, "turning_points": [{"load": 0.8}, {"load": -0.8}]},
+     "load multiplier", "−0.8 … 0.8", "followed the load path without failure"),
+    ("time-history", {"collapsed": False, "peaks": {"top": {"peak": -0.0123, "unit": "m"}}}, "result", "stood",
+     "top: peak −12.3 mm"),
+    ("time-history", {"collapsed": True, "collapse_time": 1.5}, "result", "collapsed at 1.5 s", ""),
+    ("fragility", {"median": 1.6, "dispersion": 0.02, "confidence": SURE, "unit_acceleration": 3.2,
+                   "collapse_intensities": [1.6, None]},
+     "half collapse at intensity", "1.6", "5.12 m/s², dispersion 0.02, 90 % confidence 1.44 to 1.74, 2 records"),
+    ("fragility", {"median": None}, "half collapse at", "no median", "ok"),
+    ("modes", {"frequencies": [3.5, 7.0]}, "first frequency", "3.5 Hz", "2 modes"),
+    ("safety", {"vary": "strength", "safety_factor": 1.66, "stands_at": 1.66, "fails_at": 1.67},
+     "factor of safety", "1.66", "stands at 1.66, fails at 1.67"),
+    ("safety", {"vary": "structure.0.ring", "critical_value": 0.1}, "critical structure.0.ring", "0.1", ""),
+    ("limit", {"limit_analysis": {"associated": 0.15, "non_associated": 0.14}}, "failure load λ", "0.1400",
+     "non-associated 0.1400, associated 0.1500"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "found", "label", "value", "more"), ANSWERS)
+def test_the_answer_of_each_kind_in_one_line(kind, found, label, value, more):
+    assert facts.answer({"kind": kind, "status": "ok", **found}) == (label, value, more, "good")
+
+
+@pytest.mark.parametrize("kind", facts.KINDS)
+def test_a_run_that_was_stopped_says_so(kind):
+    answer = facts.answer({"kind": kind, "status": "interrupted"})
+    assert "interrupted" in answer.value + answer.more
+    assert answer.tone == "bad"
+
+
+def test_an_audit_that_finds_something(tmp_path):
+    from dem_cli.output.reader import read
+
+    results = read(wall(tmp_path / "wall"))
+    assert [check.tone for check in facts.audit(results.summary, results)] == ["good", "good", "good", "good"]
+    doubtful = {**results.summary, "status": "not converged", "energy_closure": -0.02, "largest_overlap": 0.1}
+    results.history["unbalanced"][results.history["stage"] == "gravity"] = 1e-3
+    assert [check.tone for check in facts.audit(doubtful, results)] == ["bad", "bad", "bad", "look"]
 
 
 def test_what_counts_as_balanced_is_what_the_solver_asks_for():

@@ -381,6 +381,19 @@ def test_small_screens_and_the_dark(opened, browser):
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
 
+def test_without_webgl_the_rest_of_the_page_works(opened, browser):
+    refuse = "HTMLCanvasElement.prototype.getContext = () => null"
+    script = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": refuse})
+    try:
+        page = opened("wall")
+        assert page.find(".without-webgl").is_displayed()
+        assert not page.part("canvas").is_displayed()
+        assert len(page.run("return document.querySelectorAll('.chart svg .line')")) > 5
+        assert not [text for text in page.complaints() if "Uncaught" in text]
+    finally:
+        browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+
 def test_paper(opened):
     page = opened("wall")
     page.run("addEventListener('beforeprint', () => (window.unfolded = document.querySelector('details.print').open))")

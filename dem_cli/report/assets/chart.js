@@ -112,8 +112,9 @@ class Chart {
   range(axis) {
     let low = Infinity, high = -Infinity;
     const take = (value) => {
-      if (value < low) low = value;
-      if (value > high) high = value;
+      if (!Number.isFinite(value)) return;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
     };
     const inside = (x) => !this.zoom || x <= this.zoom.to;
     for (const line of this.lines) {

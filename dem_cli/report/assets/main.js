@@ -9,7 +9,7 @@ function start() {
     try {
       page.player = new Player(section, data.view, (i) => page.charts.forEach((chart) => chart.mark(i)));
     } catch (error) {
-      section.querySelector(".stage").classList.add("without");
+      section.classList.add("without");
       section.querySelector(".without-webgl").hidden = false;
       console.warn(`no interactive view: ${error.message}`);
     }

@@ -72,7 +72,8 @@ class Runs {
       const line = document.createElement("tr");
       for (const i of chosen) {
         const cell = document.createElement("td"), value = row[i], text = typeof value === "number" ? number(value, 6) : String(value ?? "–");
-        if (typeof value === "number") { cell.className = "number"; cell.title = String(value); }
+        cell.title = String(value ?? "");
+        if (typeof value === "number") cell.className = "number";
         if (columns[i] === "run" && links[value]) {
           const link = document.createElement("a");
           Object.assign(link, { href: links[value], textContent: text });
