@@ -209,7 +209,7 @@ def listing(folders: Sequence[Path], sweep: bool) -> list[str]:
     if sweep:
         table = read_sweep(folders[0])
         quantities = _quantities(table)
-        rows = []
+        rows: list[tuple[str, ...]] = []
         for name in table.names:
             values = distinct(table.columns[name])
             if values and not name.endswith(".unit"):

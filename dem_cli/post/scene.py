@@ -54,7 +54,8 @@ class Scene:
 
         self.pyvista, self.model = pyvista, model
         self.surface = solids.surface(model)
-        self.plotter = pyvista.Plotter(off_screen=True, window_size=(_FINER * width, _FINER * height), lighting="none")
+        size = [_FINER * width, _FINER * height]
+        self.plotter: Any = pyvista.Plotter(off_screen=True, window_size=size, lighting="none")
         self.metres = _AROUND * max(eye.height / height, eye.width / width)  # of a pixel
         self.points = points
         self.nearer = self.metres * eye.direction  # edges are drawn before faces

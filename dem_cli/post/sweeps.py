@@ -164,7 +164,8 @@ def _legend(
     """Colours for the first key, markers for the others, dashes for columns, a cross for what has no answer."""
     from matplotlib.lines import Line2D
 
-    handles, nothing = [], {"color": "none", "lw": 0.0}
+    handles: list[Any] = []
+    nothing: dict[str, Any] = {"color": "none", "lw": 0.0}
     if len(keys.values) > 1 and not keys.bar:
         handles.append(Line2D([], [], label=chart.wrapped(quantities[by[0]].label()), **nothing))
         marks = [chart.MARKERS[i % len(chart.MARKERS)] if len(rests) == 1 else "" for i in range(len(keys.values))]
