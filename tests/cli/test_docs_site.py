@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import shlex
 import sys
 import tomllib
 from importlib import import_module
 from pathlib import Path
 
 import pytest
+from shown import blocks, parse
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -24,8 +26,8 @@ def test_generated_page_is_the_current_one(path):
 def test_the_site_builds_and_holds_together(tmp_path, capfd):
     site, pages = tmp_path / "site", ROOT / "docs"
     assert docs.main(["-o", str(site)]) == 0, capfd.readouterr().err
-    missing = [path for path in pages.rglob("*.md") if not (site / path.relative_to(pages)).with_suffix(".html").exists()]
-    assert not missing
+    for path in pages.rglob("*.md"):
+        assert (site / path.relative_to(pages)).with_suffix(".html").exists()
 
 
 def test_what_is_broken_is_found(tmp_path):
@@ -48,3 +50,14 @@ def test_examples_of_the_reference_are_toml():
     found = [tomllib.loads(block) for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL)]
     assert len(found) > 40
     assert {name for table in found for name in table} >= {"materials", "joints", "structure", "analysis", "motion"}
+
+
+def test_commands_of_the_gallery_are_right(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    page = ROOT / "docs" / "gallery.md"
+    lines = [line for block in blocks(page) for line in block.text.replace("\\\n", " ").splitlines()]
+    assert len(lines) > 8
+    for line in dict.fromkeys(lines):
+        words = shlex.split(line)
+        parse(words[1:], check=False)
+        assert all((ROOT / word).exists() for word in words if word.startswith("cases/"))
