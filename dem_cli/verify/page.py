@@ -16,16 +16,16 @@ ABOUT = {
     "give.",
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
 }
-HEAD = ("case", "quantity", "ours", "reference", "error", "error", "allowed", "")
+HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
 
 Written by `dem verify cases --write docs/verification.md`; do not edit. Every case file under `cases/` that has a
 `[reference]` was run as it stands and compared. A test fails when this page does not belong to the case files.
 
-*error*: ours less the reference, in the unit of the quantity and over the reference; of a range, beyond its nearer end.
-*allowed*: what passes, fixed in the case file before the run: of exact answers from the resolution of the failure load
-and the joint stiffness. A *known miss* is declared in its case file with the reason; if it is suddenly met, that fails
-too.
+*difference*: ours less the reference, in the unit of the quantity; *error*: the same over the reference; of a range,
+beyond its nearer end. *allowed*: what passes, as the case file says and explains: of exact answers it follows from the
+resolution of the failure load, the joint stiffness and the time between samples, of others from the digits that are
+printed. A *known miss* is declared in its case file with the reason; if it is suddenly met, that fails too.
 """
 
 

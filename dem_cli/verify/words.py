@@ -22,7 +22,7 @@ def off(answer: Mapping[str, Any]) -> str:
     """How far off, in the unit of the quantity; "inside" an interval."""
     value = answer["error"]
     if value is None:
-        return "–" if answer["found"] is None or isinstance(answer["value"], (int, float)) else ""
+        return "–" if answer["found"] is None else ""
     if isinstance(answer["value"], list) and value == 0.0:
         return "inside"
     return "0" if value == 0.0 else f"{value:+.2g}".replace("-", "−")
