@@ -1,7 +1,7 @@
 """The slice of the church as a case: a bay of S. Maria Maggiore, Tuscania (PhD thesis, MIT, about 2000, Appendix A).
 
-The figures of the appendix are lost. `Slice` has every length and weight that had to be inferred, with how; `tables` makes
-a case of it. Lengths in m, x to the right, z upwards; the load pushes to the left.
+The figures of the appendix are lost. `Slice` has every length and weight that had to be inferred, with how; `tables`
+makes a case of it. Lengths in m, x to the right, z upwards; the load pushes to the left.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MODULI = {"tuff": 2.648e9, "peperino": 27.36e9, "travertine": 57.47e9}  # Table 
 
 @dataclass(frozen=True)
 class Slice:
-    """Lengths [m] and weights [kg/m2] of a bay. From the data book (thesis_church): bay, heights, columns, nave walls."""
+    """Lengths [m] and weights [kg/m2]. From the data book (thesis_church): bay, heights, columns, nave walls."""
 
     side: float = 7.26  # height of the side walls: so that the seven-body mechanism has 0.055 (A4)
     bay: float = 5.0

@@ -55,11 +55,13 @@ def page(found: dict[str, Any]) -> list[str]:
     thesis = ", ".join(f"{1e3 * moved:.1f} mm at {load:g}" for load, moved in AT.items())
     return [
         "## Displacement before failure, no slip (A3)", "",
-        f"Top of the left nave wall [mm]; thesis {thesis}. The thesis has springs at the nodes, of 6 × 10^? t/m: the",
-        "exponent is damaged in the text. With springs of that kind at both ends of every joint and moving geometry:", "",
+        f"Top of the left nave wall [mm]; thesis {thesis}.",
+        "The thesis has springs at the nodes, of 6 × 10^? t/m: the exponent is damaged in the text. With springs of",
+        "that kind at both ends of every joint and moving geometry:", "",
         *lines_of(head, rows), "",
-        "Its blocks are elastic besides (less than a tenth of the vertical displacement comes from joints, A3); ours are rigid.",
-        "So this shows which exponent is meant, and that joints this stiff hardly lower the load; it is no prediction.", "",
+        "Its blocks are elastic besides (joints have less than a tenth of the vertical displacement, A3); ours are",
+        "rigid. So this shows which exponent is likely, and that joints this stiff hardly lower the load; it is no",
+        "prediction.", "",
     ]  # fmt: skip
 
 

@@ -40,7 +40,7 @@ def body_of(block: str) -> str | None:
 
 
 def seven_bodies(bay: Slice) -> float:
-    """Load multiplier of the mechanism with one degree of freedom: λ = −(work of gravity)/(work of the lateral load)."""
+    """Load multiplier of the mechanism, of one degree of freedom: −(work of gravity)/(work of the lateral load)."""
     rows = []
     for first, second, (x, z) in hinges(bay):
         for axis in (0, 1):

@@ -10,7 +10,8 @@ from dem_cli.bench.table import lines_of, percent
 
 USED = {
     "church_wall_a": "thickness, by (t − 0.2)/h", "church_wall_b": "width of its column", "church_wall_c": "the same",
-    "church_wall_d": "thickness, by t/h", "church_buttress": "thickness, by t/h", "church_wall_d_before": "height, by t/h",
+    "church_wall_d": "thickness, by t/h", "church_buttress": "thickness, by t/h",
+    "church_wall_d_before": "height, by t/h",
 }  # fmt: skip
 
 
@@ -35,7 +36,7 @@ def page(found: dict[str, Any]) -> list[str]:
         "Walls without roofs, of several blocks, which turn as one. Each printed load was used to infer one length, so",
         "this shows only that the geometry is what it is said to be.", "",
         *lines_of(("table", "wall", "thesis", "dem", "error", "what was inferred from it"), rows), "",
-        "Table A-3 has 0.032 for a nave wall B before 1954, between the two of today; here they are the same as today.", "",
+        "Table A-3 has 0.032 for a nave wall B before 1954, between the two of today; here they are as today.", "",
     ]  # fmt: skip
 
 
