@@ -101,6 +101,11 @@ class Opened:
         self.run("dem.player && dem.player.scene.draw()")
         return np.asarray(Image.open(io.BytesIO(self.browser.get_screenshot_as_png())).convert("RGB")).astype(int)
 
+    def canvas(self):
+        """The picture of the structure, without what is written on it."""
+        left, top, width, height = np.rint(self.box("canvas")).astype(int)
+        return self.screen()[top + 40 : top + height - 60, left + 2 : left + width - 2]
+
     def place(self, block):
         """Where the centroid of a block is in the window."""
         return np.array(self.run("return dem.player.scene.eye.place(arguments[0])", block))
@@ -216,10 +221,9 @@ def test_every_corner_is_where_the_results_have_it(opened):
 
 def test_the_whole_structure_is_on_the_canvas(opened):
     page = opened("wall")
-    left, top, width, height = np.rint(page.box("canvas")).astype(int)
-    seen = page.screen()[top + 40 : top + height - 60, left + 2 : left + width - 2]
-    stone = (np.abs(seen - STONE).max(axis=2) <= 3).mean()
+    stone = (np.abs(page.canvas() - STONE).max(axis=2) <= 3).mean()
     assert 0.2 < stone < 0.8
+    left, top, width, height = page.box("canvas")
     places = np.array([page.place(block) for block in range(1, 22)])
     assert (places > (left, top)).all()
     assert (places < (left + width, top + height)).all()
@@ -280,9 +284,9 @@ def test_colours_exaggeration_and_forces(opened):
     assert page.part("drawn").text == f"× {scale:g}"
     page.part("automatic").click()
     assert page.place(TOP_RIGHT) == pytest.approx(still)
-    before = page.screen()
+    before = page.canvas()
     page.part("forces").click()
-    assert (np.abs(page.screen() - before).max(axis=2) > 40).sum() > 100
+    assert (np.abs(page.canvas() - before).max(axis=2) > 40).sum() > 100
 
 
 def test_the_capacity_curve_and_the_view_follow_each_other(opened):
