@@ -12,6 +12,7 @@ from dem_cli.post import measures
 from dem_cli.post.solids import lifted
 
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
+_UNSEEN = 1e-3  # or by less than this share of the size of the structure
 _THIN = 0.45  # of the width: their stripes
 _NECK = 0.62  # of the length of an arrow: where its head begins
 _HEAD = 2.6  # radius of the head over that of the shaft
@@ -45,7 +46,7 @@ _BOX = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 
 def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
     """Joints of a 2D frame that is drawn `scale` times; stripes are `width` wide [m]."""
     contacts = frame.contacts
-    hairline = _HAIRLINE * measures.largest_displacement(model, frame) / scale
+    hairline = max(_HAIRLINE * measures.largest_displacement(model, frame), _UNSEEN * measures.size(model)) / scale
     ends = contacts.points
     centres = middles(contacts)
     along = centres - ends

@@ -14,6 +14,7 @@ from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.post import measures
 
 _FALLEN = 0.8  # of the size of the structure: what falls farther is not shown
+_BELOW = 0.15  # of that: of what falls beside the ground, and below it
 _CARRIED = 0.6  # of the width of the structure: a base that moves farther is drawn in its own frame
 _GROUND = 0.06  # of the size of what is seen: half the ground that is shown beside it
 
@@ -52,6 +53,9 @@ def window(
     rest = rest_vertices(model)
     reach = _FALLEN * float(np.ptp(rest[shown], axis=0).max())
     nearest, farthest = rest[shown].min(axis=0) - reach, rest[shown].max(axis=0) + reach
+    if not free.all():  # there is nothing to see below the ground
+        down = model.dimension - 1
+        nearest[down] = max(nearest[down], min(rest[~free, down].min(), rest[shown, down].min()) - _BELOW * reach)
     near = []
     for corners in places:
         ground = (corners - rest)[~free].mean(axis=0) if not free.all() else 0.0  # carries everything along
