@@ -284,6 +284,7 @@ def test_colours_exaggeration_and_forces(opened):
     assert page.part("drawn").text == f"× {scale:g}"
     page.part("automatic").click()
     assert page.place(TOP_RIGHT) == pytest.approx(still)
+    page.keys(page.part("slider"), "\ue010")
     before = page.canvas()
     page.part("forces").click()
     assert (np.abs(page.canvas() - before).max(axis=2) > 40).sum() > 100
