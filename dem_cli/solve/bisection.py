@@ -6,17 +6,9 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-FIRST, GROWTH = 0.4, 3.0  # resolutions from a guess to the first value on either side of it; of the next steps
+FIRST, GROWTH = 0.4, 4.0  # resolutions from a guess to the first value on either side of it; of the next steps
 NOTHING = 1e-3  # of the range, below which a resolution relative to a value makes no sense
 STRIDE = 1.5  # from factor to factor where there is no guess; the next steps grow
-
-
-class Undecided(Exception):
-    """Neither equilibrium nor failure was proven at `value`."""
-
-    def __init__(self, value: float):
-        super().__init__(value)
-        self.value = value
 
 
 class Scale(NamedTuple):
@@ -65,7 +57,7 @@ class Ends(NamedTuple):
     fails: float | None
 
 
-Stands = Callable[[float], bool]  # raises Undecided
+Stands = Callable[[float], bool]
 
 
 def search(stands: Stands, scale: Scale, resolution: float, guess: Ends | None, scan: int, start: float | None) -> Ends:

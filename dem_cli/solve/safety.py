@@ -16,7 +16,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.solve import bisection
 from dem_cli.solve.audit import CLOSURE
-from dem_cli.solve.bisection import Ends, Undecided
+from dem_cli.solve.bisection import Ends
 from dem_cli.solve.run import Outcome, why_moving
 from dem_cli.solve.safety_bound import Bound, bound
 from dem_cli.solve.safety_trial import Told, decide, fall
@@ -47,32 +47,33 @@ class Study:
         self.told: dict[float, Told] = {}  # only of the values next to the answer
         self.runs: list[dict[str, Any]] = []
         self.answers: dict[float, bool] = {}
+        self.undecided: set[float] = set()  # values at which neither equilibrium nor failure was proven
         self.warnings: list[str] = []
         self.steps, self.closure = 0, 0.0
+        self.known: Bound | str | None = None  # what limit analysis says
 
     def run(self) -> Outcome:
         """Limit analysis where it can tell, then the runs, then what is to be seen of them."""
-        known = self._bound()
+        known = self.known = self._bound()
         guess = Ends(known.carried, known.impossible) if isinstance(known, Bound) else None
         start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
-        status, ends = "ok", Ends(None, None)
+        status = "ok"
         try:
             ends = bisection.search(
                 self._stands, self.scale, self.analysis.resolution, guess, self.analysis.scan, start
             )
-        except Undecided as undecided:
-            ends = self._nearest()
-            what = self._named(undecided.value)
-            status = f"{NOT_CONVERGED}: neither equilibrium nor failure was proven at {what}"
         except KeyboardInterrupt:
             if not self.answers:
                 raise
             status, ends = INTERRUPTED, self._nearest()
+        if status == "ok" and ends.fails in self.undecided:
+            status = f"{NOT_CONVERGED}: neither equilibrium nor failure was proven at {self._named(ends.fails)}"
+            ends = self._nearest()
         if status == "ok" and None in ends:
             status = self._nowhere(ends)
-        self._check(ends, known)
+        self._check(ends)
         self._show(ends, 0.0 if status == INTERRUPTED else self.analysis.follow)
-        return Outcome(self._answer(status, ends, known) | self._facts(ends))
+        return Outcome(self._answer(status, ends) | self._facts(ends))
 
     # -- runs --------------------------------------------------------------------------------------
 
@@ -84,32 +85,37 @@ class Study:
         return case, checked_model(case, value)
 
     def _stands(self, value: float) -> bool:
-        """Whether the structure stands at a value; each is run once. Raises Undecided."""
-        if value not in self.answers:
+        """Whether the structure is proven to stand at a value; each is run once."""
+        if value not in self.answers and value not in self.undecided:
             self._run(value)
-        return self.answers[value]
+        return self.answers.get(value, False)
 
     def _run(self, value: float) -> None:
         text = f"{len(self.runs) + 1}. run: {self._named(value)}"
         self.observer.progress(text, math.nan, math.nan, None)
         try:
-            told = decide(*self.variant(value), OnlyProgress(self.observer), value)
+            told = decide(*self.variant(value), OnlyProgress(self.observer), value, self._past(value) >= 0.0)
         except CaseError as error:  # both ends of the range are possible
-            self.warnings.append(str(error))
-            raise Undecided(value) from None
+            self._give_up(value, str(error))
+            return
         self.steps += told.run.steps
         self.compiling += told.job.clock.compiling
         self.runs.append(told.run.summary())
         self.warnings += [text for text in told.job.warnings if text not in self.warnings]
         if told.run.stands is None:
-            self.warnings.append(f"{self._named(value)}: {told.run.why}")
-            raise Undecided(value)
+            self._give_up(value, told.run.why)
+            return
         self.answers[value] = told.run.stands
         if told.run.stands:
             self.closure = max(self.closure, told.run.closure, key=abs)
         self.told[value] = told
-        near = {v for v in self._nearest() if v is not None}
+        near = set(self._nearest())
         self.told = {v: kept for v, kept in self.told.items() if v in near}
+
+    def _give_up(self, value: float, why: str) -> None:
+        """Nothing was proven at a value: it counts as one that does not stand, and as none that fails."""
+        self.undecided.add(value)
+        self.warnings.append(f"{self._named(value)}: {why}")
 
     def _nearest(self) -> Ends:
         """The values tried that are next to the change."""
@@ -139,24 +145,30 @@ class Study:
             return f"no failure up to F = {high:g}: strength does not decide"
         return f"fails even at F = {low:g}, with {1.0 / low:.4g} times the strength: strength does not decide"
 
-    def _check(self, ends: Ends, known: Bound | str | None) -> None:
+    def _past(self, value: float) -> float:
+        """How far a value is beyond what limit analysis proved impossible; negative: not, or not known."""
+        if not isinstance(self.known, Bound):
+            return -math.inf
+        return (value - self.known.impossible) * math.copysign(1.0, self.known.impossible - self.known.carried)
+
+    def _check(self, ends: Ends) -> None:
         """Words about answers that contradict each other."""
         if bisection.changes(self.answers) > 1:
             tried = ", ".join(f"{v:.5g} {'stands' if s else 'fails'}" for v, s in sorted(self.answers.items()))
             self.warnings.append(
                 f"not monotone: {tried}; the answer is the first failure from the side that stands"
             )
-        if isinstance(known, Bound) and ends.stands is not None:
-            past = (ends.stands - known.impossible) * math.copysign(1.0, known.impossible - known.carried)
-            if past > BEYOND * abs(known.impossible):
+        if isinstance(self.known, Bound) and ends.stands is not None:
+            impossible = self.known.impossible
+            if self._past(ends.stands) > BEYOND * abs(impossible):
                 self.warnings.append(
                     f"it stands at {self._named(ends.stands)}, where limit analysis proves that nothing can "
-                    f"({known.impossible:.5g} and beyond): do not trust this run"
+                    f"({impossible:.5g} and beyond): do not trust this run"
                 )
         if abs(self.closure) > CLOSURE:
             self.warnings.append(f"the energy does not close: {self.closure:.2%} is missing; do not trust this run")
 
-    def _answer(self, status: str, ends: Ends, known: Bound | str | None) -> dict[str, Any]:
+    def _answer(self, status: str, ends: Ends) -> dict[str, Any]:
         bracket = sorted(ends) if None not in ends else None
         of_strength = self.analysis.of_strength
         name = "safety_factor" if of_strength else "critical_value"
@@ -175,8 +187,8 @@ class Study:
             answer |= failing.run.mechanism
             answer["proof_of_failure"] = failing.run.proof or {"why": failing.run.why}
         answer["load"] = self.analysis.constant_load
-        if known is not None:
-            answer["limit_analysis"] = known.summary() if isinstance(known, Bound) else {"note": known}
+        if self.known is not None:
+            answer["limit_analysis"] = self.known.summary() if isinstance(self.known, Bound) else {"note": self.known}
         answer["runs"] = self.runs
         return answer
 

@@ -49,6 +49,11 @@ class SafetyAnalysis(LiveAnalysis):
         description="multiplier of the live load, which stays [-]; default: 1 for pattern = live, else 0",
         examples=[0.1],
     )
+    start: Literal["auto", "gravity", "path", "limit"] = Field(
+        default="auto",
+        description="how each run comes under its live load; gravity: step by step; path, limit: from a state next to "
+        "failure, as in a pushover; auto: by the number of blocks",
+    )
     limit: bool = Field(
         default=True, description="limit analysis first: a bound, and where to look; runs decide all the same"
     )

@@ -12,6 +12,7 @@ from dem_cli.solve.failure import compliance
 from dem_cli.solve.follow import fall_under, soften_falls
 from dem_cli.solve.mechanism import describe
 from dem_cli.solve.run import Job
+from dem_cli.solve.start import find_start, place
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from dem_cli.solve.track import Track
 
 SHARES = (0.5, 0.8, 0.9, 0.95, 0.98, 1.0)  # of the load, held one after the other
-GENTLER = (0.99, 0.995, 1.0)  # once more, where the last step ended in failure: it may have shaken the structure down
+NEAR, GENTLE = 0.9, 0.005  # a failure that near the whole load is tried again by halves of its step, down to this:
+# a larger step may have shaken down what a smaller one does not
 SOFT = 0.5  # displacement in smallest edges, over the resolution, from which geometry must move on given stiffness
 
 
@@ -64,21 +66,24 @@ class Told(NamedTuple):
     rows: list[HistoryRow]
 
 
-def decide(case: Case, model: Model, observer: Observer, value: float) -> Told:
-    """Equilibrium or failure of a case under its constant load."""
+def decide(case: Case, model: Model, observer: Observer, value: float, hopeless: bool = False) -> Told:
+    """Equilibrium or failure of a case under its constant load.
+
+    hopeless: known to have no equilibrium, so that the first failure will do.
+    """
     job = Job.start(case, model, observer)
-    told = _decided(job, job.first_simulation(), value)
+    told = _decided(job, job.first_simulation(), value, hopeless)
     given = any(joint.kn != "auto" for joint in case.joints.values())
     soft = told.run.displacement > SOFT * case.analysis.resolution * told.sim.smallest
     if told.run.stands and soft and given and told.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
-        told = _decided(job, job.simulation("large"), value)  # joints too soft to leave geometry as it was
+        told = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was
     return told
 
 
-def _decided(job: Job, sim: Simulation, value: float) -> Told:
+def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> Told:
     track, before, share = job.track(sim), sim.save(), 0.0
     try:
-        verdict, before, share = _loaded(job, sim, track)
+        verdict, before, share = _loaded(job, sim, track, hopeless)
     except SolverError as error:
         verdict, why = Verdict("unknown", sim.unbalanced), str(error)
     else:
@@ -104,7 +109,7 @@ def _decided(job: Job, sim: Simulation, value: float) -> Told:
     return Told(run, job.case, job.model, job, sim, frame, track.kept)
 
 
-def _loaded(job: Job, sim: Simulation, track: Track) -> tuple[Verdict, tuple, float]:
+def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, tuple, float]:
     """The verdict, the state before the last load was put on, and the share of the load that is on."""
     before = sim.save()
     verdict = stand(sim, job.budget)
@@ -113,20 +118,42 @@ def _loaded(job: Job, sim: Simulation, track: Track) -> tuple[Verdict, tuple, fl
     if verdict.state != "equilibrium" or load == 0.0:
         return verdict, before, 0.0
     elastic = compliance(sim)[1] * load or sim.dead_scale()
-    shares, at, gentle = list(SHARES), 0.0, False
+    near = _next_to_failure(job, sim, load, elastic)
+    if near is not None:
+        track.keep("loading")
+        return *near, 1.0
+    shares, at = list(SHARES), 0.0
     while shares:
-        share = shares.pop(0)
-        before = sim.save()
+        share, before = shares[0], sim.save()
         verdict = settle_or_fail(sim, share * load, job.budget, elastic * share)
         if verdict.state == "equilibrium":
-            at = share
+            at = shares.pop(0)
             track.keep("loading")
-        elif share == 1.0 and not gentle:
+        elif share >= NEAR and share - at > GENTLE and not hopeless:
             sim.restore(before)
-            shares, gentle = list(GENTLER), True
+            shares.insert(0, 0.5 * (at + share))
         else:
             return verdict, before, share
     return verdict, before, at
+
+
+def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, tuple] | None:
+    """Verdict and state before the load, from a state next to failure where the structure is large (solve/start.py).
+
+    None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
+    """
+    held, steps = sim.save(), sim.steps
+    start, _ = find_start(job, sim)
+    if start is None:
+        return None
+    place(sim, start)
+    before = sim.save()
+    verdict = settle_or_fail(sim, load, job.budget, elastic, plateau=start.plateau)
+    if verdict.state == "failure" and load * sim.live_scale <= start.load:
+        job.skipped.append(f"a start next to failure: it did not hold, {sim.steps - steps:,} steps")
+        sim.restore(held)
+        return None
+    return verdict, before
 
 
 def _proof(verdict: Verdict, share: float, load: float) -> str:

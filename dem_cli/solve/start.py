@@ -54,7 +54,7 @@ def find_start(job: Job, sim: Simulation) -> tuple[Start | None, dict[str, Any]]
         kind = GRAVITY  # gaps that may close, or soft joints: the geometry of the start is not that of failure
     if not (sim.loads.dead[sim.free].any() and sim.loads.live[sim.free].any()):
         kind = GRAVITY  # nothing to start from
-    if job.case.analysis.step is not None:
+    if getattr(job.case.analysis, "step", None) is not None:
         kind = GRAVITY  # every step is asked for
     report: dict[str, Any] = {"kind": kind, "chosen": "by size" if wanted == "auto" else "by the case"}
     if kind == GRAVITY:

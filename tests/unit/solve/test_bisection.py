@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.solve.bisection import Ends, Scale, Undecided, changes, first_change, search
+from dem_cli.solve.bisection import Ends, Scale, changes, first_change, search
 
 FACTORS = Scale(0.05, 20.0, ratio=True)
 
@@ -70,14 +70,6 @@ def test_the_change_next_to_the_end_that_stands():
     assert mirrored.stands == pytest.approx(4.0, rel=0.001)
     assert first_change([(1.0, False), (2.0, True), (3.0, False)]) == Ends(2.0, 1.0)
     assert changes({1.0: True, 3.0: True, 2.0: False}) == 2
-
-
-def test_what_is_not_decided_goes_through():
-    def stands(value: float) -> bool:
-        raise Undecided(value)
-
-    with pytest.raises(Undecided):
-        search(stands, FACTORS, 0.002, None, 0, 1.0)
 
 
 def test_values_around_nothing():
