@@ -25,6 +25,7 @@ from dem_cli.post.measures import scaled
 from dem_cli.post.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
+JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}
 SKY, DARK_SKY = (0xF4, 0xF1, 0xEA), (0x1E, 0x20, 0x23)
 TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
 OPTIONS = (
@@ -288,6 +289,20 @@ def test_colours_exaggeration_and_forces(opened):
     before = page.canvas()
     page.part("forces").click()
     assert (np.abs(page.canvas() - before).max(axis=2) > 40).sum() > 100
+
+
+def test_joints_have_the_colour_of_what_they_do(opened):
+    page = opened("wall")
+    page.run("dem.player.go(7)")  # the last frames have no joint that sticks
+    shown = page.canvas()
+    page.part("joints").click()
+    hidden = page.canvas()
+    for state, colour in JOINTS.items():
+        there, gone = ((np.abs(picture - colour).max(axis=2) <= 4).sum() for picture in (shown, hidden))
+        assert there > gone + 50, state
+    page.part("joints").click()
+    page.run("dem.player.go(1)")  # a frame in which nothing touches
+    assert (np.abs(page.canvas() - JOINTS["sticking"]).max(axis=2) <= 4).sum() == 0
 
 
 def test_the_capacity_curve_and_the_view_follow_each_other(opened):
