@@ -23,3 +23,14 @@ html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#8a4b1f", "color-brand-content": "#8a4b1f"},
     "dark_css_variables": {"color-brand-primary": "#e0a878", "color-brand-content": "#e0a878"},
 }
+
+WIDE = ("verification", "loads", "pulses", "appendix_b")  # pages of wide tables: no table of contents beside them
+
+
+def _without_contents(app, page, template, context, tree):
+    if page in WIDE:
+        context["furo_hide_toc"] = True
+
+
+def setup(app):
+    app.connect("html-page-context", _without_contents, priority=900)  # after furo's own

@@ -40,13 +40,30 @@ def text() -> str:
     """The page as it should be."""
     page = (ROOT / "README.md").read_text(encoding="utf-8")
     table = "\n".join(lines_of(("case", "known from", "known", "dem", "error"), rows()))
-    return MARKED.sub(lambda found: f"{found[1]}{table}\n{found[2]}", page)
+    return MARKED.sub(lambda found: f"{found[1]}{table}\n\n{met()}\n{found[2]}", page)
+
+
+def records() -> list[dict[str, Any]]:
+    """What `dem verify` found, a record per case."""
+    return json.loads(FOUND.read_text(encoding="utf-8"))["cases"]
 
 
 def rows() -> list[tuple[str, ...]]:
-    """A row for each of ROWS, as docs/verification.json has it."""
-    records = {Path(record["case"]).stem: record for record in json.loads(FOUND.read_text(encoding="utf-8"))["cases"]}
-    return [row(about, kind, records[name]["references"]) for name, kind, about in ROWS]
+    """A row for each of ROWS."""
+    found = {Path(record["case"]).stem: record["references"] for record in records()}
+    return [row(about, kind, found[name]) for name, kind, about in ROWS]
+
+
+def met() -> str:
+    """How many references there are of each kind, and how many are met."""
+    answers = [answer for record in records() for answer in record["references"]]
+    said = []
+    for kind, source in (("exact", "mechanics"), ("experiment", "tests"), ("code", "other programs")):
+        passed = [answer["passed"] for answer in answers if answer["kind"] == kind]
+        said.append(f"{sum(passed)} of {len(passed)} from {source}")
+    failed = sum(answer["state"] == "failed" for answer in answers)
+    reasons = f"Misses without a reason: {failed}" if failed else "Every miss is declared in its case, with the reason"
+    return f"References that are met: {', '.join(said)}. {reasons}."
 
 
 def row(about: str, kind: str, answers: list[dict[str, Any]]) -> tuple[str, ...]:
@@ -54,4 +71,9 @@ def row(about: str, kind: str, answers: list[dict[str, Any]]) -> tuple[str, ...]
     answer = next(one for one in answers if one["kind"] == kind)
     found, wanted = answer["found"], answer["value"]
     error = percent(found / wanted - 1.0) + ("" if answer["passed"] else ": missed")
-    return about, FROM[kind], f"{wanted:.4g}".replace("-", "−"), f"{found:.4g}".replace("-", "−"), error
+    return about, FROM[kind], number(wanted), number(found), error
+
+
+def number(value: float) -> str:
+    """Four digits."""
+    return (f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.4g}").replace("-", "−")
