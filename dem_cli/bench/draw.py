@@ -12,7 +12,6 @@ COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#c51b7d", "#8250a8", "#26262b", "#b
 MARKS = "os^Dv<>Phd"
 FLOOR = 1e-5  # smaller errors are drawn here: references have six digits
 COLUMNS = 3
-DECADES = 30.0  # ratio of times up to which numbers stand between the powers of ten as well
 
 Points = Sequence[tuple[float, float | None]]  # (CPU seconds, relative error)
 
@@ -52,18 +51,8 @@ def _panel(
             mec="white", color=COLOURS[number % len(COLOURS)], label=name,
         )  # fmt: skip
     axis.set(xscale="log", yscale="log", xlabel="CPU seconds")
-    _label_times(axis)
+    style.number_logs(axis)
     axis.set_title(title)
-
-
-def _label_times(axis: Any) -> None:
-    """Numbers along the logarithmic axis of times that never run into each other, however short it is."""
-    from matplotlib.ticker import LogLocator, NullFormatter
-
-    low, high = axis.get_xlim()
-    axis.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.xaxis.set_minor_formatter("{x:g}" if high < DECADES * low else NullFormatter())
 
 
 def growth(path: Path, panels: Mapping[str, Mapping[str, Sequence[tuple[float, float]]]], xlabel: str) -> None:

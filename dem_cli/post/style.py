@@ -16,6 +16,7 @@ STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
 COLLAPSE = "#c0392b"
 DPI = 160
+_SHORT = 30.0  # ratio of the ends of a logarithmic axis up to which it has numbers between powers of ten as well
 _METADATA: Any = {  # nothing that differs from day to day
     ".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}
 }  # fmt: skip
@@ -90,6 +91,16 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
         text += f": fails at λ = {load:.4g}" + (f" ({mode})" if mode else "")
     size = min(12.0, 12.0 * 8.5 * figure.get_figwidth() / len(text))
     figure.suptitle(text, x=0.01, ha="left", fontsize=size, fontweight="bold")
+
+
+def number_logs(axis: Any) -> None:
+    """Plain numbers along a logarithmic x axis that never run into each other, however short it is."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = axis.get_xlim()
+    axis.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    axis.xaxis.set_major_formatter("{x:g}")
+    axis.xaxis.set_minor_formatter("{x:g}" if high < _SHORT * low else NullFormatter())
 
 
 def _of_safety(summary: Mapping[str, Any]) -> str:

@@ -39,7 +39,7 @@ def test_what_new_prints_explains_every_key(kind):
 
 
 def test_there_is_a_template_for_every_generator():
-    assert set(KINDS) == {*GENERATORS, "block", "shaken"}
+    assert set(KINDS) == {*GENERATORS, "block", "shaken", "safety", "sweep"}
 
 
 def test_a_template_that_is_uncommented_is_valid_too(tmp_path):
