@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -37,7 +38,7 @@ def page(folder: Path, place: Path) -> str:
         kind="Sweep",
         answer=answer(table),
         verdicts=[],
-        warnings=[],
+        warnings=failures(table),
         rows=keys(table),
         checks=[],
         model=[],
@@ -82,8 +83,17 @@ def answer(table: SweepTable) -> Answer:
         found = [value for value in table.columns.get(name, ()) if isinstance(value, float)]
         if found:
             more.append(f"{name.replace('_', ' ')} {min(found):.4g} to {max(found):.4g}")
-    tone = BAD if counts["failed"] else LOOK if counts["to do"] else GOOD
+    tone = BAD if not counts["solved"] else LOOK if counts["failed"] or counts["to do"] else GOOD
     return Answer("sweep of", f"{table.count:,} runs", ", ".join(more), tone)
+
+
+def failures(table: SweepTable) -> list[str]:
+    """Why runs failed, the most frequent reasons first."""
+    pairs = zip(table.columns["status"], table.columns.get("reason", [None] * table.count))
+    found = Counter(str(reason or state) for state, reason in pairs if state not in ("ok", "waiting"))
+    said = [f"{count:,} {'run' if count == 1 else 'runs'} failed: {reason}" for reason, count in found.most_common(5)]
+    others = len(found) - len(said)
+    return said + ([f"{others:,} other reasons stand in the table"] if others else [])
 
 
 def keys(table: SweepTable) -> list[tuple[str, str]]:

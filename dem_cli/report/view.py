@@ -21,7 +21,7 @@ from dem_cli.post import view as stage
 from dem_cli.post.solids import surface
 from dem_cli.report.pack import pack
 
-MOST_BYTES = 4_000_000  # of all frames; where there is more, frames are left out
+MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
 MODE = "mode"  # stage of frames that show natural modes
 SHAPES = frozenset(("modes", "limit"))  # kinds whose displacements have no size

@@ -200,6 +200,7 @@ def test_a_sweep(tmp_path):
     assert runs["main"][:5] == ["run", "joints.dry.friction", "structure.0.bond", "status", "reason"]
     assert runs["links"] == {"a0": "runs/a0/summary.json"}
     assert any("7 solved, 1 failed, failure load 0.3 to 0.7" in text for text in page.texts)
+    assert "1 run failed: <i>too thin</i>" in page.texts
 
 
 def test_links_of_a_sweep_follow_the_page(tmp_path):

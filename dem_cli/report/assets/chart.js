@@ -82,7 +82,7 @@ class Chart {
       list.append(item);
     };
     const many = this.lines.length > 1;
-    for (const line of this.lines) one(line.name, line.colour, line.bare ? "dot" : "stroke", many);
+    for (const line of this.lines) one(line.name, line.colour, line.tints ? "shades" : line.bare ? "dot" : "stroke", many);
     for (const band of this.bands) one(band.name, band.colour, "area", false);
     for (const level of this.spec.levels || []) one(level.name, level.colour, level.dash ? "dash" : "stroke", false);
     for (const vertical of this.spec.verticals || []) one(vertical.name, vertical.colour, "dash", false);
@@ -198,7 +198,7 @@ class Chart {
   line(parent, line) {
     for (let i = 0; line.points && i < line.x.length; i++) {
       const dot = element("circle", parent, { cx: this.px(line.x[i]), cy: this.py(line.y[i]), r: line.points });
-      dot.style.fill = `var(--line-${line.colour})`;
+      dot.style.fill = line.tints ? line.tints[i] : `var(--line-${line.colour})`;
     }
     if (line.bare) return;
     let path = "", pen = "M";

@@ -9,7 +9,7 @@ class Marks {
   constructor(scene) {
     const over = { depthTest: false, transparent: true };
     this.scene = scene;
-    this.jointLook = new THREE.LineMaterial({ ...over, vertexColors: true, linewidth: scene.n > 150 ? 2.2 : 3.2 });
+    this.jointLook = new THREE.LineMaterial({ ...over, vertexColors: true, linewidth: Math.min(3.2, Math.max(1.1, 32 / Math.sqrt(scene.n))) });
     this.joints = new THREE.LineSegments2(new THREE.LineSegmentsGeometry(), this.jointLook);
     this.forceLook = new THREE.MeshBasicMaterial({ ...over, opacity: 0.85 });
     this.bar = new THREE.BoxGeometry(1, 1, 1);

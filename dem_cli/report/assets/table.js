@@ -1,5 +1,6 @@
 // A table of runs that can be sorted and filtered, and a chart of any two of its columns.
 
+const MOST_LINES = 12; // of a chart
 const COMPARE = { "<": (a, b) => a < b, ">": (a, b) => a > b, "<=": (a, b) => a <= b, ">=": (a, b) => a >= b, "=": (a, b) => String(a) === String(b), "!=": (a, b) => String(a) !== String(b) };
 
 class Runs {
@@ -90,36 +91,57 @@ class Runs {
     if (focused) [...head.querySelectorAll("button")].find((button) => button.textContent === focused)?.focus();
   }
 
+  /** The keys by which lines differ. */
+  families() {
+    const name = this.part("family").value, axis = this.part("x").value;
+    return name === this.data.others ? this.data.swept.filter((key) => key !== axis) : [name].filter(Boolean);
+  }
+
   /** What tells the line of a run from the others. */
   family(row) {
-    const name = this.part("family").value, axis = this.part("x").value;
-    const keys = name === this.data.others ? this.data.swept.filter((key) => key !== axis) : [name].filter(Boolean);
-    const words = keys.map((key) => {
+    const words = this.families().map((key) => {
       const value = row[this.column(key)];
-      return typeof value === "string" ? value : `${key.split(".").pop()} ${typeof value === "number" ? number(value) : value ?? "–"}`;
+      return typeof value === "string" ? value : `${short(key)} ${typeof value === "number" ? number(value) : value ?? "–"}`;
     });
     return words.join(", ") || "runs";
   }
 
-  /** Points joined to a line for each value of the family, in the order of x. */
+  /** The chart of what the filter leaves. */
   draw() {
-    const [x, y] = ["x", "y"].map((name) => this.column(this.part(name).value));
-    const figure = this.section.querySelector("figure"), groups = new Map();
+    const [x, y] = ["x", "y"].map((name) => this.column(this.part(name).value)), figure = this.section.querySelector("figure");
     figure.querySelector(".plot").replaceChildren();
     figure.querySelector("h3").textContent = x < 0 || y < 0 ? "" : `${this.data.columns[y]} over ${this.data.columns[x]}`;
     if (x < 0 || y < 0) return;
-    for (const row of this.shown) {
-      if (typeof row[x] !== "number" || typeof row[y] !== "number") continue;
-      const name = this.family(row);
-      groups.set(name, [...(groups.get(name) || []), row]);
-    }
-    const lines = [];
-    [...groups].forEach(([name, rows], i) => {
-      rows.sort((a, b) => a[x] - b[x]);
-      const points = { name, x: rows.map((row) => row[x]), y: rows.map((row) => row[y]), colour: String(i % 10), width: 1.2 };
-      const bare = new Set(points.x).size < points.x.length || groups.size > 12;
-      lines.push({ ...points, bare, points: rows.length > 60 ? 2.5 : 4, labels: rows.map((row) => `${name}, run ${row[this.column("run")]}`) });
-    });
+    const rows = this.shown.filter((row) => typeof row[x] === "number" && typeof row[y] === "number");
+    const names = [...new Set(rows.map((row) => this.family(row)))];
+    const lines = names.length > MOST_LINES ? [this.cloud(rows, x, y)] : names.map((name, i) => this.line(rows, x, y, name, i));
     this.chart = new Chart(figure, { id: "sweep", title: "Sweep", x: this.data.columns[x], y: this.data.columns[y], lines });
   }
+
+  points(rows, x, y) {
+    const labels = rows.map((row) => `${this.family(row)}, run ${row[this.column("run")]}`);
+    return { x: rows.map((row) => row[x]), y: rows.map((row) => row[y]), labels, points: rows.length > 60 ? 2.5 : 4 };
+  }
+
+  /** The runs of one family in the order of x, joined where there is one for each x. */
+  line(rows, x, y, name, i) {
+    const own = rows.filter((row) => this.family(row) === name).sort((a, b) => a[x] - b[x]);
+    const bare = new Set(own.map((row) => row[x])).size < own.length;
+    return { ...this.points(own, x, y), name, bare, colour: String(i % 10), width: 1.2 };
+  }
+
+  /** Too many families for lines: points, in shades of the value by which they differ. */
+  cloud(rows, x, y) {
+    const [key, ...more] = this.families(), values = rows.map((row) => row[this.column(key)]), found = this.points(rows, x, y);
+    if (more.length || values.some((value) => typeof value !== "number")) return { ...found, name: "runs", bare: true, colour: "0" };
+    const low = Math.min(...values), span = Math.max(...values) - low || 1;
+    const tints = values.map((value) => `color-mix(in oklab, var(--line-1) ${(100 * (value - low)) / span}%, var(--line-0))`);
+    return { ...found, name: `${short(key)} ${number(low)} to ${number(low + span)}`, bare: true, colour: "0", tints };
+  }
+}
+
+/** The end of a path that says something: `block.1`, not `1`. */
+function short(key) {
+  const parts = key.split(".");
+  return parts.slice(/^\d+$/.test(parts.at(-1)) ? -2 : -1).join(".");
 }
