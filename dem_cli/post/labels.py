@@ -60,6 +60,7 @@ _PARTS = {  # last words of a path inside a summary
     "max": "largest value", "min": "smallest value", "max_time": "time of the largest value",
     "min_time": "time of the smallest value", "peak": "peak",
 }  # fmt: skip
+_KEYS = {"density": "density", "thickness": "thickness"}  # where the meaning only paraphrases the word
 _MOST_WORDS = 46  # letters of a meaning that still fits an axis
 
 
@@ -81,6 +82,7 @@ def of_key(key: str, describe: Describe | None) -> Quantity:
     steps = [step.strip("\"'") for step in re.findall(r'"[^"]*"|[^.]+', key)]
     meaning, unit = describe(key) if describe else ("", "")
     meaning = re.split(r"[;:(,]| instead of ", meaning.replace(" tan(φ)", " tan φ"))[0].strip()
+    meaning = _KEYS.get(steps[-1], meaning)
     words = meaning if 0 < len(meaning) <= _MOST_WORDS else steps[-1].replace("_deg", "").replace("_", " ")
     if steps[-1].endswith("_deg") and not unit:
         unit = "deg"

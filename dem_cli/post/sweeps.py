@@ -33,7 +33,10 @@ def draw_sweep(
 ) -> None:  # fmt: skip
     """ys over x, a line for each combination of the keys `by`; exact names of columns. quantities: of all columns."""
     families = _families(table, x, by)
-    points = len(families) > _SCATTERED * table.count and len(families) > 1
+    points = len(families) > max(1.0, _SCATTERED * table.count) or (x not in table.keys and not by)
+    if points and len(by) > 1:  # a colour says one key
+        by = by[:1]
+        families = _families(table, x, by)
     keys = chart.Keys([family.first for family in families])
     rests = list(dict.fromkeys(family.rest for family in families))
     units = list(dict.fromkeys(quantities[y].unit for y in ys))
@@ -81,6 +84,8 @@ class _Places:
             crowded = name == "x" and sum(len(shown(word)) for word in self.words) > 60
             turned = {"rotation": 20, "ha": "right"} if crowded else {}
             getattr(axis, f"set_{name}ticks")(range(len(self.words)), list(map(shown, self.words)), **turned)
+        elif all(float(v).is_integer() for v in self.values if v is not None):  # counts
+            axis.locator_params(axis=name, integer=True)
 
 
 def _fitted(table: SweepTable, quantities: Mapping[str, Quantity], names: Sequence[str]) -> tuple[float, str]:

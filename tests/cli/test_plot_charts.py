@@ -196,8 +196,8 @@ def test_an_answer_in_words_becomes_a_map(tmp_path, figures):
 
 
 def test_random_keys_are_points(tmp_path, figures):
-    rows = "".join(f"r{i},{0.1 * i},{7 - 0.3 * i},ok,,{i}\n" for i in range(12))
-    folder = write_sweep(tmp_path / "s", "run,a,b,status,reason,failure_load\n" + rows, ("a", "b"))
+    rows = "".join(f"r{i},{0.1 * i},{7 - 0.3 * i},{i * i},ok,,{i}\n" for i in range(30))
+    folder = write_sweep(tmp_path / "s", "run,a,b,c,status,reason,failure_load\n" + rows, ("a", "b", "c"))
     assert dem(folder)[0] == 0
     assert {line.get_linestyle() for line in figures[0].axes[0].get_lines()} == {"None"}
     assert len(figures[0].axes) == 2  # a colour bar
