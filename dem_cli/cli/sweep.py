@@ -227,7 +227,8 @@ class Running:
 
     def facts(self, status: str, found: dict[str, Any] | None = None) -> None:
         from dem_cli.output.store import CASE
-        from dem_cli.sweep.folder import write_facts, write_text
+        from dem_cli.output.whole import write_text
+        from dem_cli.sweep.folder import write_facts
 
         text = self.loaded.text if self.loaded.text.endswith("\n") else self.loaded.text + "\n"
         changes = "".join(f"# --set {o.text}={o.value!r}\n" for o in self.loaded.overrides)

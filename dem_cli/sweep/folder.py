@@ -13,6 +13,7 @@ from typing import Any
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import locked, write_error
 from dem_cli.output.store import CASE
+from dem_cli.output.whole import write_text
 from dem_cli.sweep.run import RUNS
 from dem_cli.sweep.table import CSV, SQLITE
 
@@ -52,16 +53,6 @@ def opened(folder: Path, fresh: bool, force: bool, shard: str = "") -> Iterator[
         yield folder
     finally:
         os.close(lock)  # the file stays: who opened it a moment ago may not lock another one
-
-
-def write_text(path: Path, text: str) -> None:
-    """A file, whole or as it was. Raises OutputError."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8", newline="\n")
-        os.replace(part, path)
-    except OSError as error:
-        raise write_error(error, path) from None
 
 
 def write_facts(folder: Path, found: Mapping[str, Any]) -> None:

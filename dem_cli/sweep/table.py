@@ -6,14 +6,13 @@ The same runs give the same bytes, however often they were interrupted and where
 from __future__ import annotations
 
 import csv
-import os
 import sqlite3
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dem_cli.output.folder import write_error
 from dem_cli.output.summary import plain
+from dem_cli.output.whole import whole
 from dem_cli.sweep.plan import show_value
 from dem_cli.sweep.run import FAILED, WAITING, Summary, Sweep
 
@@ -81,16 +80,13 @@ def write(folder: Path, table: Sequence[Row], keys: Sequence[str]) -> None:
     """sweep.csv and sweep.sqlite (table `runs`), each whole or as it was. Raises OutputError."""
     names = columns(table, keys)
     write_csv(folder, table, names)
-    _whole(folder / SQLITE, lambda path: _write_sqlite(path, table, names))
+    with whole(folder / SQLITE) as part:
+        _write_sqlite(part, table, names)
 
 
 def write_csv(folder: Path, table: Sequence[Row], names: Sequence[str]) -> None:
     """Only sweep.csv, for those who look while runs go on."""
-    _whole(folder / CSV, lambda path: _write_csv(path, table, names))
-
-
-def _write_csv(path: Path, table: Sequence[Row], names: Sequence[str]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
+    with whole(folder / CSV) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
         writer.writerows([_cell(row.get(name)) for name in names] for row in table)
@@ -124,12 +120,3 @@ def _different(names: Sequence[str]) -> list[str]:
 
 def _stored(value: Any) -> Any:
     return value if value is None or isinstance(value, (int, float, str)) else show_value(value)
-
-
-def _whole(path: Path, write_to: Callable[[Path], None]) -> None:
-    part = path.with_name(f".{path.name}.part")
-    try:
-        write_to(part)
-        os.replace(part, path)
-    except (OSError, sqlite3.Error) as error:
-        raise write_error(error, path) from None
