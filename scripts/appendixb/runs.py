@@ -102,7 +102,7 @@ def changed(bricks: str, condition: str, changes: dict[str, Any]) -> dict[str, A
         "command": f"{bricks}, {condition}: {', '.join(changes)}", "status": summary["status"],
         "bracket": [None if load is None else round(float(load), PLACES) for load in summary["failure_load_bracket"]],
         "path": limit.get("non_associated"), "associated": limit.get("associated"), "mode": summary["failure_mode"],
-        "seconds": round(summary["solve_seconds"], 2),
+        "onset": summary["onset_of_displacements"], "seconds": round(summary["solve_seconds"], 2),
     }  # fmt: skip
 
 
