@@ -12,7 +12,7 @@ from dem_cli.solve.failure import compliance
 from dem_cli.solve.follow import fall_under, soften_falls
 from dem_cli.solve.mechanism import describe
 from dem_cli.solve.run import Job
-from dem_cli.solve.start import find_start, place
+from dem_cli.solve.start import LIMIT, find_start, place
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -153,6 +153,11 @@ def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> 
         job.skipped.append(f"a start next to failure: it did not hold, {sim.steps - steps:,} steps")
         sim.restore(held)
         return None
+    if start.kind == LIMIT:
+        job.warnings.append(
+            "runs started from the forces of limit analysis without friction in head joints: what the structure "
+            "reaches from gravity may be some per cent lower"
+        )
     return verdict, before
 
 
