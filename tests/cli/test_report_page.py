@@ -26,7 +26,7 @@ from dem_cli.post.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
 JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}
-SKY, DARK_SKY = (0xF4, 0xF1, 0xEA), (0x1E, 0x20, 0x23)
+SKY, DARK_SKY = (0xE9, 0xEE, 0xF3), (0x1E, 0x20, 0x23)
 TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
 OPTIONS = (
     "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
@@ -218,6 +218,16 @@ def test_every_corner_is_where_the_results_have_it(opened):
         shown = scaled(model, frames[at], scale)
         expected = placed(skin, pose(shown.positions, shown.orientations))[which]
         np.testing.assert_allclose(drawn, expected, atol=1e-7)
+
+
+def test_rotations_in_space(opened):
+    """The view places 2D blocks with the rotations of 3D."""
+    from scipy.spatial.transform import Rotation
+
+    page = opened("wall")
+    for vector in ([0.0, 0.0, 0.3], [0.4, -1.2, 2.0], [1e-9, 0.0, 0.0], [0.0, 0.0, 0.0]):
+        found = np.reshape(page.run("return rotation(...arguments[0])", vector), (3, 3))
+        np.testing.assert_allclose(found, Rotation.from_rotvec(vector).as_matrix(), atol=1e-14)
 
 
 def test_the_whole_structure_is_on_the_canvas(opened):
