@@ -25,7 +25,7 @@ def names(requirements: list[str]) -> set[str]:
 
 def imported(*folders: str) -> set[str]:
     """Top-level modules that are neither the standard library nor ours."""
-    ours = {"dem_cli", *(path.stem for path in (ROOT / "tests").iterdir())}
+    ours = {"dem_cli", *(path.stem for own in ("tests", "scripts") for path in (ROOT / own).iterdir())}
     found = set()
     for folder in folders:
         for path in (ROOT / folder).rglob("*.py"):
