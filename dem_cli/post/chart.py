@@ -103,6 +103,7 @@ def dress(axis: Any, paper: Paper) -> None:
             if getattr(axis, f"get_{name}lim")()[1] <= 0.0:
                 raise UsageError(f"--log {name}: there is nothing positive to draw")
             getattr(axis, f"set_{name}scale")("log", nonpositive="mask")
+            getattr(axis, f"{name}axis").set_major_formatter("{x:g}")
         if limits is not None:
             getattr(axis, f"set_{name}lim")(*limits)
 

@@ -19,9 +19,9 @@ _HISTORY = ("load", "displacement", "time", "step", "unbalanced", "overlap")
 _AXES = "xyz"
 _FRAGILITY = {
     "intensity": Quantity("intensity"),
-    "share": Quantity("share collapsed"),
-    "low": Quantity("share collapsed, lower bound"),
-    "high": Quantity("share collapsed, upper bound"),
+    "share": Quantity("share collapsed", "-"),
+    "low": Quantity("share collapsed, lower bound", "-"),
+    "high": Quantity("share collapsed, upper bound", "-"),
 }
 
 

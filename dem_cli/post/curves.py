@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -95,14 +96,21 @@ def _draw_panel(
         if np.all(np.diff(x) > 0.0):
             x, y = thinned(x, y)
         axis.plot(x, y, color=colour, ls=dashes, lw=1.6 if len(curves) <= 12 else 1.1)
-    unit = label.rsplit(" [", 1)[1] if label.endswith("]") else ""
-    axis.set_ylabel(label if len(columns) == 1 else f"[{unit}" if unit else "")
+    axis.set_ylabel(label if len(columns) == 1 else _in_common([quantities[name].words for name in columns], label))
     if paper.x_limits is not None:
         _fit_heights(axis, paper.x_limits)
     low, high = axis.get_ylim()
     if low < 0.0 < high and "y" not in paper.log:
         axis.axhline(0.0, color=style.GREY, lw=0.6, zorder=1)
     chart.dress(axis, paper)
+
+
+def _in_common(words: list[str], label: str) -> str:
+    """What several columns have in common: how their names begin, and their unit."""
+    same = takewhile(lambda row: len(set(row)) == 1, zip(*(text.replace(",", "").split() for text in words)))
+    start = " ".join(row[0] for row in same)
+    unit = f"[{label.rsplit(' [', 1)[1]}" if label.endswith("]") else ""
+    return f"{start} {unit}".strip()
 
 
 def _fit_heights(axis: Any, limits: tuple[float, float]) -> None:
