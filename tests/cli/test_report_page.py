@@ -31,7 +31,7 @@ TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
 OPTIONS = (
     "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
     "--disable-gpu-compositing", "--disable-dev-shm-usage", "--disable-background-networking", "--no-first-run",
-    "--disable-component-update", "--force-device-scale-factor=1", "--window-size=1100,1500",
+    "--disable-component-update", "--force-device-scale-factor=1", "--window-size=900,1250",
     "--host-resolver-rules=MAP * ~NOTFOUND",
 )  # fmt: skip
 
