@@ -39,6 +39,9 @@ class History(Nobody):
     def samples(self, samples: Any) -> None:
         self.parts.append(samples)
 
+    def runs(self, rows: Any) -> None: ...
+    def structure(self, model: Any) -> None: ...
+
     @property
     def times(self) -> np.ndarray:
         """[s], (n,)."""

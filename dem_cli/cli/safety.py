@@ -42,7 +42,7 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
         rows.append((name, ", ".join(known)))
     if of_strength:
         rows.append(("divided by F", ", ".join(summary["reduce"])))
-    elif value is not None:
+    elif stands is not None and fails is not None:
         rows.append(("varied", f"{name}, stands {'above' if stands > fails else 'below'}"))
     if summary.get("load"):
         rows.append(("under", f"live load × {summary['load']:g}"))

@@ -74,9 +74,9 @@ def search(stands: Stands, scale: Scale, resolution: float, guess: Ends | None, 
         found = _outwards(stands, scale, start)
     else:
         found = first_change([(scale.low, stands(scale.low)), (scale.high, stands(scale.high))])
-    if found.stands is None or found.fails is None:
-        return found
     good, bad = found
+    if good is None or bad is None:
+        return found
     while not scale.close(good, bad, resolution):
         middle = scale.middle(good, bad)
         good, bad = (middle, bad) if stands(middle) else (good, middle)

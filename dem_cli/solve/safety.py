@@ -169,7 +169,7 @@ class Study:
             self.warnings.append(f"the energy does not close: {self.closure:.2%} is missing; do not trust this run")
 
     def _answer(self, status: str, ends: Ends) -> dict[str, Any]:
-        bracket = sorted(ends) if None not in ends else None
+        bracket = sorted(end for end in ends if end is not None) if None not in ends else None
         of_strength = self.analysis.of_strength
         name = "safety_factor" if of_strength else "critical_value"
         found = ends.stands if status == "ok" else None
