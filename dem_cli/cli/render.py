@@ -73,7 +73,7 @@ def target(folder: Path, output: Path | None, movie: str | None) -> Path:
     suffix = f".{movie}" if movie else STILL
     if output is None:
         return folder / f"render{suffix}"
-    named = output.suffix.lower()
+    named = output.suffix
     if named not in (STILL, *MOVIES):
         raise UsageError(f"-o {output}: the name has to end in .png, .gif or .mp4")
     if movie and named != suffix:

@@ -26,12 +26,14 @@ def check(kind: str) -> None:
 
 def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
     """Write pictures (height, width, 3) of bytes, of equal size; the format is that of the file's name."""
-    part = path.with_name(f".part-{path.name}")
-    try:
-        {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    part = unfinished(path)
+    {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
+    os.replace(part, path)
+
+
+def unfinished(path: Path) -> Path:
+    """What a file is called until it is whole; of the same kind."""
+    return path.with_name(f".part-{path.name}")
 
 
 def _write_gif(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:

@@ -55,7 +55,10 @@ def render_apart(folder: Path, path: Path, look: Look) -> None:
         if find_spec(name) is None:
             raise UsageError("rendering needs pyvista: pip install 'dem-cli[viz]'")
     movie.check(path.suffix[1:])
-    in_own_process(render, folder, path, look)
+    try:
+        in_own_process(render, folder, path, look)
+    finally:
+        movie.unfinished(path).unlink(missing_ok=True)
 
 
 def in_own_process(work: Callable[..., object], *arguments: object) -> None:
@@ -99,12 +102,9 @@ def render(folder: Path, path: Path, look: Look) -> None:
 def _write_png(page: np.ndarray, path: Path) -> None:
     from PIL import Image
 
-    part = path.with_name(f".part-{path.name}")
-    try:
-        Image.fromarray(page).save(part, "PNG", optimize=True)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    part = movie.unfinished(path)
+    Image.fromarray(page).save(part, "PNG", optimize=True)
+    os.replace(part, path)
 
 
 def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[np.ndarray]:

@@ -86,7 +86,8 @@ def read_sweep(folder: Path) -> SweepTable:
             names, *rows = list(csv.reader(file))
     except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CSV}: not a readable table of a sweep ({error})") from None
-    columns = {name: [value(row[i]) for row in rows] for i, name in enumerate(names)}
+    whole = all(len(row) == len(names) for row in rows)
+    columns = {name: [value(row[i]) for row in rows] for i, name in enumerate(names)} if whole else {}
     if not rows or "run" not in columns or "status" not in columns:
         raise UsageError(f"{folder / CSV}: not a table of a sweep, or one without runs")
     columns["run"] = [row[names.index("run")] for row in rows]  # 1e5 may be a name

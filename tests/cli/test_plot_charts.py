@@ -269,11 +269,13 @@ def test_columns_of_different_length(tmp_path):
     assert "not of one length" in output
 
 
-def test_a_table_that_is_none(tmp_path):
-    folder = write_sweep(tmp_path / "s", "nothing\n")
+@pytest.mark.parametrize("text", ["nothing\n", "run,a,status\nr1,2\n", "run,a,status\n", ""])
+def test_a_table_that_is_none(tmp_path, text):
+    folder = write_sweep(tmp_path / "s", text)
     code, output = dem(folder)
     assert code == 2
-    assert "not a table of a sweep" in output
+    assert "table of a sweep" in output
+    assert len(output.splitlines()) == 1
 
 
 def test_one_picture(runs, tmp_path):

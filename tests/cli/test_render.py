@@ -100,6 +100,7 @@ def test_forces_and_colours_in_an_oblique_view(graphics, folder, monkeypatch):
 def test_a_still_of_its_size(graphics, folder, tmp_path):
     code, output = dem("render", folder, "-o", tmp_path / "a.png", "--size", "640x480", "--forces")
     assert (code, output) == (0, f"{tmp_path / 'a.png'}\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.size == (640, 480)
 
