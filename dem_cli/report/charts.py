@@ -79,9 +79,10 @@ def _answers(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _histories(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
-    series, found = results.series, []
+    series = results.series
     if series is None or not len(series.time):
         return []
+    found: list[Chart] = []
     instant = {"x": "time [s]", "marks": [[frame["time"], None] for frame in frames], "verticals": _collapse(results)}
     for quantity, unit in UNITS.items():
         lines = of_quantity(series, quantity)
@@ -95,7 +96,7 @@ def _histories(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Ch
             line(name, *thinned(series.time, factor * values), str(i % _PALETTE))
             for i, (name, values) in enumerate(lines.items())
         ]
-        chart = {"id": quantity.replace(" ", "-"), "title": f"Monitors: {quantity}", "y": f"{quantity} [{unit}]"}
+        chart: Chart = {"id": quantity.replace(" ", "-"), "title": f"Monitors: {quantity}", "y": f"{quantity} [{unit}]"}
         if len(before) and not until.all():  # a fall would flatten everything before
             chart["limits"] = [1.15 * factor * min(before.min(), 0.0), 1.15 * factor * max(before.max(), 0.0)]
         found.append({**chart, **instant, "lines": drawn})
@@ -133,7 +134,8 @@ def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
     history = results.history
     if results.series is not None or results.kind == "modes" or len(history.get("step", ())) < 3:
         return []
-    loaded, found = bool((history["load"] != 0.0).any()), []
+    loaded = bool((history["load"] != 0.0).any())
+    found: list[Chart] = []
     for name, values in list(results.monitors.items())[:_MOST_MONITORS]:
         if not np.isfinite(values).any():
             continue
@@ -141,7 +143,8 @@ def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
         factor, unit = _unit(name, values)
         metre, length = style.length_unit(float(control.max()))
         x, y = (factor * values, history["load"]) if loaded else (metre * control, factor * values)
-        drawn = [line(name, *with_breaks(steps, x, y), "0")]
+        curve = with_breaks(steps, x, y)
+        drawn = [line(name, curve[0], curve[1], "0")]
         labels = f"{name} [{unit}]", "load multiplier λ"
         labels = labels if loaded else (f"control displacement [{length}]", labels[0])
         rows = [_row_of(history, frame) for frame in frames]
@@ -176,7 +179,8 @@ def _energy(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart
         values = results.energy.get(name)
         if values is not None and (values != 0.0).any():
             text, colour = name.replace("_", " "), _ENERGY.get(name, "ink")
-            drawn.append(line(text, *with_breaks(history["step"], x.astype(float), values), colour))
+            curve = with_breaks(history["step"], x.astype(float), values)
+            drawn.append(line(text, curve[0], curve[1], colour))
     marks = [[frame["time" if in_seconds else "step"], None] for frame in frames]
     label = "time [s]" if in_seconds else "solver step"
     chart = {"id": "energy", "title": "Energy ledger", "x": label, "y": "energy since the start [J]"}

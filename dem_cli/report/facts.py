@@ -69,7 +69,7 @@ def _load(summary: Mapping[str, Any]) -> tuple[str, str, str]:
             return ("load multiplier", ends, "followed the load path without failure")
         return _status(summary)
     more = f"between {bracket[0]:.4f} and {bracket[1]:.4f}" if bracket and None not in bracket else ""
-    mode = {"mixed": "sliding and rocking"}.get(mode := summary.get("failure_mode"), mode)
+    mode = str(summary.get("failure_mode") or "").replace("mixed", "sliding and rocking")
     return ("failure load λ", f"{load:.4f}", ", ".join(filter(None, (more, mode and f"failure by {mode}"))))
 
 

@@ -64,7 +64,8 @@ def main_columns(table: SweepTable) -> list[str]:
 
 def axes(table: SweepTable) -> dict[str, str | None]:
     """The chart at first: the answer over the swept number with most values, a line for each value of the others."""
-    across, *others = [*table.ranked(), *([] if table.ranked() else [None])]
+    ranked = table.ranked()
+    across, others = ranked[0] if ranked else None, ranked[1:]
     lines = len(set(zip(*(table.columns[key] for key in others)))) if others else 1
     family = OTHERS if len(others) > 1 and lines <= MOST_LINES else others[-1] if others else None
     try:

@@ -220,6 +220,7 @@ class Chart {
     if (!this.now || !marks || i === null || !marks[i]) return;
     const [x, y] = marks[i], place = Math.min(this.px(x), this.width - 2), floor = this.height - ROOM.bottom;
     this.now.replaceChildren();
+    if (x === null) return;
     element("line", this.now, { x1: place, x2: place, y1: ROOM.top, y2: floor });
     if (y !== null) element("circle", this.now, { cx: place, cy: this.py(y), r: 5.5 });
   }
