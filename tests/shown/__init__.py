@@ -29,6 +29,7 @@ NAME = re.compile(r"# ([\w./-]+\.toml)\n")
 MINUTES = re.compile(r"#.*\b(min|minutes?|h|hours?)\b")
 EXIT = re.compile(r"# exit (\d)$")
 TIMES = re.compile(r"\d[\d.,]* (ms|s|min|h)\b")
+MANY = ("sweep", "verify")  # run in one process here: starting more costs more than the runs that are shown
 ELSEWHERE = ("python3 ", "pip ", "source ", "git ", "cd ", "scripts/test", "sbatch ", "dask ", "sudo ", "xdg-open ")
 
 
@@ -92,7 +93,8 @@ class Reader:
         if MINUTES.search(line) or words[1] == "render":
             parse(words[1:])
             return
-        code, said = dem(*words[1:])
+        one = [] if words[1] not in MANY or "-j" in words else ["-j", "1"]
+        code, said = dem(*words[1:], *one)
         assert code == int(wanted[1] if (wanted := EXIT.search(line)) else 0), f"{line}\n{said}"
         if target:
             (self.folder / target).write_text(said, encoding="utf-8")
