@@ -7,6 +7,7 @@ from typing import Any
 
 Rows = list[tuple[str, str]]
 UNITS = {"friction": "", "cohesion": " Pa", "tension": " Pa"}
+NO_CHANGE = ("no failure", "fails even")  # how the status begins where all factors end alike
 MOST = 8  # joints that are listed
 
 
@@ -17,7 +18,7 @@ def safety_rows(summary: Mapping[str, Any]) -> Rows:
     rows = _answer(summary) + _needed(summary)
     limit = summary.get("limit_analysis")
     if limit:
-        text = limit.get("note") or (
+        text = str(limit.get("note", "")).removeprefix("limit analysis ") or (
             f"proves that nothing stands at {limit['impossible_at']:.6g}, finds forces in equilibrium at "
             f"{limit['carried_at']:.6g}"
         )
@@ -40,6 +41,8 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
     rows = [] if value is None else [(label, f"{value:.5g}" + (f"  (fails at {fails:.5g})" if fails else ""))]
     if value is None and known:
         rows.append((name, ", ".join(known)))
+    if of_strength and str(summary["status"]).startswith(NO_CHANGE):
+        rows.append(("strength", "does not decide: geometry and loads do"))
     if of_strength:
         rows.append(("divided by F", ", ".join(summary["reduce"])))
     elif stands is not None and fails is not None:

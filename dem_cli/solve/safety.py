@@ -142,8 +142,8 @@ class Study:
         if not self.analysis.of_strength:
             return f"{'stands' if ends.fails is None else 'fails'} at both {self._named(low)} and {high:.6g}"
         if ends.fails is None:
-            return f"no failure up to F = {high:g}: strength does not decide"
-        return f"fails even at F = {low:g}, with {1.0 / low:.4g} times the strength: strength does not decide"
+            return f"no failure up to F = {high:g}"
+        return f"fails even at F = {low:g}"
 
     def _past(self, value: float) -> float:
         """How far a value is beyond what limit analysis proved impossible; negative: not, or not known."""
