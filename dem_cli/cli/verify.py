@@ -29,6 +29,7 @@ SHELF = click.Choice(["verification", "validation", "cross-code"])
 @click.option("--shelf", "shelves", multiple=True, type=SHELF, help="Only exact references, experiments, or codes.")
 @click.option("--at-most", type=click.FloatRange(min=0.0), metavar="SECONDS",
               help="Leave out cases that took longer when docs/verification.md was written.")  # fmt: skip
+@click.option("--changed", is_flag=True, help="Only cases that changed since docs/verification.md was written.")
 @click.option("-j", "--jobs", type=click.IntRange(min=1), metavar="N", help="Processes; default: all cores.")
 @click.option("--write", type=click.Path(path_type=Path), metavar="PAGE",
               help="Write the page, such as docs/verification.md, and its JSON beside it.")  # fmt: skip
@@ -40,6 +41,7 @@ def command(
     pattern: str,
     shelves: Sequence[str],
     at_most: float | None,
+    changed: bool,
     jobs: int | None,
     write: Path | None,
     junit_file: Path | None,
@@ -51,7 +53,7 @@ def command(
     Exit code: 0 all as the cases say, 1 some are not, 2 wrong arguments or a wrong case file (the others are run).
     """
     from dem_cli.verify.find import find
-    from dem_cli.verify.records import load, on_shelves
+    from dem_cli.verify.records import digest, load, on_shelves
 
     began = time.perf_counter()
     found = find(paths or [Path("cases")], pattern, shelves)
@@ -59,6 +61,12 @@ def command(
     before = load(page.with_suffix(".json"))
     costs = {record["case"]: record["seconds"] for record in before}
     cases, slow = split(found.cases, costs, at_most)
+    if changed:
+        told = {record["case"]: record["sha256"] for record in before}
+        cases = [case for case in cases if told.get(known_as(case)) != digest(case)]
+    if not cases and changed and found.cases:
+        console.note("nothing changed since the page was written", quiet)
+        return 0
     if not cases:
         raise UsageError(f"no case with a [reference]{nothing(len(found.without), len(slow), pattern, shelves)}")
     if write and shelves:
@@ -67,7 +75,7 @@ def command(
     records = on_shelves(sorted(run_all(cases, costs, jobs, quiet), key=lambda record: record["case"]), shelves)
     took = time.perf_counter() - began
     if write:
-        write_page(write, before, records)
+        write_page(write, records)
         remarks.append(f"written: {write}, {write.with_suffix('.json')}")
     if junit_file:
         from dem_cli.verify.junit import junit
@@ -146,12 +154,12 @@ def verified(path: Path) -> Record:
     return record(path, case.title, summary, case.reference, summary.get("solve_seconds") or 0.0)
 
 
-def write_page(page: Path, before: list[Record], records: list[Record]) -> None:
-    """The page and its JSON: new records, and earlier ones of cases that were not run now."""
+def write_page(page: Path, records: list[Record]) -> None:
+    """The page and its JSON: new records, and those there of cases that were not run now."""
     from dem_cli.verify.page import page as text
-    from dem_cli.verify.records import dump, merged
+    from dem_cli.verify.records import dump, load, merged
 
-    kept = dump(merged(before, records), page, __version__)
+    kept = dump(merged(load(page.with_suffix(".json")), records), page, __version__)
     put(page.with_suffix(".json"), kept)
     put(page, text(json.loads(kept)["cases"], __version__))
 

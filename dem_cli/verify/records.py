@@ -9,7 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dem_cli.errors import UsageError
+from dem_cli.case.reader import parse_toml, read_text
+from dem_cli.errors import DemError, UsageError
 from dem_cli.output.reference import as_declared, error, verdicts
 from dem_cli.output.summary import plain
 from dem_cli.verify.find import SHELVES
@@ -49,8 +50,12 @@ def state(answer: Mapping[str, Any]) -> str:
 
 
 def digest(path: Path) -> str:
-    """SHA-256 of a case file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+    """SHA-256 of what a case file says; comments and spaces do not count."""
+    try:
+        said = json.dumps(parse_toml(path, read_text(path)), sort_keys=True, default=str)
+    except DemError:
+        said = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    return hashlib.sha256(said.encode()).hexdigest()
 
 
 def rounded(seconds: float) -> float:

@@ -212,6 +212,17 @@ def test_a_part_of_the_page_written_again(folder):
     assert records["cases/good.toml"]["references"][0]["state"] == "failed"
 
 
+def test_only_what_changed(folder):
+    write(folder, good=GOOD, stands=STANDS)
+    verify("--write", "docs/verification.md")
+    write(folder, good=f"# a comment\n{GOOD}")
+    assert "nothing changed" in verify("--changed").stderr
+    write(folder, good=GOOD.replace("0.001", "0.002"), missed=MISSED)
+    found, cases = answers("--changed", "--write", "docs/verification.md")
+    assert sorted(cases) == ["good", "missed"]
+    assert "nothing changed" in verify("--changed").stderr
+
+
 def test_those_known_to_take_long_are_left_out(folder):
     write(folder, good=GOOD, stands=STANDS)
     verify("--write", "docs/verification.md")
