@@ -35,7 +35,10 @@ def rows(sweep: Sweep, known: Mapping[str, Summary]) -> list[Row]:
         values = sweep.base | run.values
         row = {"run": job.id if job else "", **{key: values.get(key) for key in sweep.plan.keys}}
         row |= {"status": status, "reason": summary.get("reason") or why or _gave_up(summary)}
-        found.append(row | {key: value for key, value in answers(summary).items() if key not in row})
+        row |= {key: value for key, value in answers(summary).items() if key not in row}
+        for key in ("reason", "warnings") if job else ():  # the same in every place where the case lies
+            row[key] = str(row.get(key, "")).replace(job.path, Path(job.path).name)
+        found.append(row)
     return found
 
 
