@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 DIGITS = 5
+NOTHING = 1e-12  # of the expected value: round-off
 VERDICTS = {"passed": "passed", "missed": "missed, as known", "failed": "FAILED", "met": "FAILED: met"}
 
 
@@ -25,7 +26,8 @@ def off(answer: Mapping[str, Any]) -> str:
         return "–" if answer["found"] is None else ""
     if isinstance(answer["value"], list) and value == 0.0:
         return "inside"
-    return "0" if value == 0.0 else f"{value:+.2g}".replace("-", "−")
+    size = max(map(abs, answer["value"])) if isinstance(answer["value"], list) else abs(answer["value"])
+    return "0" if abs(value) <= NOTHING * size else f"{value:+.2g}".replace("-", "−")
 
 
 def share(answer: Mapping[str, Any]) -> float | None:
@@ -38,7 +40,7 @@ def share(answer: Mapping[str, Any]) -> float | None:
 
 def allowed(answer: Mapping[str, Any]) -> str:
     """What was allowed, in the unit of the quantity."""
-    return f"± {answer['tolerance']:.2g}" if answer["tolerance"] else ""
+    return f"± {shown(answer['tolerance'], 2)}" if answer["tolerance"] else ""
 
 
 def judgement(answer: Mapping[str, Any]) -> str:
