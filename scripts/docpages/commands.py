@@ -43,7 +43,7 @@ def text() -> str:
 
 def section(name: str, found: click.Command, context: click.Context) -> list[str]:
     """Heading, usage, what it does, a table of options."""
-    records = [param.get_help_record(context) for param in found.get_params(context) if param.name != "help"]
+    records = [param.get_help_record(context) for param in found.get_params(context) if "--help" not in param.opts]
     rows = [(f"`{option}`".replace("|", "\\|"), safe(about)) for option, about in filter(None, records) if about]
     return [
         f"## dem {name}",
