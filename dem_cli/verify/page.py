@@ -16,6 +16,7 @@ ABOUT = {
     "give.",
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
 }
+KEPT = "\N{NO-BREAK SPACE}"
 HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
 
@@ -36,6 +37,7 @@ def page(records: Iterable[Record], version: str) -> str:
     for shelf in ABOUT:
         of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
         if of_shelf:
+            of_shelf.sort(key=lambda record: f"/{shelf}/" not in record["case"])
             lines += [f"## {shelf.capitalize()}", "", ABOUT[shelf], "", *_table(of_shelf), "", *_sources(of_shelf)]
     broken = [record for record in records if "error" in record]
     if broken:
@@ -79,7 +81,7 @@ def _answer(answer: dict[str, Any]) -> list[str]:
         f"`{answer['quantity']}`",
         *map(_cell, values),
         _percent(size) if size is not None and off(answer) != "inside" else "",
-        allowed(answer),
+        allowed(answer).replace(" ", KEPT),
         verdict if answer["state"] == "passed" else f"**{verdict}**",
     ]
 
@@ -115,7 +117,7 @@ def _percent(value: float, signed: bool = True) -> str:
     size = abs(100.0 * value)
     places = 0 if size >= 99.5 else 1 if size >= 9.95 else 2 if size >= 0.0995 else 3
     text = f"{100.0 * value:+.{places}f}" if signed else f"{size:.{places}f}"
-    return "0.000 %" if size < 5e-4 else f"{text} %".replace("-", "−")
+    return ("0.000 %" if size < 5e-4 else f"{text} %").replace("-", "−").replace(" ", KEPT)
 
 
 def _rows(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

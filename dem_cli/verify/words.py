@@ -16,7 +16,13 @@ def shown(value: Any, digits: int = DIGITS) -> str:
         return {True: "true", False: "false", None: "–"}[value]
     if isinstance(value, (list, tuple)):
         return f"{shown(value[0], digits)} to {shown(value[1], digits)}"
-    return value if isinstance(value, str) else f"{value:.{digits}g}".replace("-", "−")
+    return value if isinstance(value, str) else number(value, digits)
+
+
+def number(value: float, digits: int, sign: str = "") -> str:
+    """A number with so many digits, large ones written out; sign: "+" for one in any case."""
+    text = f"{value:{sign}.{digits}g}"
+    return (f"{float(text):{sign}.0f}" if "e+0" in text else text).replace("-", "−")
 
 
 def off(answer: Mapping[str, Any]) -> str:
@@ -27,7 +33,7 @@ def off(answer: Mapping[str, Any]) -> str:
     if isinstance(answer["value"], list) and value == 0.0:
         return "inside"
     size = max(map(abs, answer["value"])) if isinstance(answer["value"], list) else abs(answer["value"])
-    return "0" if abs(value) <= NOTHING * size else f"{value:+.2g}".replace("-", "−")
+    return "0" if abs(value) <= NOTHING * size else number(value, 2, "+")
 
 
 def share(answer: Mapping[str, Any]) -> float | None:
