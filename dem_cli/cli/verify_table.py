@@ -42,12 +42,12 @@ def _table(shelf: str, records: Sequence[Record]) -> Table:
     for name in ("case", "quantity", "ours", "reference", "error", "%", "allowed", "verdict", "time"):
         table.add_column(name, justify="right" if name in NUMBERS else "left", overflow="fold")
     for record in records:
-        name, took = PurePosixPath(record["case"]).with_suffix(""), seconds(record["seconds"])
+        path, took = PurePosixPath(record["case"]), seconds(record["seconds"])
         for answer in record["references"]:
             size = share(answer)
             percent = "" if size is None or off(answer) == "inside" else f"{100.0 * size:+.2f}".replace("-", "−")
             values = (shown(answer["found"]), shown(answer["value"], 6), off(answer), percent, allowed(answer))
             verdict = f"[{STYLES[answer['state']]}]{VERDICTS[answer['state']]}[/]"
-            table.add_row(f"{name.parent.name}/{name.name}", answer["quantity"], *values, verdict, took)
+            table.add_row(f"{path.parent.name}/{path.stem}", answer["quantity"], *values, verdict, took)
             took = ""
     return table

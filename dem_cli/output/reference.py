@@ -61,11 +61,11 @@ def passes(found: Value, expected: bool | float | tuple[float, float] | str, all
     return off is not None and abs(off) <= (allowance or 0.0)
 
 
-def error(found: Value, expected: bool | float | Sequence[float] | str) -> float | None:
+def error(found: Value, expected: bool | float | tuple[float, float] | list[float] | str) -> float | None:
     """How far a number is above (+) or below (−) the expected one, or outside the interval; None of anything else."""
     if isinstance(expected, (bool, str)) or isinstance(found, (bool, str)) or found is None:
         return None
-    low, high = expected if isinstance(expected, Sequence) else (expected, expected)
+    low, high = expected if isinstance(expected, (list, tuple)) else (expected, expected)
     return min(found - low, 0.0) + max(found - high, 0.0)
 
 
