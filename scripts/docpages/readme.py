@@ -20,7 +20,7 @@ ROWS = (  # case, kind of its reference (the first of that kind is shown), what 
     ("wall_3", "exact", "wall of 231 blocks"),
     ("column_14", "exact", "column of 14 blocks"),
     ("arch_21", "exact", "arch of 21 voussoirs: four hinges"),
-    ("arch_21_mu040", "exact", "the same, friction 0.4: it slides and turns"),
+    ("arch_21_mu040", "exact", "the same, friction 0.4: joints slide"),
     ("cohesion_block", "exact", "block held by friction and cohesion"),
     ("least_thickness_arch", "exact", "least ring of a semicircular arch of radius 10 m [m]"),
     ("safety_incline", "exact", "factor of safety of a block on an incline"),
