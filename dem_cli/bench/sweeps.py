@@ -46,7 +46,7 @@ def measure(options: Options) -> Found:
                 break
             done = [sweep(place, count, jobs, known) for _ in range(options.rounds(2))]
             best = min(done, key=lambda one: one.wall)
-            numbers = {"runs": count, "cpu": best.cpu, "solving": best.solving, "error": best.worst}
+            numbers: dict[str, Any] = {"runs": count, "cpu": best.cpu, "solving": best.solving, "error": best.worst}
             found.records.append(record(known.name, WORKERS, jobs, [one.wall for one in done], **numbers))
     if cores == 1:
         found.notes.append("one core: only one process")

@@ -34,4 +34,5 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     if case.sweep is not None:
-        yield CaseProblem(("sweep",), "not used here: one case is solved, as written above; `dem sweep` runs all of them")
+        message = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
+        yield CaseProblem(("sweep",), message)

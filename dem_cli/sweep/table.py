@@ -36,8 +36,9 @@ def rows(sweep: Sweep, known: Mapping[str, Summary]) -> list[Row]:
         row = {"run": job.id if job else "", **{key: values.get(key) for key in sweep.plan.keys}}
         row |= {"status": status, "reason": summary.get("reason") or why or _gave_up(summary)}
         row |= {key: value for key, value in answers(summary).items() if key not in row}
-        for key in ("reason", "warnings") if job else ():  # the same in every place where the case lies
-            row[key] = str(row.get(key, "")).replace(job.path, Path(job.path).name)
+        for key in ("reason", "warnings"):  # the same in every place where the case lies
+            if job is not None:
+                row[key] = str(row.get(key, "")).replace(job.path, Path(job.path).name)
         found.append(row)
     return found
 
