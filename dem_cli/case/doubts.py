@@ -33,6 +33,3 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
     for table in () if case.analysis.kind in SHAKES else ("motion", "damping", "initial"):
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
-    if case.sweep is not None:
-        message = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
-        yield CaseProblem(("sweep",), message)

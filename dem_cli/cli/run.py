@@ -17,7 +17,7 @@ from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.many import Wish, batch_of, check, finish, with_names
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.reference import check_quantities
-from dem_cli.errors import DemError, SolverError
+from dem_cli.errors import CaseProblem, DemError, SolverError
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
@@ -43,6 +43,7 @@ ANSWERS = {
     "fragility": ("median", "dispersion", "collapse_intensities"),
 }
 
+ONE_OF_MANY = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
 Solve = Callable[["Case", "Model", "Observer"], Outcome]
 
 
@@ -112,6 +113,8 @@ def command(
 
     started = time.perf_counter()
     loaded = api.load_case(case, overrides)
+    if loaded.case.sweep is not None:
+        loaded.warnings.append(loaded.render(CaseProblem(("sweep",), ONE_OF_MANY)))
     wish = Wish(threads, resume)
     check(loaded.case, wish)
     model = api.build_model(loaded)

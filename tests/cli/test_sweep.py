@@ -198,9 +198,15 @@ def test_dry_run_prints_the_plan(case, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_check_says_how_many_runs_there_are(case):
-    code, out, _ = dem("check", case)
+def test_run_says_that_it_is_one_case(case, tmp_path):
+    code, out, _ = dem("run", case, "-o", tmp_path / "out")
     assert code == 0
+    assert "column.toml:18:1: sweep: not used here: one case is solved" in out
+
+
+def test_check_says_how_many_runs_there_are(case):
+    code, out, err = dem("check", case)
+    assert (code, err) == (0, "")
     assert "6 runs of `dem sweep` over joints.dry.friction, structure.0.courses" in out
 
 
