@@ -8,17 +8,17 @@ from __future__ import annotations
 import multiprocessing
 import os
 import re
+import signal
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from importlib.util import find_spec
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
 
-from dem_cli.errors import OutputError, UsageError
+from dem_cli.errors import DemError, OutputError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
@@ -62,20 +62,36 @@ def render_apart(folder: Path, path: Path, look: Look) -> None:
 
 
 def in_own_process(work: Callable[..., object], *arguments: object) -> None:
-    """Do `work` where it can die alone. Raises what it raises, and OutputError where it dies."""
-    with tempfile.NamedTemporaryFile() as log:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(1, context, initializer=_say_into, initargs=(log.name,)) as pool:
-            try:
-                pool.submit(work, *arguments).result()
-            except BrokenProcessPool:
-                said = Path(log.name).read_text(encoding="utf-8", errors="replace")
-                raise OutputError(_death(said)) from None
+    """Do `work` where it can die alone. Raises its DemError or OSError, and OutputError where it dies."""
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    with tempfile.NamedTemporaryFile() as log, receiver:
+        child = context.Process(target=_work_alone, args=(sender, log.name, work, arguments), daemon=True)
+        child.start()
+        sender.close()
+        try:
+            error = receiver.recv()
+        except EOFError:
+            child.join()
+            said = Path(log.name).read_text(encoding="utf-8", errors="replace")
+            raise OutputError(_death(said)) from None
+        finally:  # also where the user does not want to wait
+            child.kill()
+            child.join()
+    if error is not None:
+        raise error
 
 
-def _say_into(log: str) -> None:
-    """What VTK and drivers say on stderr goes to a file."""
+def _work_alone(sender: Connection, log: str, work: Callable[..., object], arguments: tuple[object, ...]) -> None:
+    """What VTK and drivers say on stderr goes to a file; the parent is told what went wrong, or None."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends this process
     os.dup2(os.open(log, os.O_WRONLY | os.O_APPEND), 2)
+    error: Exception | None = None
+    try:
+        work(*arguments)
+    except (DemError, OSError) as found:
+        error = found
+    sender.send(error)
 
 
 def _death(said: str) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -144,6 +146,24 @@ def test_a_library_that_is_missing_is_none():
 def test_a_renderer_that_dies_is_reported():
     with pytest.raises(OutputError, match="the renderer died"):
         render.in_own_process(os.abort)
+
+
+def test_who_does_not_want_to_wait_is_not_made_to(monkeypatch):
+    def interrupt(connection):
+        raise KeyboardInterrupt
+
+    before = set(multiprocessing.active_children())
+    monkeypatch.setattr("multiprocessing.connection.Connection.recv", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        render.in_own_process(time.sleep, 3600.0)
+    assert set(multiprocessing.active_children()) <= before
+
+
+def test_errors_come_back_from_the_other_process(tmp_path):
+    with pytest.raises(UsageError, match="no such folder"):
+        render.in_own_process(read, tmp_path / "nowhere")
+    with pytest.raises(FileNotFoundError):
+        render.in_own_process(os.listdir, tmp_path / "nowhere")
 
 
 def test_the_reason_is_the_last_that_was_said():
