@@ -66,6 +66,7 @@ _REASONS = {
     errno.EROFS: "the file system is read-only",
     errno.ENAMETOOLONG: "the name is too long",
     errno.ENOTDIR: "a part of the path is a file",
+    errno.EEXIST: "a part of the path is a file",
 }
 
 
@@ -75,7 +76,7 @@ def write_error(error: Exception, path: Path) -> DemError:
     hidden = re.search(r"errno = (\d+)", str(error))
     if number is None and hidden:
         number = int(hidden.group(1))
-    if number == errno.ENOTDIR:
+    if number in (errno.ENOTDIR, errno.EEXIST):
         return UsageError(f"cannot write results to {path}: {_REASONS[number]}")
     reason = _REASONS.get(number or 0) or getattr(error, "strerror", None) or str(error).splitlines()[0]
     return OutputError(f"cannot write results to {path}: {reason}")
