@@ -9,7 +9,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.errors import DemError
+from dem_cli.errors import DemError, OutputError
 
 if TYPE_CHECKING:
     from dem_cli.case.overrides import Override
@@ -27,30 +27,43 @@ def solve_one(
     folder: where the results go; None keeps none. text: what the case file holds, if not read from `path`.
     Says nothing on the terminal.
     """
+    try:
+        return _solved(path, overrides, folder, text)
+    except DemError as error:
+        return {"status": "failed", "reason": str(error), "exit_code": error.exit_code}
+
+
+def _solved(
+    path: str | Path, overrides: Sequence[str | Override], folder: str | Path | None, text: str | None
+) -> dict[str, Any]:
     from dem_cli import api
     from dem_cli.cli.many import Wish
     from dem_cli.cli.run import execute
 
     started = time.perf_counter()
-    try:
-        loaded = api.load_case(path, overrides, text)
-        model = api.build_model(loaded)
-        with tempfile.TemporaryDirectory() if folder is None else nullcontext(folder) as place:
-            output = Path(place) / "results" if folder is None else Path(place)
-            wish = Wish(threads=1, resume=folder is not None)  # what a killed one of many runs left is taken up
-            return execute(loaded, model, output, started, quiet=True, wish=wish, recover=folder is None)[0]
-    except DemError as error:
-        return {"status": "failed", "reason": str(error), "exit_code": error.exit_code}
+    loaded = api.load_case(path, overrides, text)
+    model = api.build_model(loaded)
+    kept = folder is not None  # by whoever keeps a folder for this run alone: what is broken in it is written anew
+    with nullcontext(folder) if folder is not None else tempfile.TemporaryDirectory() as place:
+        output = Path(place) if kept else Path(place) / "results"
+        wish = Wish(threads=1, resume=kept)  # what a killed one of many runs left is taken up
+        return execute(loaded, model, output, started, force=kept, quiet=True, wish=wish, recover=not kept)[0]
 
 
 def do_job(job: Job) -> Summary:
-    """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run."""
-    from dem_cli.sweep.run import FAILED, failure
+    """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run.
+
+    Raises OutputError: a full disk is no fault of the run, which is done when there is room again.
+    """
+    from dem_cli.sweep.run import failure
 
     try:
-        summary = solve_one(job.path, job.overrides, job.folder, job.text)
+        return _solved(job.path, job.overrides, job.folder, job.text)
+    except OutputError:
+        raise
+    except DemError as error:
+        return failure(job, str(error))
     except Exception as error:  # a fault of the program in one run does not stop a thousand others
         import traceback
 
         return failure(job, f"internal error: {type(error).__name__}: {error}", traceback.format_exc())
-    return failure(job, str(summary["reason"])) if summary["status"] == FAILED else summary

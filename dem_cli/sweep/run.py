@@ -14,7 +14,7 @@ from dem_cli.case.overrides import Override
 from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.output.folder import SUMMARY, abandoned
+from dem_cli.output.folder import OWN_KEYS, SUMMARY, abandoned, write_error
 from dem_cli.sweep.identity import facts, name_of
 from dem_cli.sweep.plan import Plan, Run
 from dem_cli.sweep.pool import Died
@@ -142,7 +142,8 @@ def summary_in(folder: Path) -> Summary | None:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return summary if isinstance(summary, dict) and summary.get("status") not in (None, "interrupted") else None
+    whole = isinstance(summary, dict) and summary.keys() >= OWN_KEYS and isinstance(summary["status"], str)
+    return summary if whole and summary["status"] != "interrupted" else None
 
 
 def tidy(folder: Path) -> None:
@@ -166,7 +167,10 @@ def carried_out(sweep: Sweep, known: Mapping[str, Summary], spread: Spread) -> I
 
 
 def failure(job: Job, reason: str, trace: str | None = None) -> Summary:
-    """The record of a run that could not be done, left in its folder so that it is not tried again."""
+    """The record of a run that could not be done, left in its folder so that it is not tried again.
+
+    Raises OutputError.
+    """
     from dem_cli import __version__
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.summary import write_summary
@@ -174,7 +178,10 @@ def failure(job: Job, reason: str, trace: str | None = None) -> Summary:
     summary = {"title": "", "kind": "", "version": __version__, "status": FAILED, "reason": reason}
     summary |= {"traceback": trace} if trace else {}
     with OutputFolder(job.folder, force=True, recover=False) as folder:
-        write_summary(folder.path, summary)
+        try:
+            write_summary(folder.path, summary)
+        except OSError as error:
+            raise write_error(error, Path(job.folder)) from None
         folder.commit()
     return summary
 

@@ -45,8 +45,10 @@ def rows(sweep: Sweep, known: Mapping[str, Summary]) -> list[Row]:
 
 def _gave_up(summary: Summary) -> str:
     """Why a run did not converge; it is the last of its warnings."""
-    gave_up = str(summary["status"]).startswith("not converged") and summary.get("warnings")
-    return str(summary["warnings"][-1]) if gave_up else ""
+    warnings = summary.get("warnings")
+    if not isinstance(warnings, list) or not warnings:
+        return ""
+    return str(warnings[-1]) if str(summary["status"]).startswith("not converged") else ""
 
 
 def answers(summary: Summary) -> Row:

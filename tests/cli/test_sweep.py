@@ -18,6 +18,7 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli.cli.main import main
+from dem_cli.errors import OutputError
 
 ROOT = Path(__file__).resolve().parents[2]
 DEM = [sys.executable, "-m", "dem_cli"]
@@ -155,6 +156,33 @@ def test_a_fault_of_the_program_in_one_run_stops_nobody(case, tmp_path, monkeypa
     assert rows[3]["reason"] == "internal error: ZeroDivisionError: of one run"
     kept = json.loads((tmp_path / "out" / "runs" / rows[3]["run"] / "summary.json").read_text())
     assert "sometimes" in kept["traceback"]
+
+
+@pytest.mark.parametrize("left", ["", "[]", "{}", '{"status": 5}', '{"status": "not converged", "warnings": {"a": 1}}'])
+def test_a_run_whose_summary_is_broken_is_done_again(case, tmp_path, left):
+    case.write_text(SMALL + '[sweep]\n"joints.dry.friction" = [0.3, 0.4]\n', encoding="utf-8")
+    dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    before = tables(tmp_path / "out")
+    (tmp_path / "out" / "runs" / table(tmp_path / "out")[1]["run"] / "summary.json").write_text(left)
+    code, out, _ = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    assert (code, "2 solved" in out) == (0, True)
+    assert tables(tmp_path / "out") == before
+
+
+def test_a_full_disk_is_no_fault_of_a_run(case, tmp_path, monkeypatch):
+    from dem_cli.output.store import ResultWriter
+
+    def full(*_, **__):
+        raise OutputError("cannot write results to here: no space left on the device")
+
+    dem("sweep", case, "-o", tmp_path / "whole", "-j", 1)
+    with monkeypatch.context() as patch:
+        patch.setattr(ResultWriter, "close", full)
+        code, _, err = dem("sweep", case, "-o", tmp_path / "out", "-j", 1)
+    assert (code, "no space left" in err) == (3, True)
+    assert {row["status"] for row in table(tmp_path / "out")} == {"waiting"}
+    assert dem("sweep", case, "-o", tmp_path / "out", "-j", 1)[0] == 0
+    assert tables(tmp_path / "whole") == tables(tmp_path / "out")
 
 
 @pytest.mark.parametrize(
