@@ -73,6 +73,8 @@ def command(
 
     started = time.perf_counter()
     part = sharded(shard)
+    if fresh and shard:
+        raise UsageError("--fresh with --shard would throw away the runs of the other shards; give another DIR with -o")
     loaded = api.load_case(case, overrides)
     plan = planned(loaded)
     folder = output or Path("results") / f"{loaded.path.stem}_sweep"
@@ -153,6 +155,7 @@ class Running:
 
     def all(self, do: Spread, retry: bool) -> dict[str, Any]:
         """Every run that is not there yet, then the tables; what an interrupt leaves is said and kept."""
+        from dem_cli.sweep.folder import tables_alone
         from dem_cli.sweep.run import finished, solved, tidy
 
         first, step = self.part
@@ -173,7 +176,7 @@ class Running:
                 console.note(f"{len(self.known):,} runs are kept; the same command goes on from there", self.quiet)
                 raise
             finally:
-                with interrupts.shielded():
+                with interrupts.shielded(), tables_alone(self.folder):
                     if len(self.known) < self.count:  # others' runs, as far as they are
                         self.known = finished(self.sweep) | self.known
                     found = self.write()

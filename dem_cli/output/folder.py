@@ -287,14 +287,17 @@ def abandoned(folder: Path) -> bool:
     return free
 
 
-def locked(file: int) -> bool:
-    """Takes the lock, which the system frees when its owner dies; False where somebody has it."""
+def locked(file: int, shared: bool = False) -> bool:
+    """Takes the lock, which the system frees when its owner dies; False where somebody has it.
+
+    shared: others who share it may have it as well.
+    """
     try:
         import fcntl
     except ImportError:  # no locks here: nobody is known to have it
         return True
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:  # a file system without locks

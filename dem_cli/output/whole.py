@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import secrets
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from dem_cli.output.folder import write_error
+
+PART = ".part-"
 
 
 @contextmanager
@@ -17,7 +20,7 @@ def whole(path: Path) -> Iterator[Path]:
 
     Raises OutputError where the disk does not take it.
     """
-    part = path.with_name(f".part-{path.name}")
+    part = path.with_name(f"{PART}{secrets.token_hex(4)}-{path.name}")  # several may write: shards of a sweep
     try:
         yield part
         os.replace(part, path)

@@ -253,6 +253,34 @@ def test_shards_share_a_folder(case, tmp_path):
     assert code == 0
     assert tables(tmp_path / "whole") == tables(tmp_path / "parts")
     assert dem("sweep", case, "--shard", "3/2")[0] == 2
+    code, _, err = dem("sweep", case, "-o", tmp_path / "parts", "--shard", "1/2", "--fresh")
+    assert (code, "the other shards" in err) == (2, True)
+
+
+def test_shards_that_end_at_one_time(case, tmp_path):
+    """Each writes the tables of all; the last one has all runs."""
+    dem("sweep", case, "-o", tmp_path / "whole", "-j", 1)
+    every = [start(case, tmp_path / "parts", "-j", "1", "--shard", f"{i}/3") for i in (1, 2, 3)]
+    assert [shard.wait() for shard in every] == [0, 0, 0]
+    assert tables(tmp_path / "whole") == tables(tmp_path / "parts")
+
+
+def test_a_whole_sweep_waits_for_no_shard(case, tmp_path):
+    from dem_cli.sweep.folder import opened
+
+    with opened(tmp_path / "out", False, False, "-1of2"), opened(tmp_path / "out", False, False, "-2of2"):
+        code, _, err = dem("sweep", case, "-o", tmp_path / "out", "--fresh")
+    assert (code, "another sweep is writing" in err) == (2, True)
+
+
+def test_files_of_several_writers_are_whole(tmp_path):
+    from dem_cli.output.whole import whole
+
+    with whole(tmp_path / "table.csv") as one, whole(tmp_path / "table.csv") as other:
+        one.write_text("one")
+        other.write_text("other")
+    assert (tmp_path / "table.csv").read_text() == "one"
+    assert [path.name for path in tmp_path.iterdir()] == ["table.csv"]
 
 
 def test_two_sweeps_do_not_write_to_one_folder(case, tmp_path):
