@@ -11,6 +11,7 @@ import numpy as np
 from dem_cli.case.words import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 
+MOST = 1_000_000  # runs: more are a slip, or a case for several sweeps
 EVEN = frozenset(("from", "to", "count", "log"))
 Fractions = np.ndarray  # (n,), in (0, 1)
 
@@ -46,6 +47,8 @@ def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
     low, high, count, log = form["from"], form["to"], form.get("count"), form.get("log", False)
     if not isinstance(count, int) or isinstance(count, bool) or count < 2:
         raise _wrong(path, "'count' must be a whole number ≥ 2")
+    if count > MOST:
+        raise _wrong(path, f"count = {count} is not allowed; at most {MOST:,}")
     if not isinstance(log, bool):
         raise _wrong(path, f"log = {show(log)} is not allowed; must be true or false")
     if log and not (low > 0 and high > 0):

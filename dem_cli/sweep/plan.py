@@ -7,17 +7,19 @@ lists side by side), each of those with every point of the Latin hypercube. Keys
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from itertools import product
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, product
+from math import prod
 from typing import Any, NamedTuple
 
 from dem_cli.case.overrides import Override, key_path
 from dem_cli.case.sweep import Sweep
 from dem_cli.case.words import listing, show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
-from dem_cli.sweep.forms import DRAWN, EVEN, drawn, even, latin_hypercube
+from dem_cli.sweep.forms import DRAWN, EVEN, MOST, drawn, even, latin_hypercube
 
 NAME = "name"  # of a [[sweep.run]]: a label, no key of the case
+COLUMNS = (NAME, "run", "status", "reason")  # of the table, which no axis of bundles is called
 LEAVE_OUT = Override("sweep", ("sweep",), None)  # a run is one case
 
 
@@ -62,10 +64,13 @@ def plan_of(table: Sweep, seed: int) -> Plan:
     """
     axes, samples = _axes(table)
     for axis, names in table.bundle.items():
+        if axis in COLUMNS:
+            raise _wrong(("sweep", "bundle", axis), f"'{axis}' is a column of the table already; call it otherwise")
         axes.setdefault(axis, [_bundled(table, axis, name, ("sweep", "bundle", axis)) for name in names])
     if not axes and not samples and not table.run:
         message = "nothing to be changed: give it keys of the case, with their values"
         raise CaseError([CaseProblem(("sweep",), message, at_key=True)])
+    _check_number(max(len(table.run), 1), axes, table.zip, table.samples or 1)
     drawn_points = _drawn_points(samples, table.samples, seed)
     runs = []
     for row in [_row(table, number, row) for number, row in enumerate(table.run)] or [()]:
@@ -74,6 +79,7 @@ def plan_of(table: Sweep, seed: int) -> Plan:
         for point, sample in product(points, drawn_points):
             changes = (*row, *point, *(change for change in sample if change.key not in said))
             runs.append(Run(changes, bool(sample)))
+    _check_order(runs)
     keys = dict.fromkeys(change.key for run in runs for change in run.changes)
     return Plan(tuple(sorted(keys, key=lambda key: key != NAME)), tuple(runs))  # the label comes first
 
@@ -86,12 +92,38 @@ def show_value(value: Any) -> str:
 Axes = dict[str, list[Change]]
 
 
+def _check_number(rows: int, axes: Axes, side_by_side: bool, points: int) -> None:
+    """Raises CaseError where there would be too many runs."""
+    lengths = [len(values) for values in axes.values()] or [1]
+    count = rows * points * (max(lengths) if side_by_side else prod(lengths))
+    if count > MOST:
+        raise _wrong(("sweep",), f"asks for {count:,} runs; at most {MOST:,}")
+
+
+def _check_order(runs: Sequence[Run]) -> None:
+    """Raises CaseError where one change of a run undoes another, so that the table would not say what was run."""
+    seen = set()
+    for run in runs:
+        for bundled in (True, False):
+            group = [o for change in run.changes if change.bundled is bundled for o in change.overrides]
+            paths = tuple(override.path for override in group)
+            if paths in seen:
+                continue
+            seen.add(paths)
+            for earlier, later in combinations(group, 2):
+                if earlier.path[: len(later.path)] == later.path:
+                    here, before = dotted(later.path), dotted(earlier.path)
+                    raise _wrong(later.place, f"{here} is changed here, and {before} before: that would be lost")
+
+
 def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any]]]]:
     """Values of the keys of the grid, and the distributions of those that are drawn."""
     axes: Axes = {}
     samples = {}
     for path, form in _leaves(("sweep",), table.model_extra or {}):
         key = dotted(path[1:]) if len(path) > 2 else str(path[1])
+        if key in axes or key in samples:
+            raise _wrong(path, f"{key} has its values already, further up")
         if isinstance(form, Mapping) and form.keys() & DRAWN.keys():
             samples[key] = (path, form)
             continue

@@ -139,3 +139,29 @@ def test_even_distances():
 )
 def test_mistakes(table, message):
     assert message in problem(**table)
+
+
+def test_a_change_that_undoes_another_is_refused():
+    assert "has its values already" in problem(**{FRICTION: [0.5], "joints": {"dry": {"friction": [0.6]}}})
+    lost = "joints.dry.friction is changed here, and joints.dry.friction before: that would be lost"
+    assert lost in problem(**{FRICTION: [0.5, 0.6], "joints.\"dry\".friction": [0.3]})
+    assert "structure.0 is changed here, and structure.0.courses before" in problem(
+        **{COURSES: [2], "structure.0": [{"kind": "column"}]}
+    )
+    bundles = {"wall": {"low": {COURSES: 2}}, "soil": {"soft": {COURSES: 3}}}
+    assert "structure.0.courses before" in problem(bundle=bundles)
+    parts = {"structure.0": [{"kind": "column"}], COURSES: [2, 3]}  # first the whole, then a part of it
+    assert len(values(**parts)) == 2
+    assert len(values(bundle={"wall": {"low": {COURSES: 2}}}, **{COURSES: [4, 5]})) == 2
+
+
+@pytest.mark.parametrize("axis", ["run", "status", "reason", "name"])
+def test_columns_of_the_table_are_no_axes(axis):
+    assert "is a column of the table already" in problem(bundle={axis: {"low": {COURSES: 2}}})
+
+
+def test_too_many_runs_are_refused_before_they_fill_the_memory():
+    many = {"from": 0.0, "to": 1.0, "count": 1000}
+    assert "asks for 1,000,000,000 runs" in problem(**{FRICTION: many, COURSES: many, "title": many})
+    assert "at most 1,000,000" in problem(**{FRICTION: many | {"count": 10**9}})
+    assert "asks for 1,000,000,000 runs" in problem(samples=10**9, **{FRICTION: {"uniform": [0.1, 0.2]}})
