@@ -25,8 +25,9 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     The page is one file that loads nothing: answer, warnings, audit, a view of the structure to turn and play, charts,
     tables, the case.
     """
+    from dem_cli.output.whole import write_text
     from dem_cli.post.table import is_sweep
-    from dem_cli.report import page, run, sweep
+    from dem_cli.report import run, sweep
 
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder")
@@ -38,7 +39,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     else:
         summary = _summary(folder)
         text = run.page(folder, summary, said(summary))
-    page.write(target, text)
+    write_text(target, text)
     console.show(f"{target}  ({len(text.encode()) / 1e6:.1f} MB)")
     if show:
         webbrowser.open(target.resolve().as_uri())

@@ -167,12 +167,13 @@ def write_page(page: Path, records: list[Record]) -> None:
 def put(file: Path, text: str) -> None:
     """Write a file whole. Raises OutputError."""
     from dem_cli.output.folder import write_error
+    from dem_cli.output.whole import write_text
 
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
         raise write_error(error, file) from None
+    write_text(file, text)
 
 
 def code_of(records: Sequence[Record]) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -17,6 +16,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.store import IN_SECONDS, block_fields, contact_fields
+from dem_cli.output.whole import write_text
 
 Fields = Mapping[str, np.ndarray]
 _POLYGON = 7
@@ -36,7 +36,7 @@ def write_geometry(path: Path, model: Model) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix == ".vtu":
-            _write_whole(path, _grid(model, vertices, {}, block_fields(model), {}))
+            write_text(path, _grid(model, vertices, {}, block_fields(model), {}))
         else:
             _write_foreign(path, model, vertices)
     except OSError as error:
@@ -57,19 +57,13 @@ def export_pvd(results: Results, folder: Path) -> list[Path]:
                 f"contacts_{i:0{digits}}.vtp": _points(frame),
             }
             for name, text in files.items():
-                _write_whole(folder / name, text)
+                write_text(folder / name, text)
                 series[name.split("_")[0]].append(name)
         for kind, names in series.items():
-            _write_whole(folder / f"{kind}.pvd", _collection(names, times(results)))
+            write_text(folder / f"{kind}.pvd", _collection(names, times(results)))
     except OSError as error:
         raise write_error(error, folder) from None
     return [folder / f"{kind}.pvd" for kind in series]
-
-
-def _write_whole(path: Path, text: str) -> None:
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(text, encoding="utf-8", newline="\n")
-    os.replace(part, path)
 
 
 def _write_foreign(path: Path, model: Model, vertices: np.ndarray) -> None:

@@ -9,13 +9,11 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import os
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from dem_cli.output.folder import write_error
 from dem_cli.output.summary import plain
 
 ASSETS = Path(__file__).parent / "assets"
@@ -68,15 +66,3 @@ def _hash(text: str) -> str:
 def asset(name: str) -> str:
     """A file of this package."""
     return (ASSETS / name).read_text(encoding="utf-8")
-
-
-def write(path: Path, text: str) -> None:
-    """The whole page under its name, or nothing. Raises OutputError."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8", newline="\n")
-        os.replace(part, path)
-    except OSError as error:
-        raise write_error(error, path) from None
-    finally:
-        part.unlink(missing_ok=True)
