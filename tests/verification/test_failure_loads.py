@@ -25,6 +25,10 @@ MODES = {
     "wall_21_mu065": "mixed",
     "wall_21_mu075": "rocking",
     "wall_21_mu100": "rocking",
+    "arch_21": "rocking",
+    "arch_21_mu040": "mixed",  # hinges, and a springing that slides
+    "arch_coursed_buttresses_mu030": "sliding",
+    "arch_coursed_buttresses_mu050": "mixed",
     "column_14": "rocking",
     "sliding_block": "sliding",
     "trilith": "rocking",
