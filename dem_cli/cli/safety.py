@@ -47,7 +47,7 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
         rows.append(("divided by F", ", ".join(summary["reduce"])))
     elif stands is not None and fails is not None:
         rows.append(("varied", f"{name}, stands {'above' if stands > fails else 'below'}"))
-    if summary.get("load"):
+    if summary.get("load") and summary["vary"] != "analysis.load":
         rows.append(("under", f"live load × {summary['load']:g}"))
     return rows
 

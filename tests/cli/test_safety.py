@@ -33,6 +33,15 @@ def test_an_answer_with_its_pictures(tmp_path):
     assert dem("run", INCLINE, "-o", tmp_path / "out", "-q").exit_code == 0  # replaces all that dem wrote
 
 
+def test_a_load_that_is_varied_is_no_load_that_stays(tmp_path):
+    words = ("--set", "analysis.vary=analysis.load", "--set", "analysis.between=[0.1, 2.0]")
+    words += ("--set", "reference=[]", "--set", "analysis.load=0.2")
+    done = dem("run", INCLINE, "-o", tmp_path / "out", "-q", *words)
+    assert done.exit_code == 0, done.output
+    assert "varied         analysis.load, stands below" in done.output
+    assert "under" not in done.output
+
+
 def test_results_hold_the_structure_next_to_failure(tmp_path):
     done = dem("run", COLUMN, "-o", tmp_path / "out", "--json", "-q")
     summary, results = json.loads(done.stdout), read(tmp_path / "out")
