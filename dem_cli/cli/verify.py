@@ -73,7 +73,7 @@ def command(
         raise UsageError("--write needs all references of a case; leave out --shelf")
     remarks = left_out(len(found.without), slow)
     records = on_shelves(sorted(run_all(cases, costs, jobs, quiet), key=lambda record: record["case"]), shelves)
-    took = time.perf_counter() - began
+    show(records, time.perf_counter() - began, as_json)  # before anything that a full disk can stop
     if write:
         write_page(write, records)
         remarks.append(f"written: {write}, {write.with_suffix('.json')}")
@@ -81,7 +81,6 @@ def command(
         from dem_cli.verify.junit import junit
 
         put(junit_file, junit(records))
-    show(records, took, as_json)
     for remark in remarks:
         console.note(remark, quiet)
     return code_of(records)

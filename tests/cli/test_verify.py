@@ -188,6 +188,14 @@ def test_junit(folder):
     assert "denstiy" in tests["cases/bad.toml", "run"].find("error").get("message")
 
 
+def test_answers_are_shown_even_where_no_file_can_be_written(folder):
+    write(folder, good=GOOD)
+    (folder / "file").write_text("")
+    result = verify("--junit", "file/junit.xml", code=2)
+    assert "1 passed" in result.stdout
+    assert "cannot write results" in result.stderr
+
+
 def test_page_and_its_record(folder):
     write(folder, good=GOOD, missed=MISSED, stands=STANDS)
     verify("--write", "docs/verification.md")
@@ -218,7 +226,7 @@ def test_only_what_changed(folder):
     write(folder, good=f"# a comment\n{GOOD}")
     assert "nothing changed" in verify("--changed").stderr
     write(folder, good=GOOD.replace("0.001", "0.002"), missed=MISSED)
-    found, cases = answers("--changed", "--write", "docs/verification.md")
+    _, cases = answers("--changed", "--write", "docs/verification.md")
     assert sorted(cases) == ["good", "missed"]
     assert "nothing changed" in verify("--changed").stderr
 
