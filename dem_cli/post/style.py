@@ -62,16 +62,17 @@ def canvas() -> Iterator[Callable[..., Any]]:
     try:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
+
+        from dem_cli.post import verbatim
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
 
     def make(**options: Any) -> Any:
-        drawn = Figure(layout="constrained", **options)
+        drawn = verbatim.VerbatimFigure(layout="constrained", **options)
         FigureCanvasAgg(drawn)
         return drawn
 
-    with matplotlib.rc_context(_STYLE), warnings.catch_warnings():
+    with matplotlib.rc_context(_STYLE | verbatim.STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # in the font: a box stands there
         yield make
 
