@@ -116,6 +116,16 @@ def test_pictures_on_demand(tmp_path):
         assert (folder / name).read_bytes()[:4] == b"\x89PNG"
 
 
+def test_a_picture_that_cannot_be_drawn_costs_no_results(tmp_path, monkeypatch, capsys):
+    def fault(*_):
+        raise ZeroDivisionError("in a picture")
+
+    monkeypatch.setattr("dem_cli.post.plots.draw_all", fault)
+    summary, folder = run(tmp_path, solver(), plot=True)
+    assert (summary["status"], (folder / "results.h5").is_file()) == ("ok", True)
+    assert "no pictures: internal error: ZeroDivisionError: in a picture" in capsys.readouterr().err
+
+
 def test_monitor_names_differ(tmp_path):
     tables = ('block = "base"\ncomponent = "x"', 'block = "base"', "point = [0.5, 0.1]")
     more = "".join(f"[[monitor]]\n{table}\n" for table in tables)
