@@ -65,7 +65,9 @@ class SweepTable:
         for name in (*ANSWERS, *peaks, *values):
             if any(value is not None for value in self.columns.get(name, ())):
                 return name
-        raise UsageError(f"{self.folder / CSV}: no run has an answer yet")
+        why = "no column is the answer; choose one with -y (--list shows all)" if "ok" in self.columns["status"] else (
+            "no run has an answer yet")  # fmt: skip
+        raise UsageError(f"{self.folder / CSV}: {why}")
 
     def ranked(self) -> list[str]:
         """Swept keys with more than one value: numbers before words, most values first."""
@@ -83,7 +85,9 @@ def read_sweep(folder: Path) -> SweepTable:
     try:
         facts = json.loads((folder / FACTS).read_text(encoding="utf-8")) if (folder / FACTS).is_file() else {}
         with (folder / CSV).open(encoding="utf-8", newline="") as file:
-            names, *rows = list(csv.reader(file))
+            names, *rows = list(csv.reader(file)) or [[]]
+    except FileNotFoundError:
+        raise UsageError(f"{folder}: no sweep.csv yet; `dem sweep` writes it, the same command goes on") from None
     except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CSV}: not a readable table of a sweep ({error})") from None
     whole = all(len(row) == len(names) for row in rows)

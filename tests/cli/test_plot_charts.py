@@ -282,3 +282,20 @@ def test_one_picture(runs, tmp_path):
     target = tmp_path / "energy.pdf"
     assert dem(runs[0], "--picture", "energy", "-o", target) == (0, f"{target}\n")
     assert target.read_bytes().startswith(b"%PDF-")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("run,a,status,reason,blocks\nr1,1,ok,,2\nr2,2,ok,,2\n", "no column is the answer; choose one with -y"),
+        ("run,a,status,reason,blocks\nr1,1,waiting,,\n", "no run has an answer yet"),
+        ("", "not a table of a sweep"),
+        (None, "no sweep.csv yet"),
+    ],
+)
+def test_a_sweep_without_an_answer(tmp_path, text, says):
+    folder = write_sweep(tmp_path / "s", text or "", ("a",))
+    if text is None:
+        (folder / "sweep.csv").unlink()
+    code, output = dem(folder)
+    assert (code, says in output) == (2, True)
