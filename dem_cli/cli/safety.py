@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -42,7 +43,7 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
     if value is None and known:
         rows.append((name, ", ".join(known)))
     if of_strength and str(summary["status"]).startswith(NO_CHANGE):
-        rows.append(("strength", "does not decide: geometry and loads do"))
+        rows.append(("strength", _no_change(stands, fails)))
     if of_strength:
         rows.append(("divided by F", ", ".join(summary["reduce"])))
     elif stands is not None and fails is not None:
@@ -50,6 +51,15 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
     if summary.get("load") and summary["vary"] != "analysis.load":
         rows.append(("under", f"live load × {summary['load']:g}"))
     return rows
+
+
+def _no_change(stands: float | None, fails: float | None) -> str:
+    """What it says that all factors end alike: nothing, unless all that are sensible were tried."""
+    from dem_cli.solve.safety_table import FACTORS
+
+    if (stands or 0.0) >= FACTORS[1] or (fails or math.inf) <= FACTORS[0]:
+        return "does not decide: geometry and loads do"
+    return f"decides {'above' if fails is None else 'below'} analysis.between, if at all: give it a wider range"
 
 
 def _needed(summary: Mapping[str, Any]) -> Rows:

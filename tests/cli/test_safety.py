@@ -42,6 +42,20 @@ def test_a_load_that_is_varied_is_no_load_that_stays(tmp_path):
     assert "under" not in done.output
 
 
+@pytest.mark.parametrize(
+    ("between", "says"),
+    [
+        ("[3.0, 4.0]", "decides below analysis.between"),
+        ("[1.0, 2.0]", "decides above analysis.between"),
+    ],
+)
+def test_a_range_without_the_answer_says_nothing_of_strength(tmp_path, between, says):
+    words = ("--set", f"analysis.between={between}", "--set", "reference=[]")
+    done = dem("run", INCLINE, "-o", tmp_path / "out", "-q", *words)  # its factor is 2.4
+    assert says in done.output
+    assert "does not decide" not in done.output
+
+
 def test_results_hold_the_structure_next_to_failure(tmp_path):
     done = dem("run", COLUMN, "-o", tmp_path / "out", "--json", "-q")
     summary, results = json.loads(done.stdout), read(tmp_path / "out")
