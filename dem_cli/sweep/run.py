@@ -13,7 +13,7 @@ from dem_cli import api
 from dem_cli.case.overrides import Override
 from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import case_text
-from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.output.folder import OWN_KEYS, SUMMARY, abandoned, write_error
 from dem_cli.sweep.identity import facts, name_of
 from dem_cli.sweep.plan import Plan, Run
@@ -49,11 +49,13 @@ class Sweep(NamedTuple):
 Say = Callable[[int, int], None]  # is told how many runs are done, and how many of them failed
 
 
-def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[str | Override], light: bool) -> Sweep:
-    """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it.
+def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Override], light: bool) -> Sweep:
+    """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
+    one that is given is changed by all of them.
 
     given: overrides of the whole sweep. light: nothing is kept that the table of answers does not need.
     """
+    _in_vain(given, plan)
     extra = _light(loaded, plan) if light else ()
     jobs: list[Job | None] = []
     wrong: dict[int, CaseError] = {}
@@ -73,6 +75,14 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[str |
     if mistaken:
         raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
     return Sweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
+
+
+def _in_vain(given: Sequence[Override], plan: Plan) -> None:
+    """Raises UsageError where every run changes what the command line gave."""
+    swept = set.intersection(*({tuple(map(str, change.path)) for change in run.overrides} for run in plan.runs))
+    for override in given:
+        if tuple(map(str, override.path)) in swept - {("sweep",)}:
+            raise UsageError(f"--set {override.text}: every run of the sweep changes it; change [sweep] instead")
 
 
 def _buildable(loaded: LoadedCase, first: Job | None) -> None:

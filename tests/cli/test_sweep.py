@@ -211,6 +211,13 @@ def test_a_case_without_a_model_is_refused_at_once(case, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_what_every_run_changes_cannot_be_set(case, tmp_path):
+    code, _, err = dem("sweep", case, "--dry-run", "--set", "joints.dry.friction=0.5")
+    assert (code, "every run of the sweep changes it" in err) == (2, True)
+    code, out, _ = dem("sweep", case, "--dry-run", "--set", "gravity=9.8")
+    assert (code, len(out.splitlines())) == (0, 7)
+
+
 def test_a_folder_of_something_else_is_refused(case, tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     code, _, err = dem("sweep", case, "-o", tmp_path)
