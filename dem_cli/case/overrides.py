@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import tomli
+from pydantic import BaseModel
 
 from dem_cli.case.words import listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
@@ -40,6 +41,27 @@ def key_path(text: str) -> KeyPath:
         return single_path(tomli.loads(f"{text} = 0"))
     except tomli.TOMLDecodeError:
         return ()
+
+
+def value_at(table: Any, path: KeyPath) -> Any:
+    """The value at a key path of a case (or of any table of it); None where there is none."""
+    try:
+        for key in path:
+            table = below(table, str(key))
+    except KeyError:
+        return None
+    return table if path else None
+
+
+def below(table: Any, key: str) -> Any:
+    """What a table or list of a validated case holds under one key. Raises KeyError where it has no such key."""
+    if isinstance(table, BaseModel) and key in type(table).model_fields:
+        return getattr(table, key)
+    if isinstance(table, Mapping) and key in table:
+        return table[key]
+    if isinstance(table, tuple) and key.isdigit() and int(key) < len(table):
+        return table[int(key)]
+    raise KeyError(key)
 
 
 def single_path(table: dict[str, Any]) -> KeyPath:

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from dem_cli.case.messages import problems_from
+from dem_cli.case.overrides import below, key_path
 from dem_cli.case.schema import Case
 from dem_cli.case.words import nearest
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, plain
 
 WHERE: KeyPath = ("analysis", "vary")
-PARTS = re.compile(r'"([^"]*)"|([^."]+)')  # of a key path; names with dots are quoted
 NO_STRUCTURE = ("title", "seed", "dem", "output", "monitor", "reference", "sweep", "calibration", "motion", "damping")
 
 
 def parts_of(text: str) -> list[str]:
     """structure.0.ring -> ["structure", "0", "ring"]."""
-    return [quoted or plain for quoted, plain in PARTS.findall(text)]
+    return list(map(str, key_path(text)))
 
 
 def value_at(case: Case, text: str) -> float | int:
@@ -29,14 +28,10 @@ def value_at(case: Case, text: str) -> float | int:
         raise _wrong(f"'{text}' is not a key path, such as structure.0.ring")
     node: Any = case
     for depth, part in enumerate(parts_of(text)):
-        if isinstance(node, BaseModel) and part in type(node).model_fields:
-            node = getattr(node, part)
-        elif isinstance(node, Mapping) and part in node:
-            node = node[part]
-        elif isinstance(node, tuple) and part.isdigit() and int(part) < len(node):
-            node = node[int(part)]
-        else:
-            raise _wrong(f"'{text}' is not in the case: {_missing(node, part, depth, text)}")
+        try:
+            node = below(node, part)
+        except KeyError:
+            raise _wrong(f"'{text}' is not in the case: {_missing(node, part, depth, text)}") from None
     first = parts_of(text)[0]
     if first in NO_STRUCTURE or (first == "analysis" and text != "analysis.load"):
         raise _wrong(f"'{text}' is not allowed; it changes neither structure nor load")

@@ -47,14 +47,12 @@ def of_runs(
     names = _names(folders)
     members = [Member(name, name, run) for name, run in zip(names, results)]
     if by:
-        family = of_key(by[0], describe).label()
+        family = ", ".join(of_key(key, describe).label() for key in by)
         values = [tuple(_case_value(folder, key) for key in by) for folder in folders]
         members = [
             Member(", ".join(map(shown, row)), row[0] if len(by) == 1 else row, run)
             for row, run in zip(values, results)
         ]
-        if len(by) > 1:
-            family = ", ".join(of_key(key, describe).label() for key in by)
     titles = list(dict.fromkeys(str(run.summary.get("title", "")) for run in results))
     draw_curves(members, x, ys, target, paper, titles[0] if len(titles) == 1 else "", family)
 
@@ -83,18 +81,15 @@ def _names(folders: Sequence[Path]) -> list[str]:
 def _case_value(folder: Path, key: str) -> Any:
     """Value of a key in the effective case of a run. Raises UsageError."""
     from dem_cli import api
-    from dem_cli.case.overrides import key_path
+    from dem_cli.case.overrides import key_path, value_at
     from dem_cli.output.store import CASE
 
     try:
-        found: Any = api.load_case(folder / CASE).case.model_dump(by_alias=True)
+        found = value_at(api.load_case(folder / CASE).case, key_path(key))
     except DemError as error:
         raise UsageError(f"--by {key}: the case of {folder} cannot be read ({str(error).splitlines()[0]})") from None
-    for step in key_path(key):
-        try:
-            found = found[int(step) if isinstance(found, (list, tuple)) else step]
-        except (KeyError, IndexError, TypeError, ValueError):
-            raise UsageError(f"--by {key}: the case of {folder} has no such key") from None
+    if found is None:
+        raise UsageError(f"--by {key}: the case of {folder} has no such key")
     return found if isinstance(found, (int, float, str, bool)) else str(found)
 
 
@@ -158,7 +153,7 @@ def _quantities(table: SweepTable) -> dict[str, Quantity]:
 def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
     """Rows whose runs kept their results, and where these are."""
     from dem_cli.output.store import RESULTS
-    from dem_cli.post.table import RUNS
+    from dem_cli.output.sweeps import RUNS
 
     for i, run in enumerate(table.columns["run"]):
         folder = table.folder / RUNS / run

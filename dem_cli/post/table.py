@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
+from dem_cli.output.sweeps import CSV, FACTS, FIRST
 from dem_cli.post.labels import nearest, plain, unknown
 
-CSV, FACTS, RUNS = "sweep.csv", "sweep.json", "runs"
 ANSWERS = (  # what is drawn where nobody says: the first of these that has values
     "failure_load", "safety_factor", "critical_value", "median", "collapsed", "collapse_time",
 )  # fmt: skip
-_BEFORE = ("run", "status", "reason")
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class SweepTable:
     @property
     def names(self) -> list[str]:
         """All columns but those that only tell runs apart."""
-        return [name for name in self.columns if name not in _BEFORE]
+        return [name for name in self.columns if name not in FIRST]
 
     @property
     def count(self) -> int:

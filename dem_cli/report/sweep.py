@@ -11,7 +11,8 @@ from urllib.parse import quote
 
 from dem_cli.errors import UsageError
 from dem_cli.output.store import CASE
-from dem_cli.post.table import ANSWERS, FACTS, RUNS, SweepTable, distinct, read_sweep, shown
+from dem_cli.output.sweeps import FACTS, RUNS
+from dem_cli.post.table import ANSWERS, SweepTable, distinct, read_sweep, shown
 from dem_cli.report.facts import BAD, GOOD, LOOK, Answer
 from dem_cli.report.page import render
 

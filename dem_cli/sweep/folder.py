@@ -14,11 +14,9 @@ from typing import Any
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import locked, write_error
 from dem_cli.output.store import CASE
+from dem_cli.output.sweeps import CSV, FACTS, RUNS, SQLITE
 from dem_cli.output.whole import PART, write_text
-from dem_cli.sweep.run import RUNS
-from dem_cli.sweep.table import CSV, SQLITE
 
-FACTS = "sweep.json"
 LOCK, TABLES_LOCK = ".sweep{}.lock", ".tables.lock"
 STALE = 3600.0  # s after which a half-written table is one that a killed sweep left
 OURS = frozenset((FACTS, CASE, CSV, SQLITE, RUNS, "sweep.png", "report.html"))

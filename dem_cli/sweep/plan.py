@@ -16,10 +16,11 @@ from dem_cli.case.overrides import Override, key_path
 from dem_cli.case.sweep import Sweep
 from dem_cli.case.words import listing, show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
+from dem_cli.output.sweeps import FIRST
 from dem_cli.sweep.forms import DRAWN, EVEN, MOST, drawn, even, latin_hypercube
 
 NAME = "name"  # of a [[sweep.run]]: a label, no key of the case
-COLUMNS = (NAME, "run", "status", "reason")  # of the table, which no axis of bundles is called
+COLUMNS = (NAME, *FIRST)  # of the table, which no axis of bundles is called
 LEAVE_OUT = Override("sweep", ("sweep",), None)  # a run is one case
 
 

@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dem_cli import api
-from dem_cli.case.overrides import Override
+from dem_cli.case.overrides import Override, key_path, value_at
 from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.output.folder import OWN_KEYS, SUMMARY, abandoned, write_error
+from dem_cli.output.sweeps import RUNS
 from dem_cli.sweep.identity import facts, name_of
 from dem_cli.sweep.plan import Plan, Run
 from dem_cli.sweep.pool import Died
 
-RUNS = "runs"
 FAILED, WAITING = "failed", "waiting"
 FEW = 5  # mistakes that are listed
 LIGHT = (("output.frames", 0), ("analysis.follow", 0.0))  # what a table of answers does not need
@@ -46,9 +46,6 @@ class Sweep(NamedTuple):
     base: dict[str, Any]  # value in the file of each key that some runs leave alone
 
 
-Say = Callable[[int, int], None]  # is told how many runs are done, and how many of them failed
-
-
 def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Override], light: bool) -> Sweep:
     """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
     one that is given is changed by all of them.
@@ -69,7 +66,7 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Overr
             jobs.append(None)
             continue
         name = name_of(facts(case, case_text(case)))
-        jobs.append(Job(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))  # type: ignore[arg-type]
+        jobs.append(Job(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))
     _buildable(loaded, next(job for job in jobs if job is not None) if len(wrong) < len(jobs) else None)
     mistaken = _mistaken(plan.runs, wrong)
     if mistaken:
@@ -122,21 +119,14 @@ def _base(loaded: LoadedCase, plan: Plan) -> dict[str, Any]:
     for key in plan.keys:
         if all(key in run.values for run in plan.runs):
             continue
-        node: Any = loaded.case
-        for name in key.split("."):
-            if isinstance(node, Mapping):
-                node = node.get(name)
-            elif isinstance(node, tuple):
-                node = node[int(name)] if name.isdigit() and int(name) < len(node) else None
-            else:
-                node = getattr(node, name, None)
-        if isinstance(node, (int, float, str, bool)):
-            found[key] = node
+        value = value_at(loaded.case, key_path(key))
+        if isinstance(value, (int, float, str, bool)):
+            found[key] = value
     return found
 
 
 def finished(sweep: Sweep) -> dict[str, Summary]:
-    """Summaries, by name of the run, that are there already; leftovers of killed runs are removed."""
+    """Summaries, by name of the run, that are there already."""
     found: dict[str, Summary] = {}
     for job in sweep.jobs:
         if job is not None and job.id not in found:

@@ -12,12 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.output.summary import plain
+from dem_cli.output.sweeps import CSV, FIRST, SQLITE
 from dem_cli.output.whole import whole
 from dem_cli.sweep.plan import show_value
 from dem_cli.sweep.run import FAILED, WAITING, Summary, Sweep
 
-CSV, SQLITE = "sweep.csv", "sweep.sqlite"
-FIRST = ("run", "status", "reason")
 ELSEWHERE = frozenset(("title", "version", "kind", "status", "reason", "traceback", "skipped", "search", "threads",
                        "runs_done_before"))  # fmt: skip
 Row = dict[str, Any]
