@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 @cache
 def make_case_model() -> type[Case]:
     """The class of case files with every registered structure, law and analysis, and all other tables."""
+    from dem_cli.analyses.registry import ANALYSES
     from dem_cli.calibrate.table import Calibration
     from dem_cli.laws.registry import LAWS
     from dem_cli.motion.table import MOTIONS
-    from dem_cli.solve.damping import DampingTable
-    from dem_cli.solve.initial import Initial
-    from dem_cli.solve.registry import ANALYSES
     from dem_cli.structures.registry import GENERATORS
+    from dem_cli.tables.damping import DampingTable
+    from dem_cli.tables.initial_state import InitialState
 
     return case_model(
         {kind: generator.parameters for kind, generator in GENERATORS.items()},
@@ -33,7 +33,7 @@ def make_case_model() -> type[Case]:
         {kind: analysis.parameters for kind, analysis in ANALYSES.items()},
         Calibration,
         DampingTable,
-        Initial,
+        InitialState,
         MOTIONS,
     )
 
@@ -51,8 +51,8 @@ def build_model(loaded: LoadedCase) -> Model:
 
     Raises CaseError, with file and line, on bad geometry and unknown blocks.
     """
-    from dem_cli.model import validate
-    from dem_cli.model.assemble import assembly
+    from dem_cli.assembly import validate
+    from dem_cli.assembly.assemble import assembly
 
     found_odd: list[str] = []
     with loaded.located():

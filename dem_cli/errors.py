@@ -72,9 +72,7 @@ def dotted(path: KeyPath) -> str:
 
     A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
     """
-    return ".".join(
-        str(key) if BARE.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path
-    )
+    return ".".join(str(key) if BARE.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path)
 
 
 def plain(problem: CaseProblem) -> str:

@@ -49,9 +49,7 @@ class Known:
         return load / nearest - 1.0
 
 
-def _t21(
-    friction: float, load: float, source: str, upper: float | None = None, path: float | None = None
-) -> Known:
+def _t21(friction: float, load: float, source: str, upper: float | None = None, path: float | None = None) -> Known:
     name = f"T21 μ {friction:g}"
     return Known(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper, path)
 
@@ -100,11 +98,11 @@ class Nobody:
 
 def solve(case: Case, model: Model, observer: Any = None) -> dict[str, Any]:
     """The summary of a run; of a run that gave up, its status and message."""
+    from dem_cli.analyses.solve import solve
     from dem_cli.errors import SolverError
-    from dem_cli.solve.run import run
 
     try:
-        return run(case, model, observer or Nobody()).summary
+        return solve(case, model, observer or Nobody()).summary
     except SolverError as error:
         return {"status": str(error), "failure_load": None, "steps": None}
 

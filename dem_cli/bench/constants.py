@@ -10,7 +10,7 @@ from inspect import isfunction
 from types import ModuleType
 from typing import Any
 
-HOME = "dem_cli.solve.equilibrium"
+HOME = "dem_cli.statics.equilibrium"
 TOLERANCES = ("TOLERANCE", "GRAVITY_TOLERANCE")
 SAFETIES = ("RELAX_SAFETY", "CREEP_SAFETY", "COMBINED_SAFETY")
 
@@ -58,7 +58,7 @@ def changed(values: dict[str, Any]) -> Iterator[None]:
 
 
 def _home() -> ModuleType:
-    import_module("dem_cli.solve.pushover")  # brings everything that a failure search needs
+    import_module("dem_cli.analyses.pushover")  # brings everything that a failure search needs
     return import_module(HOME)
 
 

@@ -11,9 +11,9 @@ from typing import Any
 
 from dem_cli.bench.cases import KNOWN, SIZES, Known, Nobody, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, seconds
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
@@ -72,24 +72,24 @@ def features(name: str) -> tuple[Feature, ...]:
     )
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """Kernels first, then whole runs."""
-    found = Found()
+    found = GroupResult()
     _kernels(options, found)
     _runs(options, found)
     return found
 
 
-def _kernels(options: Options, found: Found) -> None:
+def _kernels(options: Options, found: GroupResult) -> None:
     """ns per point and step of three stepping loops in turn: bare, with ledger, with everything."""
-    rows: list[tuple[Known, str, str, Job, int]] = []
+    rows: list[tuple[Known, str, str, TimedTask, int]] = []
     for known in SIZES:
         if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
             for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
                 sim = simulation(known, kinematics)
                 restore, steps = partial(sim.restore, sim.save()), max(POINT_STEPS // len(sim.joints.kn), 10)
                 for name, loop in loops(sim).items():
-                    job = Job(_stepping(sim, loop, steps), restore)
+                    job = TimedTask(_stepping(sim, loop, steps), restore)
                     rows.append((known, kinematics, name, job, steps * len(sim.joints.kn)))
     for *_, job, _ in rows:
         job.once()  # compiles
@@ -105,10 +105,10 @@ def _kernels(options: Options, found: Found) -> None:
 def loops(sim: Any) -> dict[str, Callable]:
     """Stepping loops that do the same motion, by what they have."""
     from dem_cli.bench.bare import make_bare
+    from dem_cli.engine.simulation import compiled_advance
     from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
     from dem_cli.kernels.drift import drift_centroids, drift_corners
     from dem_cli.kernels.planar_forces import make_planar_forces
-    from dem_cli.solve.simulation import compiled_advance
 
     if sim.kinematics == "fixed":
         parts = (of_bodies(make_contact_forces(sim.law.function, integrates_gap=True)), drift_centroids)
@@ -127,8 +127,8 @@ def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
     )  # fmt: skip
 
 
-def _runs(options: Options, found: Found) -> None:
-    rows: list[tuple[str, Feature, Job]] = []
+def _runs(options: Options, found: GroupResult) -> None:
+    rows: list[tuple[str, Feature, TimedTask]] = []
     with tempfile.TemporaryDirectory() as folder:
         for name in QUICK_CASES if options.quick else CASES:
             for feature in features(name)[: 4 if options.quick else None]:
@@ -144,7 +144,7 @@ def _runs(options: Options, found: Found) -> None:
             found.notes.append(f"{feature.name}, {name}: left out, the run's summary has no {feature.shows}")
 
 
-def _run(known: Known, feature: Feature, folder: Path) -> Job:
+def _run(known: Known, feature: Feature, folder: Path) -> TimedTask:
     case, model = known.build(*feature.overrides)
 
     def run() -> dict[str, Any]:
@@ -156,16 +156,16 @@ def _run(known: Known, feature: Feature, folder: Path) -> Job:
         disk.writer.close(summary)
         return summary
 
-    return Job(run)
+    return TimedTask(run)
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """A table of kernels and one of runs."""
     kernels, runs = [r for r in records if r.axis == KERNEL], [r for r in records if r.axis == RUN]
     return [*KERNEL_TEXT, "", *_kernel_table(kernels), "", *RUN_TEXT, "", *_run_table(runs)]
 
 
-def _kernel_table(records: list[Record]) -> list[str]:
+def _kernel_table(records: list[Measurement]) -> list[str]:
     best = {(r.case, r.found["kinematics"], r.found["has"]): r.best for r in records}
     rows = []
     for case, kinematics in dict.fromkeys((r.case, r.found["kinematics"]) for r in records):
@@ -176,7 +176,7 @@ def _kernel_table(records: list[Record]) -> list[str]:
     return lines_of(head, rows)
 
 
-def _run_table(records: list[Record]) -> list[str]:
+def _run_table(records: list[Measurement]) -> list[str]:
     cases = list(dict.fromkeys(r.case for r in records))
     plain = {r.case: r.best for r in records if r.value == PLAIN}
     cells = {(r.value, r.case): f"{r.best / plain[r.case]:.2f} · {seconds(r.best)}" for r in records}

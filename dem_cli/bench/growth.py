@@ -8,9 +8,9 @@ from typing import Any
 from dem_cli.bench import draw
 from dem_cli.bench.cases import SIZES, Known, answer, solve
 from dem_cli.bench.kernels import blocks_of
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 LARGE, LARGEST = 1000, 10_000  # blocks
 QUICK = 2  # sizes
@@ -22,9 +22,9 @@ def resolution(blocks: int) -> float:
     return 0.002 if blocks < LARGE else 0.01 if blocks < LARGEST else 0.05
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per size."""
-    found = Found()
+    found = GroupResult()
     sizes = [k for k in SIZES if options.long or blocks_of(k) < LARGEST]
     if not options.long:
         found.notes.append(f"walls of more than {LARGEST:,} blocks were left out (`--long` measures them)")
@@ -37,7 +37,7 @@ def measure(options: Options) -> Found:
     return found
 
 
-def _job(known: Known) -> Job:
+def _job(known: Known) -> TimedTask:
     case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEPS)
 
     def run() -> dict[str, Any]:
@@ -45,10 +45,10 @@ def _job(known: Known) -> Job:
         bracket, joints = summary.get("failure_load_bracket"), summary.get("joints")
         return answer(known, summary) | {"bracket": bracket, "joints": joints}
 
-    return Job(run)
+    return TimedTask(run)
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     head = ("blocks", "joints", "resolution", "load", "bracket", "error", "steps", "CPU", "CPU per block")
     rows = [
@@ -67,7 +67,7 @@ def _load(load: float | None) -> str:
     return "?" if load is None else f"{load:.4f}"
 
 
-def picture(records: list[Record], path: Path) -> None:
+def picture(records: list[Measurement], path: Path) -> None:
     """CPU seconds and steps against blocks."""
     panels = {
         "CPU seconds": {"walls": [(r.value, r.best) for r in records]},

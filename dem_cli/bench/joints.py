@@ -6,7 +6,7 @@ from typing import Any
 
 from dem_cli.bench.cases import KNOWN, Known
 from dem_cli.bench.kernels import simulation, stepping
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import in_turn
 
@@ -43,7 +43,7 @@ def with_joint(known: Known, table: str, other: str = "") -> Known:
     return Known(known.name, known.file, (*known.overrides, joints), known.load, known.source)
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per joint model and geometry; unit: ns per point and step."""
     known = KNOWN[QUICK_CASE if options.quick else CASE]
     rows = []
@@ -54,14 +54,14 @@ def measure(options: Options) -> Found:
             sim = simulation(with_joint(known, table, OTHER if name == MIXED else ""), kinematics)
             rows.append((kinematics, name, sim, *stepping(sim)))
     in_turn([job for *_, job, _ in rows], options.rounds(15))
-    found = Found()
+    found = GroupResult()
     for kinematics, name, sim, job, work in rows:
         times, points = [1e9 * seconds / work for seconds in job.seconds], len(sim.joints.kn)
         found.records.append(record(known.name, kinematics, name, times, "ns", points=points))
     return found
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     best = {(r.axis, r.value): r.best for r in records}
     points = {(r.axis, r.value): r.found["points"] for r in records}

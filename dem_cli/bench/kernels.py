@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from dem_cli.bench.cases import SIZES, Known
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 PICTURES: dict[str, Any] = {}
 LOAD = 0.3  # multiplier at which the walls stand, with sticking, sliding and open points
@@ -19,9 +19,9 @@ QUICK_BLOCKS = (21,)
 
 def simulation(known: Known, kinematics: str) -> Any:
     """A compiled simulation of a structure under LOAD, some hundred steps old."""
+    from dem_cli.engine.properties import joint_properties, law_of
+    from dem_cli.engine.simulation import Simulation
     from dem_cli.kernels import records as slot
-    from dem_cli.solve.joints import joint_properties, law_of
-    from dem_cli.solve.simulation import Simulation
 
     case, model = known.build()
     sim = Simulation(model, law_of(case), joint_properties(case, model), kinematics)
@@ -31,16 +31,16 @@ def simulation(known: Known, kinematics: str) -> Any:
     return sim
 
 
-def stepping(sim: Any) -> tuple[Job, int]:
+def stepping(sim: Any) -> tuple[TimedTask, int]:
     """A job that does the same steps each time, and point-steps of one run."""
     from dem_cli.kernels import records as slot
 
     points, start = len(sim.joints.kn), sim.save()
     steps = max(POINT_STEPS // points, 10)
-    return Job(lambda: sim.advance(steps, slot.HOLD_LOAD), lambda: sim.restore(start)), points * steps
+    return TimedTask(lambda: sim.advance(steps, slot.HOLD_LOAD), lambda: sim.restore(start)), points * steps
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per size and geometry; unit: ns per point and step, ledger on."""
     wanted = QUICK_BLOCKS if options.quick else BLOCKS
     rows, jobs = [], []
@@ -51,7 +51,7 @@ def measure(options: Options) -> Found:
                 rows.append((known, kinematics, sim))
                 jobs.append(stepping(sim))
     in_turn([job for job, _ in jobs], options.rounds(15))
-    found = Found()
+    found = GroupResult()
     for (known, kinematics, sim), (job, work) in zip(rows, jobs, strict=True):
         times = [1e9 * seconds / work for seconds in job.seconds]
         points, blocks = len(sim.joints.kn), len(sim.free)
@@ -64,7 +64,7 @@ def blocks_of(known: Known) -> int:
     return int(known.name.removeprefix("wall ").replace(",", ""))
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     head = ("blocks", "contact points", "geometry", "best", "median")
     rows = [

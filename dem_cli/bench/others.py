@@ -9,9 +9,9 @@ from typing import Any
 
 from dem_cli.bench import draw, tilting
 from dem_cli.bench.cases import KNOWN, Known, answer, solve
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, percent, seconds
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 ENGINES = ("pymunk_walls", "box2d_walls")
 NARROW = ("T21 μ 0.6", "T21 μ 0.75", "COL14", "ARCH μ 0.6")  # all settings
@@ -21,9 +21,9 @@ RESOLUTION = 0.002  # of the bisection in the engines
 DEM = "dem"
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per structure, program and setting; axis: the program, value: the setting."""
-    found, rows = Found(), []
+    found, rows = GroupResult(), []
     structures = WIDE[:1] if options.quick else WIDE
     for name in structures:
         for resolution in RESOLUTIONS[:1] if options.quick else RESOLUTIONS:
@@ -44,17 +44,17 @@ def measure(options: Options) -> Found:
     return found
 
 
-def dem_job(known: Known, resolution: float) -> Job:
+def dem_job(known: Known, resolution: float) -> TimedTask:
     """From the case file to the failure load."""
 
     def run() -> dict[str, Any]:
         case, model = known.build(f"analysis.resolution={resolution}")
         return answer(known, solve(case, model))
 
-    return Job(run)
+    return TimedTask(run)
 
 
-def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: float) -> Job:
+def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: float) -> TimedTask:
     """From the model to the failure load; a new world for each trial."""
     from dem_cli.model.scales import smallest_edge
 
@@ -68,10 +68,10 @@ def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: 
         )
         return found | {"error": known.error(found["load"])}
 
-    return Job(run)
+    return TimedTask(run)
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """What was done, then a table of structures against settings, then the wider set."""
     lines = [*TEXT]
     for title, names in (("All settings", NARROW), ("More structures, with the wide settings", WIDE[len(NARROW) :])):
@@ -82,7 +82,7 @@ def page(records: list[Record]) -> list[str]:
     return [*lines, "", *best]
 
 
-def _table(records: list[Record], names: tuple[str, ...]) -> list[str]:
+def _table(records: list[Measurement], names: tuple[str, ...]) -> list[str]:
     cells = {(r.axis, r.value, r.case): _cell(r) for r in records}
     shown = [name for name in names if any(r.case == name for r in records)]
     rows = [
@@ -92,14 +92,14 @@ def _table(records: list[Record], names: tuple[str, ...]) -> list[str]:
     return lines_of(("program", "setting", *shown), rows)
 
 
-def _cell(r: Record) -> str:
+def _cell(r: Measurement) -> str:
     load = r.found["load"]
     error = r.found["error"]
     what = "falls by itself" if load == 0.0 else percent(error) if error is not None else r.found["status"]
     return f"{what} · {seconds(r.best)}"
 
 
-def worst_errors(records: list[Record], program: str) -> dict[str, float]:
+def worst_errors(records: list[Measurement], program: str) -> dict[str, float]:
     """Largest |error| over the structures that every setting was run on, by setting."""
     worst: dict[str, float] = {}
     for r in records:
@@ -109,7 +109,7 @@ def worst_errors(records: list[Record], program: str) -> dict[str, float]:
     return worst
 
 
-def _best(records: list[Record], program: str) -> list[str]:
+def _best(records: list[Measurement], program: str) -> list[str]:
     worst = worst_errors(records, program)
     if not worst:
         return []
@@ -119,7 +119,7 @@ def _best(records: list[Record], program: str) -> list[str]:
     return [f"{text} ({', '.join(name for name in NARROW if any(r.case == name for r in records))})."]
 
 
-def picture(records: list[Record], path: Path) -> None:
+def picture(records: list[Measurement], path: Path) -> None:
     """Error against CPU seconds, a panel per structure, a mark per program and setting."""
     names = [n for n in (*NARROW, "T231") if any(r.case == n for r in records)]
     programs = list(dict.fromkeys(r.axis for r in records))

@@ -12,7 +12,7 @@ from dem_cli.contact.assemble import empty_contacts
 from dem_cli.kernels.records import Contacts, Joints
 
 if TYPE_CHECKING:
-    from dem_cli.solve.simulation import Simulation
+    from dem_cli.engine.simulation import Simulation
 
 
 def shares(layout: str) -> np.ndarray:
@@ -49,9 +49,10 @@ def refined(joints: Joints, contacts: Contacts, places: np.ndarray) -> tuple[Joi
 @contextmanager
 def points_per_joint(layout: str) -> Iterator[None]:
     """Runs inside have joints with these points (see `shares`); "2" is what they have anyway."""
-    from dem_cli.solve import pushover, run
+    from dem_cli.analyses import pushover
+    from dem_cli.engine import job
 
-    plain, describe = run.Simulation, pushover.describe
+    plain, describe = job.Simulation, pushover.describe
     places = shares(layout)
 
     class Refined(plain):  # type: ignore[misc, valid-type]
@@ -64,9 +65,9 @@ def points_per_joint(layout: str) -> Iterator[None]:
                 self._after_detection()
                 self.detections -= 1
 
-    run.Simulation = Refined  # type: ignore[misc]
+    job.Simulation = Refined  # type: ignore[misc]
     pushover.describe = lambda *_: {}  # the mechanism is told by the two ends of a joint
     try:
         yield
     finally:
-        run.Simulation, pushover.describe = plain, describe  # type: ignore[misc]
+        job.Simulation, pushover.describe = plain, describe  # type: ignore[misc]

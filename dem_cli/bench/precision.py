@@ -12,9 +12,9 @@ from typing import Any
 from dem_cli.bench import constants, draw
 from dem_cli.bench.cases import KNOWN, Known, answer, solve
 from dem_cli.bench.points import points_per_joint
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, percent, seconds
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 CASES = tuple(KNOWN)
 NOT_DRAWN = ("T21 μ 0.6", "T21 μ 0.7")  # in the tables only: enough lines
@@ -99,9 +99,9 @@ AXES = (
 )
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per knob, value and case."""
-    found = Found()
+    found = GroupResult()
     for axis in AXES:
         try:
             rows = list(_jobs(axis, options.quick))
@@ -114,7 +114,7 @@ def measure(options: Options) -> Found:
     return found
 
 
-def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, Job]]:
+def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, TimedTask]]:
     with axis.inside(axis.usual):
         pass  # raises constants.Missing
     for value in (axis.values[0], axis.usual) if quick else axis.values:
@@ -124,17 +124,17 @@ def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, Job]]:
             yield KNOWN[name], value, _job(KNOWN[name], axis, value)
 
 
-def _job(known: Known, axis: Axis, value: Any) -> Job:
+def _job(known: Known, axis: Axis, value: Any) -> TimedTask:
     case, model = known.build(*axis.overrides(known, value))
 
     def run() -> dict[str, Any]:
         with axis.inside(value):
             return answer(known, solve(case, model))
 
-    return Job(run)
+    return TimedTask(run)
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """A table per knob: values against structures."""
     text = (
         "One knob at a time, everything else as usual; for all knobs but the first `analysis.resolution` is 0.0005, so"
@@ -150,7 +150,7 @@ def page(records: list[Record]) -> list[str]:
     return lines
 
 
-def _table(axis: Axis, records: list[Record]) -> list[str]:
+def _table(axis: Axis, records: list[Measurement]) -> list[str]:
     cells = {(r.value, r.case): _cell(r) for r in records}
     measured = {r.case for r in records}
     cases = [name for name in CASES if name in measured]
@@ -162,7 +162,7 @@ def _table(axis: Axis, records: list[Record]) -> list[str]:
     return lines_of((axis.name, *cases), rows)
 
 
-def _cell(r: Record) -> str:
+def _cell(r: Measurement) -> str:
     error, status = r.found["error"], r.found.get("status")
     what = percent(error) if error is not None else status or "no answer"
     if error is not None and r.found.get("warning"):
@@ -172,7 +172,7 @@ def _cell(r: Record) -> str:
     return f"{what} · {seconds(r.best)}"
 
 
-def picture(records: list[Record], path: Path) -> None:
+def picture(records: list[Measurement], path: Path) -> None:
     """A panel per knob, a line per structure, along the values of the knob."""
     panels: dict[str, dict[str, list[tuple[float, float | None]]]] = {}
     for r in records:

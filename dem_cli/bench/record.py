@@ -15,7 +15,7 @@ FORMAT = 1
 
 
 @dataclass(frozen=True)
-class Record:
+class Measurement:
     """One measurement: what was timed, under which setting, its times and what came out."""
 
     case: str  # structure, such as "T21 μ 0.5"
@@ -29,10 +29,10 @@ class Record:
 
 
 @dataclass
-class Found:
+class GroupResult:
     """What one group left; notes say what was skipped and why."""
 
-    records: list[Record] = field(default_factory=list)
+    records: list[Measurement] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
@@ -49,10 +49,10 @@ class Options:
         return self.repeats or (1 if self.quick else default)
 
 
-def record(case: str, axis: str, value: Any, seconds: Sequence[float], unit: str = "s", **found: Any) -> Record:
+def record(case: str, axis: str, value: Any, seconds: Sequence[float], unit: str = "s", **found: Any) -> Measurement:
     """A record of repeated measurements; other work only adds time, so that the best counts."""
     best, median = (float(f"{time:.4g}") for time in (min(seconds), statistics.median(seconds)))
-    return Record(case, axis, value, best, median, len(seconds), unit, found)
+    return Measurement(case, axis, value, best, median, len(seconds), unit, found)
 
 
 def as_json(groups: dict[str, dict[str, Any]]) -> str:
@@ -70,7 +70,7 @@ def as_json(groups: dict[str, dict[str, Any]]) -> str:
     return f'{{"format": {FORMAT},\n "groups": {body}}}\n'
 
 
-def group_table(found: Found, machine: dict[str, Any]) -> dict[str, Any]:
+def group_table(found: GroupResult, machine: dict[str, Any]) -> dict[str, Any]:
     """One group as JSON holds it."""
     return {"machine": machine, "notes": found.notes, "records": [asdict(r) for r in found.records]}
 
@@ -86,6 +86,6 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
         raise UsageError(f"{path}: no results of dem bench ({error})") from None
 
 
-def records_of(group: dict[str, Any]) -> list[Record]:
+def records_of(group: dict[str, Any]) -> list[Measurement]:
     """The records of one group of a results file."""
-    return [Record(**table) for table in group["records"]]
+    return [Measurement(**table) for table in group["records"]]

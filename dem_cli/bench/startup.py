@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import FOLDER
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
@@ -33,9 +33,9 @@ def cpu_of_children() -> float:
     return times.children_user + times.children_system
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """`dem --help`, the first run with an empty cache of compiled code, later runs."""
-    found, times = Found(), {}
+    found, times = GroupResult(), {}
     with tempfile.TemporaryDirectory() as folder:
         run = ["run", str(FOLDER / "wall.toml"), "--quiet", "-o", str(Path(folder) / "results")]
         commands = {"`dem --help`": ["--help"], "later runs of T21": run}
@@ -55,11 +55,9 @@ def measure(options: Options) -> Found:
     return found
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     head = ("command", "wall clock", "median", "CPU")
-    rows = [
-        (r.value, seconds(r.found["best_wall"]), seconds(r.found["median_wall"]), seconds(r.best)) for r in records
-    ]
+    rows = [(r.value, seconds(r.found["best_wall"]), seconds(r.found["median_wall"]), seconds(r.best)) for r in records]
     text = "A new process each time, from the shell's point of view. The first run compiles the kernels and keeps them."
     return [text, "", *lines_of(head, rows)]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dem_cli.bench.cases import KNOWN
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, percent, seconds
 
 PICTURES: dict[str, Any] = {}
@@ -30,9 +30,9 @@ class Swept(NamedTuple):
     worst: float  # largest relative error of a failure load
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """`dem sweep` of COL14 over its friction, which does not change its failure load, from shell to shell."""
-    found = Found()
+    found = GroupResult()
     known, count = KNOWN["COL14"], FEW if options.quick else RUNS
     cores = os.cpu_count() or 1
     with tempfile.TemporaryDirectory() as folder:
@@ -71,7 +71,7 @@ def cpu_of_children() -> float:
     return spent.children_user + spent.children_system
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     head = ("processes", "runs", "wall clock", "runs per second", "CPU per run", "of it in the solver", "largest error")
     rows = []

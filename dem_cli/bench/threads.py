@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import KNOWN
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
@@ -21,9 +21,9 @@ INSIDE, BESIDE = "threads in one run", "runs side by side"
 LIMIT = ["--set", "analysis.limit=true"]  # Clarabel, which can use threads, in the run as well
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """Wall-clock time of runs of T231 with 1 and 2 threads, and of 1 and 2 runs at once."""
-    found = Found()
+    found = GroupResult()
     known = KNOWN["T21 μ 0.6" if options.quick else "T231"]
     counts = (1, 2) if (os.cpu_count() or 1) > 1 else (1,)
     if len(counts) == 1:
@@ -57,7 +57,7 @@ def runs(known: Any, folder: Path, threads: int, at_once: int) -> tuple[float, l
     return time.perf_counter() - begun, answers
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """The table."""
     head = ("what", "number", "wall clock", "runs per minute", "failure load")
     rows = []

@@ -70,9 +70,7 @@ def _near(places: np.ndarray, before: np.ndarray, limit: float) -> bool:
     return bool(np.sqrt(((places - before) ** 2).sum(axis=1)).max() <= limit)
 
 
-def failure_load(
-    make: Callable[[], World], setting: Setting, friction: float, resolution: float
-) -> dict[str, Any]:
+def failure_load(make: Callable[[], World], setting: Setting, friction: float, resolution: float) -> dict[str, Any]:
     """Highest load that stood, the lowest that fell above it, and the number of trials and steps."""
     low, high, trials = 0.0, TWICE * friction, 1
     while stands(make(), setting, high):

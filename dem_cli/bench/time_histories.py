@@ -12,9 +12,9 @@ import numpy as np
 from dem_cli import api
 from dem_cli.bench import draw
 from dem_cli.bench.cases import FOLDER, Nobody
-from dem_cli.bench.record import Found, Options, Record, record
+from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.timing import TimedTask, in_turn
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
@@ -62,18 +62,18 @@ class Line:
     file: str
     overrides: tuple[str, ...]
 
-    def job(self, margin: float) -> Job:
+    def job(self, margin: float) -> TimedTask:
         """The run with a step of that share of the largest stable one."""
         loaded = api.load_case(FOLDER / f"{self.file}.toml", [*self.overrides, f"analysis.margin={margin}"])
         model = api.build_model(loaded)
 
         def run() -> tuple[dict[str, Any], History]:
-            from dem_cli.solve.run import run as solve
+            from dem_cli.analyses.solve import solve as solve
 
             history = History()
             return solve(loaded.case, model, history).summary, history
 
-        return Job(run)
+        return TimedTask(run)
 
 
 def lines(quick: bool) -> Iterator[Line]:
@@ -86,9 +86,9 @@ def lines(quick: bool) -> Iterator[Line]:
             yield Line(axis, name, file, (*overrides, *shorter))
 
 
-def measure(options: Options) -> Found:
+def measure(options: Options) -> GroupResult:
     """One record per line and step."""
-    found = Found()
+    found = GroupResult()
     wanted = list(lines(options.quick))
     margins = QUICK if options.quick else MARGINS
     jobs = [(line, margin, line.job(margin)) for line in wanted for margin in margins]
@@ -132,7 +132,7 @@ def distance(history: History, reference: History) -> float:
     return float(np.sqrt(((mine - other) ** 2).mean() / (other**2).mean()))
 
 
-def page(records: list[Record]) -> list[str]:
+def page(records: list[Measurement]) -> list[str]:
     """A table per structure: steps against settings."""
     text = (
         "`analysis.margin`: the time step over the largest stable one; the default is bold. CPU seconds are of the"
@@ -160,7 +160,7 @@ def page(records: list[Record]) -> list[str]:
     return [*found, "", chance, "", *_rates(records)]
 
 
-def _table(records: list[Record]) -> list[str]:
+def _table(records: list[Measurement]) -> list[str]:
     cells = {(r.value, r.case): _cell(r) for r in records}
     cases = list(dict.fromkeys(r.case for r in records))
     rows = [
@@ -170,14 +170,14 @@ def _table(records: list[Record]) -> list[str]:
     return lines_of(("margin", *cases), rows)
 
 
-def _cell(r: Record) -> str:
+def _cell(r: Measurement) -> str:
     error, peak = r.found["error"], r.found.get("peak")
     text = "no answer" if error is None else percent(error).removeprefix("+")
     text += "" if peak is None else f", peak {percent(peak)}"
     return f"{text} · energy {abs(r.found['closure']):.0e} · {seconds(r.best)}"
 
 
-def _rates(records: list[Record]) -> list[str]:
+def _rates(records: list[Measurement]) -> list[str]:
     """Steps per second of each line: those between its finest and its coarsest run, over the time that they took."""
     rows = []
     for axis, case in dict.fromkeys((r.axis, r.case) for r in records):
@@ -189,7 +189,7 @@ def _rates(records: list[Record]) -> list[str]:
     return ["Steps per second, from the difference of the finest and the coarsest run:", "", *lines_of(head, rows)]
 
 
-def picture(records: list[Record], path: Path) -> None:
+def picture(records: list[Measurement], path: Path) -> None:
     """A panel per structure, a line per setting, along the steps."""
     panels: dict[str, dict[str, list[tuple[float, float | None]]]] = {}
     for r in records:

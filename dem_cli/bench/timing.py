@@ -13,7 +13,7 @@ from typing import Any
 LONG = 4.0  # s: what takes longer is measured once
 
 
-class Job:
+class TimedTask:
     """Something to be timed. `prepare` is called before each run, off the clock."""
 
     def __init__(self, run: Callable[[], Any], prepare: Callable[[], Any] | None = None):
@@ -30,7 +30,7 @@ class Job:
         self.seconds.append(time.process_time() - begun)
 
 
-def in_turn(jobs: Sequence[Job], rounds: int, long: float = LONG) -> None:
+def in_turn(jobs: Sequence[TimedTask], rounds: int, long: float = LONG) -> None:
     """Times every job once per round; the long ones once."""
     for _ in range(rounds):
         for job in jobs:

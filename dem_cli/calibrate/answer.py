@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from dem_cli.calibrate.table import Calibration
-from dem_cli.calibrate.trials import Trial
+from dem_cli.calibrate.trials import CalibrationTrial
 
 OK = "ok"
 
 
-class Found(NamedTuple):
+class TrialAnswer(NamedTuple):
     """What one trial gave."""
 
     status: str
@@ -25,7 +25,7 @@ class Found(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def distance(measured: Calibration, found: Found) -> float | None:
+def distance(measured: Calibration, found: TrialAnswer) -> float | None:
     """Distance to the measured point, with loads and displacements in measured ones; None where there is no answer."""
     if found.status != OK or found.failure_load is None or found.displacement is None:
         return None
@@ -33,7 +33,9 @@ def distance(measured: Calibration, found: Found) -> float | None:
     return math.hypot(load, found.displacement / measured.displacement - 1.0)
 
 
-def rows(measured: Calibration, trials: Sequence[Trial], found: Sequence[Found]) -> list[dict[str, Any]]:
+def rows(
+    measured: Calibration, trials: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]
+) -> list[dict[str, Any]]:
     """A row per trial, that of plane joints first; lengths in metres."""
     plane = found[0].failure_load if found[0].status == OK else None
     table = []

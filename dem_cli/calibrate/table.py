@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
-from dem_cli.laws.profile import Shape, pair
+from dem_cli.laws.profile import ProfileShape, pair
 
 
-class NamedShape(Shape):
+class NamedShape(ProfileShape):
     """[[calibration.shapes]]: a polygon but for its aperture."""
 
     name: Annotated[str, Field(min_length=1)] = Field(

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 
-class Trial(NamedTuple):
+class CalibrationTrial(NamedTuple):
     """One case to solve; without a shape its joints are plane."""
 
     case: Case
@@ -26,7 +26,7 @@ class Trial(NamedTuple):
         return f"shape {self.shape.name}, aperture {1e3 * self.aperture:.3g} mm"
 
 
-def trials(case: Case) -> list[Trial]:
+def trials(case: Case) -> list[CalibrationTrial]:
     """Plane joints first, then all apertures of the first shape, and so on.
 
     Each watches the displacement that was measured, in its last monitor. Without [reference] and [calibration]:
@@ -36,10 +36,12 @@ def trials(case: Case) -> list[Trial]:
     joint = calibration.joint or case.default_joint
     watched = Monitor(block=calibration.block, point=calibration.point, component=calibration.component)
     bare = case.model_copy(update={"calibration": None, "reference": None, "monitor": (*case.monitor, watched)})
-    found = [Trial(_with(bare, joint, case.joints[joint].model_copy(update={"profile": None})))]
+    found = [CalibrationTrial(_with(bare, joint, case.joints[joint].model_copy(update={"profile": None})))]
     for shape in calibration.shapes:
         for aperture in calibration.apertures:
-            found.append(Trial(_with(bare, joint, profiled(case.joints[joint], shape, aperture)), shape, aperture))
+            found.append(
+                CalibrationTrial(_with(bare, joint, profiled(case.joints[joint], shape, aperture)), shape, aperture)
+            )
     return found
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
-from dem_cli.case.keys import NAME, Key, Table, tables
+from dem_cli.case.keys import NAME, CaseTable, Key, tables
 from dem_cli.errors import UsageError
 
 CLOSE = 0.75  # a name that is so near to a key is a slip, not a material or a joint of that name
@@ -34,7 +34,7 @@ PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
 class Entry(NamedTuple):
     """A key as it is in tables of some kinds, or, without a key, the table itself."""
 
-    table: Table
+    table: CaseTable
     key: Key | None
     kinds: tuple[str, ...]
 

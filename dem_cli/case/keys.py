@@ -33,7 +33,7 @@ HEADING = re.compile(r"^(\[[\w.*\[\]]+\.?$|[\[a-z][^:\n]*: )")
 DEFAULT = re.compile(r"[;,]? ?\bdefault: (.*)$")
 
 
-class Table(NamedTuple):
+class CaseTable(NamedTuple):
     """A table of the case file; of a table with kinds, one of them."""
 
     path: tuple[str, ...]  # ("structure", "openings")
@@ -67,7 +67,7 @@ class Table(NamedTuple):
 class Key(NamedTuple):
     """A key of a table."""
 
-    table: Table
+    table: CaseTable
     name: str
     field: FieldInfo
 
@@ -145,17 +145,17 @@ class Key(NamedTuple):
         return "" if value in NOTHING else f"{self.name} = {toml(value)}"
 
 
-def tables(model: type[BaseModel]) -> list[Table]:
+def tables(model: type[BaseModel]) -> list[CaseTable]:
     """All tables of a case in the order of their keys, those in others after them; the case itself comes first."""
-    found: dict[tuple[tuple[str, ...], type[BaseModel]], Table] = {}
-    for table in _below(Table((), model, False, "", (), "")):
+    found: dict[tuple[tuple[str, ...], type[BaseModel]], CaseTable] = {}
+    for table in _below(CaseTable((), model, False, "", (), "")):
         known = found.setdefault((table.path, table.declared), table)
         kinds = tuple(dict.fromkeys(known.kinds + table.kinds))
         found[table.path, table.declared] = known._replace(kinds=kinds)
     return list(found.values())
 
 
-def _below(table: Table) -> Iterator[Table]:
+def _below(table: CaseTable) -> Iterator[CaseTable]:
     """A table and the ones in it."""
     yield table
     for name, field in table.declared.model_fields.items():
@@ -163,7 +163,7 @@ def _below(table: Table) -> Iterator[Table]:
             tag = next((tag for tag in TAGS if _kind(declared, tag)), "")
             kinds = (_kind(declared, tag),) if tag else table.kinds
             path = (*table.path, name, *steps)
-            yield from _below(Table(path, declared, several, tag, kinds, field.description or ""))
+            yield from _below(CaseTable(path, declared, several, tag, kinds, field.description or ""))
 
 
 def _inside(

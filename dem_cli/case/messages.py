@@ -57,12 +57,7 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
         else:
             kinds = members[0][0].choices
             found.append(CaseProblem(path, not_allowed(value_at(data, path), kinds)))
-    meant = {
-        (*p.path[:-1], name)
-        for p in found
-        if p.at_key
-        for name in re.findall("did you mean '(.*)'", p.message)
-    }
+    meant = {(*p.path[:-1], name) for p in found if p.at_key for name in re.findall("did you mean '(.*)'", p.message)}
     found = [p for p in found if p.path not in meant or not p.message.startswith("missing")]
     return list(dict.fromkeys(found))
 

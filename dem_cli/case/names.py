@@ -119,9 +119,7 @@ def names(data: dict[str, Any], key: str) -> list[str]:
     return list(table) if isinstance(table, dict) else []
 
 
-def check_names(
-    case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None
-) -> list[CaseProblem]:
+def check_names(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None) -> list[CaseProblem]:
     """Tables about blocks that do not exist, and settlements and motions of free blocks.
 
     blocks  number of the block by its id and its aliases, known only after the structures are built

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def command(case: str, overrides: tuple[str, ...]) -> None:
     """Validate CASE and print its model: blocks, joints, mass, time step and estimated cost."""
     from dem_cli import api
-    from dem_cli.cli.reference import check_quantities
     from dem_cli.cli.run import monitor_names
+    from dem_cli.cli.words.reference import check_quantities
 
     loaded = api.load_case(case, overrides)
     model = api.build_model(loaded)
@@ -35,9 +35,9 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
 
         plan = planned(loaded)
         found.append(("sweep", f"{len(plan.runs):,} runs of `dem sweep` over {', '.join(plan.keys)}"))
-    if find_spec("dem_cli.solve.estimate"):
+    if find_spec("dem_cli.analyses.estimate"):
         with loaded.located():
-            found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)
+            found += import_module("dem_cli.analyses.estimate").describe(loaded.case, model)
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))

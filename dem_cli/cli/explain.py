@@ -11,7 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from dem_cli.case.explain import Entry
-    from dem_cli.case.keys import Table
+    from dem_cli.case.keys import CaseTable
 
 MANY = 3  # more matches than this are listed, one line each
 WIDEST = 110  # columns of a terminal that are used
@@ -118,7 +118,7 @@ def names_kind(entry: Entry) -> bool:
     return bool(entry.table.tag) and (entry.key is None or entry.key.names_kind)
 
 
-def summary(table: Table) -> str:
+def summary(table: CaseTable) -> str:
     """What a table is, in a line."""
     return table.about.split("\n")[0].rstrip(".")
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli import __version__
-from dem_cli.cli import console
 from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
@@ -48,9 +48,9 @@ def command(
 ) -> int:
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
     from dem_cli import api
+    from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.limit.analysis import limit_loads, taken_as_plane
     from dem_cli.output.summary import exit_code, to_json
-    from dem_cli.solve.joints import joint_properties, law_of
 
     started = time.perf_counter()
     loaded = api.load_case(case, overrides)

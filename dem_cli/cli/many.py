@@ -6,15 +6,15 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dem_cli.cli import console
+from dem_cli.cli.words import console
 from dem_cli.cli.workers import usable_cores
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.journal import Journal
-    from dem_cli.solve.batch import Batch
 
 
 class Wish(NamedTuple):
@@ -44,8 +44,8 @@ def batch_of(case: Case, text: str, folder: OutputFolder, wish: Wish, quiet: boo
     if not many(case):
         yield None
         return
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.output.journal import Journal
-    from dem_cli.solve.batch import Batch
     from dem_cli.sweep.identity import facts
 
     with Journal(folder.path.parent, folder.final.name, facts(case, text), wish.resume) as journal:

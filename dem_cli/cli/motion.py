@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from dem_cli import __version__
-from dem_cli.cli import console
 from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.words import console
 from dem_cli.errors import CaseError, DemError, UsageError
 
 if TYPE_CHECKING:
@@ -180,8 +180,7 @@ def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
         console.note(f"no {SPECTRA}: {error}")
         return []
     suites = [
-        Suite(group.motions if kind == "fragility" else [group.motions[group.chosen]], group.target)
-        for group in groups
+        Suite(group.motions if kind == "fragility" else [group.motions[group.chosen]], group.target) for group in groups
     ]
     draw_spectra(suites, output / SPECTRA, loaded.case.title)
     return [output / SPECTRA]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli import console
 from dem_cli.cli.options import Limits, Size
+from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:

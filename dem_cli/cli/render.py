@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from dem_cli.cli import console
 from dem_cli.cli.options import Size
+from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 STILL, MOVIES = ".png", (".gif", ".mp4")
@@ -53,7 +53,7 @@ def command(
     """Render the results in DIR: a picture of one frame, or a movie of all."""
     from dem_cli.output.folder import write_error
     from dem_cli.output.reader import read
-    from dem_cli.post.render import Look, render_apart
+    from dem_cli.render.render import Look, render_apart
 
     path = target(folder, output, movie)
     if path.suffix in MOVIES and frame != "last":

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from dem_cli.cli import console
+from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 NAME = "report.html"
@@ -47,7 +47,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
 
 def said(summary: dict[str, Any]) -> Any:
     """The lines that `dem run` prints of a summary, and its verdicts."""
-    from dem_cli.cli.reference import one_line
+    from dem_cli.cli.words.reference import one_line
     from dem_cli.output.reference import as_declared, from_summary
     from dem_cli.report.run import Said
 

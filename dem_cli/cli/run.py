@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any, Protocol
 import click
 
 from dem_cli import __version__
-from dem_cli.cli import console
 from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.many import Wish, batch_of, check, finish, with_names
 from dem_cli.cli.options import case_argument, overrides_option
-from dem_cli.cli.reference import check_quantities
+from dem_cli.cli.words import console
+from dem_cli.cli.words.reference import check_quantities
 from dem_cli.errors import CaseProblem, DemError, SolverError
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.case.schema import Case, Monitor
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.model.model import Model
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
     from dem_cli.output.store import ResultWriter
-    from dem_cli.solve.batch import Batch
 
 
 class Outcome(Protocol):
@@ -186,9 +186,9 @@ def execute(
 
 def load_solver(batch: Batch | None) -> Solve:
     """The solver, imported only when a case is ready to be solved."""
-    from dem_cli.solve.run import run
+    from dem_cli.analyses.solve import solve
 
-    return run if batch is None else partial(run, batch=batch)
+    return solve if batch is None else partial(solve, batch=batch)
 
 
 def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from zlib import crc32
 import numpy as np
 
 from dem_cli.contact.detect import Faces
-from dem_cli.contact.layout import Layout, draw
+from dem_cli.contact.layout import PointLayout, draw
 from dem_cli.geometry import polygon, profile
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
@@ -39,7 +39,7 @@ class JointProperties(NamedTuple):
     ks: np.ndarray  # [Pa/m], (n_named,)
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
-    layouts: tuple[Layout | None, ...]  # where the contact points are; None: at the two ends of the joint
+    layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
 
     @property
     def profiled(self) -> bool:
@@ -177,7 +177,7 @@ def _come_back(chains: Chains, faces: Faces, corners: np.ndarray) -> tuple[np.nd
 
 
 def _chain(
-    layout: Layout, key: tuple[int, int], low: float, high: float, whole: float
+    layout: PointLayout, key: tuple[int, int], low: float, high: float, whole: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Profile (n, 2) of one joint, as Joints.profile, and the share of its area of each point, (n,).
 
@@ -202,7 +202,7 @@ def _face_names(model: Model) -> list[int]:
     return names
 
 
-def _has(layout: Layout, overlap: float, whole: float, along: np.ndarray) -> bool:
+def _has(layout: PointLayout, overlap: float, whole: float, along: np.ndarray) -> bool:
     """Whether a joint with this overlap, along a unit vector, has the layout; joints end to end have none."""
     kind = "bed" if abs(along[0]) >= STEEP else "head"
     return overlap > END_TO_END * whole and layout.only in ("all", kind)

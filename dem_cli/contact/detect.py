@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.geometry import polygon
 from dem_cli.kernels.neighbours import find_pairs, place_corners
-from dem_cli.kernels.records import Shape
+from dem_cli.kernels.records import BlockShapes
 from dem_cli.model.model import Model
 
 INNER = 1e-3  # of a piece: edges of one block that face each other closer than that lie inside it
@@ -22,17 +22,17 @@ class Faces(NamedTuple):
     separation: np.ndarray  # distance along the best separating axis [m], negative: overlap, (n,)
 
 
-def block_shape(model: Model) -> Shape:
+def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
     sizes = np.diff(model.part_starts)
     corner_blocks = np.repeat(model.part_blocks, sizes)
     distance = np.sqrt((model.vertices**2).sum(axis=1))
     radii = np.zeros(model.n_blocks)
     np.maximum.at(radii, corner_blocks, distance)
-    return Shape(corner_blocks, np.ascontiguousarray(model.vertices), radii)
+    return BlockShapes(corner_blocks, np.ascontiguousarray(model.vertices), radii)
 
 
-def world_corners(shape: Shape, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+def world_corners(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """Corners of all parts in place [m], (n_vertices, d)."""
     corners = np.empty_like(shape.corner_arms)
     place_corners(positions, orientations, shape.corner_blocks, shape.corner_arms, corners)
@@ -88,9 +88,7 @@ def find_joints(model: Model, corners: np.ndarray, reach: float, inner: np.ndarr
         parts = np.empty((capacity, 2), np.int64)
         edges = np.empty((capacity, 2), np.int64)
         separation = np.empty(capacity)
-        n = find_pairs(
-            order, boxes, corners, starts, model.part_blocks, model.fixed, reach, parts, edges, separation
-        )
+        n = find_pairs(order, boxes, corners, starts, model.part_blocks, model.fixed, reach, parts, edges, separation)
         if n <= capacity:
             break
         capacity = n

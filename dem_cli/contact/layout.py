@@ -17,7 +17,7 @@ SAMPLES = 100  # profiles drawn to see how steep they may be
 VERTEX_SHARE = 0.5
 
 
-class Layout(NamedTuple):
+class PointLayout(NamedTuple):
     """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them."""
 
     points: int = 2
@@ -31,7 +31,7 @@ class Layout(NamedTuple):
     seed: int = 0
 
 
-def draw(layout: Layout, key: tuple[int, ...], length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def draw(layout: PointLayout, key: tuple[int, ...], length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Contact points of a joint of this length [m]: places [m], initial gaps [m], shares of the area [-].
 
     places: along the joint, increasing from 0 to its length; gaps: 0 at the two ends of the side in contact;
@@ -64,7 +64,7 @@ def draw(layout: Layout, key: tuple[int, ...], length: float) -> tuple[np.ndarra
     return places, rises, np.full(sides + 1, VERTEX_SHARE)
 
 
-def steepest(layout: Layout, length: float) -> float:
+def steepest(layout: PointLayout, length: float) -> float:
     """Largest slope of a side of a joint of this length [m] against the one that it rests on [-]; 0 where plane.
 
     Of profiles with ranges: the largest of many that are drawn.

@@ -193,9 +193,7 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
             ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
-                factor = _creep_factor(
-                    forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness
-                )
+                factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
                 if mode == TILT_CREEP:  # the table turns gravity by θ: dead cos θ + live sin θ
                     factor = min(max(factor, -1.0), 1.0)
                     control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
@@ -206,9 +204,7 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
                 )  # fmt: skip
             dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if mode == FIRE:
-                keep, steer = _steering(
-                    velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control
-                )
+                keep, steer = _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control)
             _kick(
                 velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,

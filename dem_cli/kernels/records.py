@@ -27,7 +27,7 @@ class Bodies(NamedTuple):
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
 
-class Shape(NamedTuple):
+class BlockShapes(NamedTuple):
     """Constant geometry of the blocks."""
 
     corner_blocks: np.ndarray  # block of each corner, (n_vertices,)

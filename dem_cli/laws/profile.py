@@ -14,7 +14,7 @@ Sides = Annotated[int, Field(ge=2, le=MOST_SIDES)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
-class Shape(CaseModel):
+class ProfileShape(CaseModel):
     """A convex polygon on a flat surface, but for its size: each number is a value or a range to draw from."""
 
     sides: Sides | tuple[Sides, Sides] | None = Field(
@@ -46,7 +46,7 @@ class Shape(CaseModel):
     )
 
     @model_validator(mode="after")
-    def _sides_and_lengths(self) -> Shape:
+    def _sides_and_lengths(self) -> ProfileShape:
         given = 0 if self.lengths is None else len(self.lengths)
         if self.lengths is not None and self.central is not None:
             raise ValueError("'lengths' and 'central' are given; a profile has one of them")
@@ -73,7 +73,7 @@ class Shape(CaseModel):
         return pair(len(self.lengths or ()) if self.sides is None else self.sides)
 
 
-class Profile(Shape):
+class Profile(ProfileShape):
     """[joints.NAME.profile]: contact surfaces that are not plane."""
 
     aperture: Positive | tuple[NonNegative, Positive] = Field(

@@ -17,7 +17,16 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.limit.cone import cone_of
 from dem_cli.limit.matrices import Structure
-from dem_cli.limit.program import ANSWERED, IMPOSSIBLE, UNBOUNDED, Found, Program, largest_load, program_of, standing
+from dem_cli.limit.program import (
+    ANSWERED,
+    IMPOSSIBLE,
+    UNBOUNDED,
+    Program,
+    ProgramSolution,
+    largest_load,
+    program_of,
+    standing,
+)
 
 OK = "ok"
 FALLS = "does not stand under its dead loads"
@@ -84,7 +93,9 @@ def carried(structure: Structure, friction: np.ndarray) -> tuple[bool | None, fl
 
 
 def _first_good(
-    program: Program, solve: Callable[[Program, dict[str, Any]], Found], judge: Callable[[Program, Found], LimitLoad]
+    program: Program,
+    solve: Callable[[Program, dict[str, Any]], ProgramSolution],
+    judge: Callable[[Program, ProgramSolution], LimitLoad],
 ) -> LimitLoad:
     """The first answer that passes; where none does, the last."""
     iterations = 0
@@ -97,7 +108,7 @@ def _first_good(
     return judged
 
 
-def _judge_load(program: Program, found: Found) -> LimitLoad:
+def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     """Is this the largest load, or a proof that there is none?"""
     if found.kind == UNBOUNDED:
         return _refusal(program, *_locked(program, found))
@@ -122,7 +133,7 @@ def _judge_load(program: Program, found: Found) -> LimitLoad:
     return made._replace(status=reason)
 
 
-def _judge_standing(program: Program, found: Found) -> LimitLoad:
+def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     """Do the dead loads have forces that carry them?"""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
@@ -134,7 +145,7 @@ def _judge_standing(program: Program, found: Found) -> LimitLoad:
     return _refusal(program, f"{GIVEN_UP}: cannot tell whether it {FALLS[9:]}", residual)
 
 
-def _falls(program: Program, found: Found) -> tuple[str, float]:
+def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
     """Status and error of the proof: a mechanism that no joint resists and that the dead loads drive.
 
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
@@ -146,7 +157,7 @@ def _falls(program: Program, found: Found) -> tuple[str, float]:
     return _proved(FALLS, error, found), error
 
 
-def _locked(program: Program, found: Found) -> tuple[str, float]:
+def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
     """Status and error of the proof: contact forces in balance with live loads alone."""
     s, amounts = program.structure, np.maximum(found.amounts, 0.0)
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
@@ -155,7 +166,7 @@ def _locked(program: Program, found: Found) -> tuple[str, float]:
     return _proved(LOCKED, error, found), error
 
 
-def _proved(claim: str, error: float, found: Found) -> str:
+def _proved(claim: str, error: float, found: ProgramSolution) -> str:
     """The claim, if its proof is good enough."""
     return claim if error <= PROOF else f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
 

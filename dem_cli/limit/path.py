@@ -174,9 +174,7 @@ def _compliance(problem: Elastic, state: State) -> float:
     return float(problem.live @ lu.solve(problem.live))
 
 
-def _keep(
-    path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float
-) -> None:
+def _keep(path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float) -> None:
     """One more increment; its state in SI units, where the load is the highest so far."""
     moved = problem.displacements(state.displacements)
     load = state.load * problem.live_scale

@@ -42,7 +42,7 @@ class Program(NamedTuple):
     load: float  # multiplier that makes the live loads as large as the dead ones
 
 
-class Found(NamedTuple):
+class ProgramSolution(NamedTuple):
     """What the solver came up with; where it says that something is impossible, its proof."""
 
     kind: str  # ANSWERED; IMPOSSIBLE: `velocities` are the proof; UNBOUNDED: `amounts` and `multiplier`; UNKNOWN
@@ -64,17 +64,17 @@ def program_of(structure: Structure, cone: Cone) -> Program:
     return Program(structure, cone, cone.motion(structure.compatibility), n_blocks, weight, (dead or live) / live)
 
 
-def largest_load(program: Program, settings: dict[str, Any]) -> Found:
+def largest_load(program: Program, settings: dict[str, Any]) -> ProgramSolution:
     """Forces under the largest multiplier, and the mechanism that ends it."""
     return _solve(program, settings, program.structure.live[None] * program.load)
 
 
-def standing(program: Program, settings: dict[str, Any]) -> Found:
+def standing(program: Program, settings: dict[str, Any]) -> ProgramSolution:
     """Some forces that carry the dead loads alone."""
     return _solve(program, settings, np.zeros((0, len(program.structure.free))))
 
 
-def _solve(program: Program, settings: dict[str, Any], live: np.ndarray) -> Found:
+def _solve(program: Program, settings: dict[str, Any], live: np.ndarray) -> ProgramSolution:
     """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ≥ 0.
 
     The multipliers of these rows are −λ and the amounts of the generators.
@@ -95,7 +95,7 @@ def _solve(program: Program, settings: dict[str, Any], live: np.ndarray) -> Foun
     answer = clarabel.DefaultSolver(csc_matrix((len(q), len(q))), q, a, b, cones, chosen).solve()
     x, z = np.array(answer.x), np.array(answer.z) * spread
     said = str(answer.status)
-    return Found(
+    return ProgramSolution(
         KINDS.get(said, UNKNOWN),
         z[len(live) :] * program.weight,
         float(-z[: len(live)].sum()) * program.load,

@@ -28,9 +28,7 @@ class TopLoad(NamedTuple):
     height: float  # above the foot of the wall [m]
 
 
-def split_load(
-    width: float, height: float, slope: float, weight: float = 1.0, top: Sequence[TopLoad] = ()
-) -> float:
+def split_load(width: float, height: float, slope: float, weight: float = 1.0, top: Sequence[TopLoad] = ()) -> float:
     """Multiplier (horizontal over vertical load) at which the wall above the cut turns about its toe.
 
     width, height: of the wall [m]; slope: tan α of the cut, 0 for the whole wall; weight: of the whole wall.

@@ -57,3 +57,23 @@ def stiffness_scale(model: Model) -> float:
     areas = np.bincount(model.part_blocks, parts, model.n_blocks)
     joint = float(np.sqrt(areas[free]).mean() * model.thickness[free].mean())
     return weight / (joint * smallest_edge(model))
+
+
+def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
+    """How many joints lie between the supports and the block furthest from them; joints: (n, 2) blocks."""
+    near, reached = 0, fixed.copy()
+    while True:
+        a, b = reached[joints].T
+        new = np.concatenate([joints[a & ~b, 1], joints[b & ~a, 0]])
+        if not len(new):
+            return near
+        reached[new] = True
+        near += 1
+
+
+def widths(model: Model) -> np.ndarray:
+    """About the smaller side of each block [m], (n_blocks,): area over largest extent of its narrowest piece."""
+    areas = polygon.properties_of_all(model.vertices, model.part_starts).area
+    narrow = np.full(model.n_blocks, np.inf)
+    np.minimum.at(narrow, model.part_blocks, areas / polygon.sizes(model.vertices, model.part_starts))
+    return narrow

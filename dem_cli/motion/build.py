@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from dem_cli.case.base import Pair
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.motion import pulses
-from dem_cli.motion.motion import Motion, Shape, moving_at_the_end
+from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
 from dem_cli.motion.read import RecordError, read_series
-from dem_cli.motion.record import Record, record
+from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.table import (
     ArtificialTable,
     HarmonicTable,
@@ -65,7 +65,7 @@ def _moving(case: Case) -> list[MotionTable]:
 
 def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
     """The records of one table, with its direction, blocks and start."""
-    factor, titles, shapes = 1.0, [""], list[Shape]()
+    factor, titles, shapes = 1.0, [""], list[Waveform]()
     if isinstance(table, PulseTable):
         shapes, titles = [_pulse(table)], [table.shape]
     elif isinstance(table, HarmonicTable):
@@ -79,9 +79,7 @@ def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
         shapes = [*suite(table, seed if table.seed is None else table.seed, i_table)]
         titles, factor = [f"artificial {k}" for k in range(1, table.count + 1)], table.scale
     along = _unit(table.direction)
-    motions = [
-        Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)
-    ]
+    motions = [Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)]
     return [_with_warning(motions[0], table)] if isinstance(table, RecordTable) else motions
 
 
@@ -99,7 +97,7 @@ def _unit(direction: Pair) -> Pair:
     return direction[0] / length, direction[1] / length
 
 
-def _pulse(table: PulseTable) -> Shape:
+def _pulse(table: PulseTable) -> Waveform:
     if table.shape == "impulse":
         assert table.duration is not None
         return pulses.impulse(table.amplitude, table.duration, table.rebound)
@@ -111,12 +109,12 @@ def _pulse(table: PulseTable) -> Shape:
     return pulses.Wave(table.amplitude, table.frequency, cycles / table.frequency, phase)
 
 
-def _harmonic(table: HarmonicTable) -> Shape:
+def _harmonic(table: HarmonicTable) -> Waveform:
     ramp = min(table.ramp / table.frequency, 0.5 * table.length)
     return pulses.Wave(table.amplitude, table.frequency, table.length, math.radians(table.phase_deg), ramp)
 
 
-def _record(table: RecordTable, i_table: int) -> Record:
+def _record(table: RecordTable, i_table: int) -> Accelerogram:
     """Read, convert, correct; the factor of `scale` or `peak` is left to the motion. Raises CaseError."""
     try:
         series = read_series(Path(table.file), table.step, table.column, table.uneven)

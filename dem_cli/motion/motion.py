@@ -12,7 +12,7 @@ from dem_cli.case.base import Pair
 ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves a word
 
 
-class Shape(Protocol):
+class Waveform(Protocol):
     """A history that starts at t = 0 from rest; times given to it lie within [0, duration].
 
     velocity is the exact integral of acceleration and displacement that of velocity, both 0 at t = 0.
@@ -38,7 +38,7 @@ class Motion:
     blocks     ids of the fixed blocks that move; () for all
     """
 
-    shape: Shape
+    shape: Waveform
     direction: Pair = (1.0, 0.0)
     blocks: tuple[str, ...] = ()
     start: float = 0.0

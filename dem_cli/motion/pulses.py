@@ -70,9 +70,7 @@ class Wave:
             gained = self._first(there, k) - self._first(here, k)
             drift = (self._velocities[k] - self._first(here, k)) * (there - here)
             self._velocities[k + 1] = self._velocities[k] + gained
-            self._displacements[k + 1] = (
-                self._displacements[k] + drift + self._second(there, k) - self._second(here, k)
-            )
+            self._displacements[k + 1] = self._displacements[k] + drift + self._second(there, k) - self._second(here, k)
 
     def _peak(self) -> float:
         """Largest absolute acceleration: at crests of the sine and close around them."""

@@ -26,7 +26,7 @@ class RecordError(ValueError):
     """A record that cannot be used; the message says which file, where in it, and why."""
 
 
-class Series(NamedTuple):
+class RecordSamples(NamedTuple):
     """Samples as they stand in a file."""
 
     times: np.ndarray  # [s], (n,)
@@ -35,7 +35,9 @@ class Series(NamedTuple):
     unit: str | None = None
 
 
-def read_series(path: Path, step: float | None = None, column: int | None = None, uneven: bool = False) -> Series:
+def read_series(
+    path: Path, step: float | None = None, column: int | None = None, uneven: bool = False
+) -> RecordSamples:
     """The samples in a file. Raises RecordError.
 
     step    time step of a file that has values only [s]
@@ -58,7 +60,7 @@ def read_series(path: Path, step: float | None = None, column: int | None = None
     else:
         values = _column(path.name, rows, numbers, column)
         times = step * np.arange(len(values))
-    return Series(times, values)
+    return RecordSamples(times, values)
 
 
 def _rows(name: str, lines: list[str]) -> tuple[list[list[float]], list[int]]:
@@ -154,7 +156,7 @@ def _check_times(name: str, times: np.ndarray, numbers: list[int], uneven: bool)
     )
 
 
-def _peer(name: str, lines: list[str]) -> Series:
+def _peer(name: str, lines: list[str]) -> RecordSamples:
     """A file of the PEER strong-motion database: header with NPTS and DT, then values, several in a line."""
     at = next(i for i, line in enumerate(lines[:8]) if PEER_COUNT.search(line) or PEER_OLD.search(line))
     old = PEER_OLD.search(lines[at])
@@ -180,7 +182,7 @@ def _peer(name: str, lines: list[str]) -> Series:
     if count < 2:
         raise RecordError(f"{name}:{at + 1}: NPTS = {count}; a record has at least two values")
     quantity, unit = _peer_quantity("\n".join(lines[:at]).upper())
-    return Series(step * np.arange(count), np.array(values), quantity, unit)
+    return RecordSamples(step * np.arange(count), np.array(values), quantity, unit)
 
 
 def _peer_quantity(header: str) -> tuple[str | None, str | None]:

@@ -13,7 +13,7 @@ QUANTITIES = ("acceleration", "velocity", "displacement")
 BASELINE = 1  # order for baseline = true
 
 
-class Record:
+class Accelerogram:
     """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Shape`).
 
     times (n,) are the samples [s], the first one 0.
@@ -38,7 +38,7 @@ class Record:
 
 def record(
     times: np.ndarray, values: np.ndarray, quantity: str = "acceleration", baseline: int | None = None
-) -> Record:
+) -> Accelerogram:
     """A record from samples at increasing times, even or not; the first time becomes 0.
 
     acceleration  linear between the samples
@@ -57,7 +57,7 @@ def record(
         acceleration = CubicSpline(times, values - values[0]).derivative(1)
     else:
         acceleration = CubicSpline(times, values - values[0], bc_type=((1, 0.0), "not-a-knot")).derivative(2)
-    return Record(acceleration if baseline is None else corrected(acceleration, baseline))
+    return Accelerogram(acceleration if baseline is None else corrected(acceleration, baseline))
 
 
 def corrected(acceleration: PPoly, order: int) -> PPoly:

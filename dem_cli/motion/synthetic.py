@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.motion.eurocode import Target, eurocode, listed
-from dem_cli.motion.record import Record, record
+from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.spectrum import Filter, oscillator, pseudo_accelerations
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def target_of(table: ArtificialTable) -> Target:
     return listed(table.spectrum, table.damping)
 
 
-def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Record]:
+def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Accelerogram]:
     """`count` records; record i depends on (seed, stream, i) and on nothing else that is random."""
     count = round(table.duration / table.time_step)
     times = table.duration / count * np.arange(count + 1)

@@ -48,8 +48,7 @@ class PulseTable(MotionTable):
     duration: Positive | None = Field(default=None, description="of impulse: how long it lasts [s]", examples=[0.3])
     rebound: NonNegative = Field(
         default=0.0,
-        description="of impulse: then −rebound · amplitude until the base stands still [-]; 0: it keeps its "
-        "velocity",
+        description="of impulse: then −rebound · amplitude until the base stands still [-]; 0: it keeps its velocity",
         examples=[0.5],
     )
 

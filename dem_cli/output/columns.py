@@ -10,7 +10,7 @@ _CHUNK_BYTES = 32768
 _FEWEST_ROWS = 64
 
 
-class Column:
+class GrowingDataset:
     """One growing dataset."""
 
     def __init__(self, group: h5py.Group, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int):
@@ -37,14 +37,14 @@ class Columns:
 
     def __init__(self, group: h5py.Group):
         self.group = group
-        self._columns: dict[str, Column] = {}
+        self._columns: dict[str, GrowingDataset] = {}
 
     def append(self, name: str, rows: np.ndarray) -> int:
         """Add rows to the dataset `name` (a path inside the group); returns the length that it had."""
         rows = np.asarray(rows)
         column = self._columns.get(name)
         if column is None:
-            column = Column(self.group, name, rows.shape[1:], rows.dtype, len(rows))
+            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, len(rows))
             self._columns[name] = column
         return column.append(rows)
 

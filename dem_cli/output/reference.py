@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Protocol
 
-from dem_cli.output.summary import scalars
+from dem_cli.output.scalars import scalars
 
 Value = float | int | str | bool | None
 

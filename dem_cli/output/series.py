@@ -1,9 +1,9 @@
 """Time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and in history.csv.
 
-    /dem/series                                        attributes: monitors (names), quantities
-    /dem/series/time                                   [s], (n,); written last, it counts
-    /dem/series/base_acceleration, _velocity, _displacement   [m, s], (n, d)
-    /dem/series/monitors                               (n, n_monitors), SI
+/dem/series                                        attributes: monitors (names), quantities
+/dem/series/time                                   [s], (n,); written last, it counts
+/dem/series/base_acceleration, _velocity, _displacement   [m, s], (n, d)
+/dem/series/monitors                               (n, n_monitors), SI
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Peak(NamedTuple):
     residual: float  # the last value
 
 
-class Series(NamedTuple):
+class HistorySeries(NamedTuple):
     """The histories of a run."""
 
     time: np.ndarray  # [s], (n,)
@@ -107,26 +107,28 @@ class SeriesWriter:
                 np.savetxt(file, table(series), fmt="%.9g", delimiter=",")
 
 
-def headers(series: Series) -> list[str]:
+def headers(series: HistorySeries) -> list[str]:
     """A name with its unit for each column of `table`."""
     axes = _AXES[: series.base.shape[2]]
     base = [f"base {name} {axis} [{UNITS[name]}]" for name in BASE for axis in axes]
     return ["time [s]", *base, *(f"{name} [{UNITS[quantity]}]" for name, quantity in series.quantities.items())]
 
 
-def table(series: Series) -> np.ndarray:
+def table(series: HistorySeries) -> np.ndarray:
     """Time, motion of the base and monitors side by side, (n, n_columns)."""
     return np.column_stack([series.time, series.base.reshape(len(series.time), -1), *series.monitors.values()])
 
 
-def read_series(group: h5py.Group) -> Series:
+def read_series(group: h5py.Group) -> HistorySeries:
     """What has been written so far."""
     names, quantities = (list(map(str, group.attrs[key])) for key in ("monitors", "quantities"))
     if "time" not in group:
         nothing = np.zeros(0)
-        return Series(nothing, np.zeros((0, len(BASE), 2)), dict.fromkeys(names, nothing), dict(zip(names, quantities)))
+        return HistorySeries(
+            nothing, np.zeros((0, len(BASE), 2)), dict.fromkeys(names, nothing), dict(zip(names, quantities))
+        )
     n = len(group["time"])
     base = np.stack([group[f"base_{name}"][:n] for name in BASE], axis=1)
     values = group["monitors"][:n] if names else np.zeros((n, 0))
     monitors = {name: values[:, i] for i, name in enumerate(names)}
-    return Series(group["time"][:], base, monitors, dict(zip(names, quantities, strict=True)))
+    return HistorySeries(group["time"][:], base, monitors, dict(zip(names, quantities, strict=True)))

@@ -45,9 +45,7 @@ def rest_vertices(model: Model) -> np.ndarray:
     return model.centroids[vertex_blocks(model)] + model.vertices
 
 
-def vertex_velocities(
-    model: Model, vertices: np.ndarray, positions: np.ndarray, velocities: np.ndarray
-) -> np.ndarray:
+def vertex_velocities(model: Model, vertices: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
     """Velocity of each corner, (n_vertices, d), from the generalised velocities of the blocks."""
     blocks, d = vertex_blocks(model), model.dimension
     arms = vertices - positions[blocks]

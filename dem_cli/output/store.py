@@ -239,9 +239,7 @@ def _store_rows(history: Columns, rows: Sequence[HistoryRow]) -> None:
         history.append(f"energy/{name}", np.array([row.energy[i] for row in rows], dtype=np.float64))
     if rows[0].monitors:
         history.append("monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
-    history.append(
-        "stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8)
-    )  # last: it counts
+    history.append("stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8))  # last: it counts
 
 
 def contact_forces(contacts: ContactRecord) -> np.ndarray:
@@ -274,9 +272,7 @@ def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
         "normal": in_space(contacts.normals),
         "force": in_space(contact_forces(contacts)),
         "normal_force": contacts.normal_force.astype(np.float32),
-        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(
-            np.float32
-        ),
+        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
         "gap": contacts.gap.astype(np.float32),
         "slip": contacts.slip.astype(np.float32),
         "state": contacts.state.astype(np.uint8),

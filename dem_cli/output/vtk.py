@@ -69,9 +69,7 @@ def export_pvd(results: Results, folder: Path) -> list[Path]:
 def _write_foreign(path: Path, model: Model, vertices: np.ndarray) -> None:
     import meshio
 
-    cells = [
-        ("polygon", np.arange(a, b)[np.newaxis]) for a, b in zip(model.part_starts, model.part_starts[1:])
-    ]
+    cells = [("polygon", np.arange(a, b)[np.newaxis]) for a, b in zip(model.part_starts, model.part_starts[1:])]
     try:
         meshio.Mesh(vertices, cells).write(path)
     except (meshio.ReadError, meshio.WriteError, KeyError, SystemExit) as error:
@@ -136,9 +134,7 @@ def _file(kind: str, piece: str, sections: Iterable[tuple[str, Fields]], steps: 
 
 
 def _section(name: str, fields: Fields, extra: str = "") -> str:
-    return (
-        f"<{name}>\n" + "".join(_array(key, values, extra) for key, values in fields.items()) + f"</{name}>\n"
-    )
+    return f"<{name}>\n" + "".join(_array(key, values, extra) for key, values in fields.items()) + f"</{name}>\n"
 
 
 def _array(name: str, values: np.ndarray, extra: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.series import Series
+from dem_cli.output.series import HistorySeries
 from dem_cli.output.shapes import rest_vertices
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import measures, style, view
@@ -110,7 +110,7 @@ class _Scene:
         if self.carried:  # a place in space that stays, so that one sees the ground move
             self.axis.plot(rest_vertices(self.model)[:, 0].mean(), low[1], "^", ms=9, color=style.INK, clip_on=False)
 
-    def _draw_strip(self, axis: Any, series: Series) -> None:
+    def _draw_strip(self, axis: Any, series: HistorySeries) -> None:
         axis.plot(series.time, series.base[:, 0], lw=0.8, color=style.GREY)
         axis.set_xlim(0.0, series.time[-1] or 1.0)
         axis.set_ylabel("base\n[m/s2]")

@@ -110,9 +110,7 @@ def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None
     if place[0] > 0.6 * axis.get_xlim()[1]:  # beside the point it would lie on the curve
         axis.text(0.98, 0.05, text, transform=axis.transAxes, ha="right", fontsize=9, color=style.FAILURE)
     else:
-        axis.annotate(
-            text, place, (10, -12), textcoords="offset points", va="top", fontsize=9, color=style.FAILURE
-        )
+        axis.annotate(text, place, (10, -12), textcoords="offset points", va="top", fontsize=9, color=style.FAILURE)
 
 
 def _limit_loads(axis: Any, results: Results) -> None:

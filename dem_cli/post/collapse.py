@@ -132,9 +132,7 @@ def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
     return max(6.4, columns * panel[0]), rows * (panel[1] + 0.35) + _LEGEND_ROOM, rows, columns
 
 
-def _draw_panel(
-    axis: Any, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray
-) -> None:
+def _draw_panel(axis: Any, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray) -> None:
     draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
     draw_rest(axis, model)
     _draw_joints(axis, model, frame, scale)
@@ -155,9 +153,7 @@ def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
     fixed = model.fixed[model.part_blocks]
     faces = [style.GROUND if f else style.STONE for f in fixed]
     axis.add_collection(
-        PolyCollection(
-            _polygons(model, corners), facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6
-        )
+        PolyCollection(_polygons(model, corners), facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6)
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
-from dem_cli.output.series import BASE, UNITS, Series
+from dem_cli.output.series import BASE, UNITS, HistorySeries
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.labels import KNOWN, Quantity, nearest, unknown
 
@@ -25,7 +25,7 @@ _FRAGILITY = {
 }
 
 
-class Table(NamedTuple):
+class ColumnTable(NamedTuple):
     """Columns of the same length."""
 
     title: str
@@ -34,7 +34,7 @@ class Table(NamedTuple):
     breaks: np.ndarray  # rows before which a line is interrupted
 
 
-def tables(results: Results) -> list[Table]:
+def tables(results: Results) -> list[ColumnTable]:
     """All of a run; the one that most people want comes first."""
     found = [_history(results)] if len(results.history.get("step", ())) else []
     if results.series is not None and len(results.series.time) > 1:
@@ -44,11 +44,11 @@ def tables(results: Results) -> list[Table]:
     if curve and "share" in curve:
         held = {name: np.array(curve[name], float) for name in _FRAGILITY if name in curve}
         quantities = {name: _FRAGILITY[name] for name in held}
-        found.insert(0, Table("fragility curve", quantities, held.__getitem__, np.zeros(0, dtype=int)))
+        found.insert(0, ColumnTable("fragility curve", quantities, held.__getitem__, np.zeros(0, dtype=int)))
     return found
 
 
-def _history(results: Results) -> Table:
+def _history(results: Results) -> ColumnTable:
     history = results.history
     held = {name: history[name] for name in _HISTORY if name in history and history[name].any()}
     quantities = {name: KNOWN[name] for name in held}
@@ -62,26 +62,26 @@ def _history(results: Results) -> Table:
             column = f"{name.replace('_', ' ')} energy"
             held[column], quantities[column] = values, Quantity(column, "J")
     breaks = np.flatnonzero(np.diff(history["step"]) < 0) + 1  # another simulation of the same run
-    return Table("history", quantities, held.__getitem__, breaks)
+    return ColumnTable("history", quantities, held.__getitem__, breaks)
 
 
-def _series(series: Series) -> Table:
+def _series(series: HistorySeries) -> ColumnTable:
     held = {"time": series.time}
     quantities = {"time": KNOWN["time"]}
     for name, (i, k) in _base(series).items():
         held[name], quantities[name] = series.base[:, i, k], Quantity(name, UNITS[BASE[i]])
     for name, values in series.monitors.items():
         held[name], quantities[name] = values, Quantity(name, UNITS[series.quantities[name]])
-    return Table("time history", quantities, held.__getitem__, np.zeros(0, dtype=int))
+    return ColumnTable("time history", quantities, held.__getitem__, np.zeros(0, dtype=int))
 
 
-def _base(series: Series) -> dict[str, tuple[int, int]]:
+def _base(series: HistorySeries) -> dict[str, tuple[int, int]]:
     """Components of the motion of the base that are not always zero."""
     places = [(i, k) for i in range(len(BASE)) for k in range(series.base.shape[2])]
     return {f"base {BASE[i]} {_AXES[k]}": (i, k) for i, k in places if series.base[:, i, k].any()}
 
 
-def _spectra(series: Series) -> Table:
+def _spectra(series: HistorySeries) -> ColumnTable:
     """Pseudo-acceleration of the base motion, and of places on the structure whose absolute acceleration is known."""
     sources = {
         f"{SPECTRAL} {name.split()[-1]}": series.base[:, i, k] for name, (i, k) in _base(series).items() if i == 0
@@ -103,10 +103,10 @@ def _spectra(series: Series) -> Table:
         whole = np.where(np.isfinite(sources[name]), sources[name], 0.0)
         return response_spectrum(whole, step, at, DAMPING).pseudo_acceleration.ravel()
 
-    return Table("response spectra", quantities if sources else {}, values, np.zeros(0, dtype=int))
+    return ColumnTable("response spectra", quantities if sources else {}, values, np.zeros(0, dtype=int))
 
 
-def find(found: Sequence[Table], names: Sequence[str]) -> tuple[Table, list[str]]:
+def find(found: Sequence[ColumnTable], names: Sequence[str]) -> tuple[ColumnTable, list[str]]:
     """The first table that has all these columns, and their exact names. Raises UsageError."""
     for table in found:
         exact = [nearest(name, list(table.quantities)) for name in names]

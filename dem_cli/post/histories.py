@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
-from dem_cli.output.series import BASE, UNITS, Series
+from dem_cli.output.series import BASE, UNITS, HistorySeries
 from dem_cli.post import style
 
 _COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#8250a8", "#c51b7d", "#5aa0d8", "#a6761d", "#7c7c86")
@@ -47,12 +47,12 @@ def draw_histories(results: Results, path: Path) -> None:
         style.headline(figure, results.summary)
 
 
-def of_quantity(series: Series, quantity: str) -> dict[str, np.ndarray]:
+def of_quantity(series: HistorySeries, quantity: str) -> dict[str, np.ndarray]:
     """All monitors of one quantity, by name."""
     return {name: values for name, values in series.monitors.items() if series.quantities[name] == quantity}
 
 
-def _draw_base(axis: Any, series: Series) -> None:
+def _draw_base(axis: Any, series: HistorySeries) -> None:
     """Acceleration in every direction that has one."""
     for i, name in enumerate("xyz"[: series.base.shape[2]]):
         values = series.base[:, 0, i]

@@ -92,9 +92,7 @@ def _number(v: float, digits: int) -> str:
     return (text if len(text) <= 8 else f"{v:.2e}").replace("-", "−")
 
 
-def _draw_points(
-    figure: Any, axis: Any, table: SweepTable, names: tuple[str, str, str], quantity: Quantity
-) -> None:
+def _draw_points(figure: Any, axis: Any, table: SweepTable, names: tuple[str, str, str], quantity: Quantity) -> None:
     """Of keys that are no grid: a point per run."""
     if not all(numeric(table.columns[name]) for name in names):
         raise UsageError("--map of points needs numbers: these keys are no grid")

@@ -120,9 +120,7 @@ def scaled(model: Model, frame: Frame, scale: float) -> Frame:
     turn_back = -frame.orientations[owner, 0]
     arms = _turned(contacts.points - frame.positions[owner], turn_back)
     points = positions[owner] + _turned(arms, orientations[owner, 0])
-    return frame._replace(
-        positions=positions, orientations=orientations, contacts=contacts._replace(points=points)
-    )
+    return frame._replace(positions=positions, orientations=orientations, contacts=contacts._replace(points=points))
 
 
 def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:

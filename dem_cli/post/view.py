@@ -9,7 +9,7 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.series import Series
+from dem_cli.output.series import HistorySeries
 from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.post import measures
 
@@ -28,7 +28,7 @@ def carried(results: Results, scale: float) -> bool:
     return 0.0 < travel <= _CARRIED * measures.size(results.model)
 
 
-def ground(series: Series | None, frame: Frame) -> np.ndarray:
+def ground(series: HistorySeries | None, frame: Frame) -> np.ndarray:
     """How far the ground has moved at a frame [m], (d,)."""
     if series is None:
         return np.zeros(frame.positions.shape[1])
@@ -41,9 +41,7 @@ def corners(model: Model, frame: Frame, scale: float, moved: np.ndarray | float 
     return placed_vertices(model, shown.positions, shown.orientations) + moved
 
 
-def window(
-    model: Model, places: Sequence[np.ndarray], around: float = _GROUND
-) -> tuple[np.ndarray, np.ndarray]:
+def window(model: Model, places: Sequence[np.ndarray], around: float = _GROUND) -> tuple[np.ndarray, np.ndarray]:
     """What all pictures show: wherever free blocks come, but not far away; of the ground what is near.
 
     around: empty space on all sides, over the size of what is seen.

@@ -19,7 +19,7 @@ KINDS = {
     "time-history": "Time history", "fragility": "Fragility", "modes": "Natural modes", "safety": "Factor of safety",
     "limit": "Limit analysis",
 }  # fmt: skip
-BALANCED = 1e-5  # unbalanced force over the block's own weight that solve/equilibrium.py accepts
+BALANCED = 1e-5  # unbalanced force over the block's own weight that statics/equilibrium.py accepts
 GOOD, LOOK, BAD = "good", "look", "bad"
 _MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
 

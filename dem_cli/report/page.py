@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from dem_cli.output.summary import plain
+from dem_cli.output.scalars import plain
 
 ASSETS = Path(__file__).parent / "assets"
 TEMPLATE, STYLE, THREE = "page.html", "page.css", "three.min.js"

@@ -16,9 +16,10 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.shapes import in_space, rest_orientations, rotations
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import marks, measures
+from dem_cli.post import measures
 from dem_cli.post import view as stage
-from dem_cli.post.solids import surface
+from dem_cli.render import marks
+from dem_cli.render.solids import surface
 from dem_cli.report.pack import pack
 
 MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out

@@ -100,9 +100,7 @@ class Wall(StructureBase):
         for key in ("course_heights", "course_lengths"):
             given = getattr(self, key)
             if given and len(given) != self.courses:
-                raise KeyProblem(
-                    f"{len(given)} values; must be one for each of the {self.courses} courses", key
-                )
+                raise KeyProblem(f"{len(given)} values; must be one for each of the {self.courses} courses", key)
         if self.offset is not None:
             if self.bond is not None:
                 raise KeyProblem("bond and offset say the same; give one of them", "offset")
@@ -112,9 +110,7 @@ class Wall(StructureBase):
                 raise KeyProblem(message, "offset")
         for i, length in enumerate(self.course_lengths):
             if length > self.length * (1 + SLIVER):
-                message = (
-                    f"{length:g} is not allowed; must be at most {self.length:g}, the length of the wall"
-                )
+                message = f"{length:g} is not allowed; must be at most {self.length:g}, the length of the wall"
                 raise KeyProblem(message, "course_lengths", i)
         for i, opening in enumerate(self.openings):
             _check_opening(opening, i, self.length, float(self.levels[-1]))

@@ -12,7 +12,7 @@ from typing import Any
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.sweep.identity import program
 from dem_cli.sweep.pool import Died
-from dem_cli.sweep.run import Job, Summary
+from dem_cli.sweep.run import Summary, SweepJob
 
 GONE = "the cluster went away; what was done is kept, run the same command again"
 PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
@@ -70,7 +70,7 @@ def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tupl
 
 
 def on_cluster(
-    client: Any, do: Callable[[Job], Summary], jobs: Sequence[Job]
+    client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[SweepJob]
 ) -> Iterator[tuple[int, Summary | Died]]:
     """Number and result of each job as they come.
 
@@ -88,7 +88,7 @@ def on_cluster(
 
 
 def _asked_for(
-    client: Any, do: Callable[[Job], Summary], jobs: Sequence[tuple[int, Job]], suffix: str
+    client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[tuple[int, SweepJob]], suffix: str
 ) -> Iterator[tuple[int, Summary | Died]]:
     """Number and result of numbered jobs. Raises SolverError where the cluster goes away."""
     from dask.distributed import CancelledError, KilledWorker, as_completed

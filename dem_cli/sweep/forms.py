@@ -61,7 +61,7 @@ def drawn(path: KeyPath, form: Mapping[str, Any], fractions: Fractions) -> list[
     """Values at these fractions of a distribution such as `{ uniform = [0.5, 0.7] }`. Raises CaseError."""
     if len(form) > 1:
         raise _wrong(path, f"one distribution, not {len(form)} keys: {', '.join(map(str, form))}")
-    (name, numbers), = form.items()
+    ((name, numbers),) = form.items()
     if not (isinstance(numbers, (list, tuple)) and len(numbers) == 2 and all(map(_is_number, numbers))):
         raise _wrong((*path, name), f"{show(numbers)} is not allowed; must be two numbers")
     a, b = numbers

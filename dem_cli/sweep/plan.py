@@ -33,7 +33,7 @@ class Change(NamedTuple):
     bundled: bool = False
 
 
-class Run(NamedTuple):
+class SweepRun(NamedTuple):
     """What a run changes, in the order in which it is applied."""
 
     changes: tuple[Change, ...]
@@ -55,7 +55,7 @@ class Plan(NamedTuple):
     """All runs; `keys` are the columns that tell them apart."""
 
     keys: tuple[str, ...]
-    runs: tuple[Run, ...]
+    runs: tuple[SweepRun, ...]
 
 
 def plan_of(table: Sweep, seed: int) -> Plan:
@@ -79,7 +79,7 @@ def plan_of(table: Sweep, seed: int) -> Plan:
         points = list(_points({key: axes[key] for key in axes if key not in said}, table.zip))
         for point, sample in product(points, drawn_points):
             changes = (*row, *point, *(change for change in sample if change.key not in said))
-            runs.append(Run(changes, bool(sample)))
+            runs.append(SweepRun(changes, bool(sample)))
     _check_order(runs)
     keys = dict.fromkeys(change.key for run in runs for change in run.changes)
     return Plan(tuple(sorted(keys, key=lambda key: key != NAME)), tuple(runs))  # the label comes first
@@ -101,7 +101,7 @@ def _check_number(rows: int, axes: Axes, side_by_side: bool, points: int) -> Non
         raise _wrong(("sweep",), f"asks for {count:,} runs; at most {MOST:,}")
 
 
-def _check_order(runs: Sequence[Run]) -> None:
+def _check_order(runs: Sequence[SweepRun]) -> None:
     """Raises CaseError where one change of a run undoes another, so that the table would not say what was run."""
     seen = set()
     for run in runs:

@@ -17,7 +17,7 @@ from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.output.folder import OWN_KEYS, SUMMARY, abandoned, write_error
 from dem_cli.output.sweeps import RUNS
 from dem_cli.sweep.identity import facts, name_of
-from dem_cli.sweep.plan import Plan, Run
+from dem_cli.sweep.plan import Plan, SweepRun
 from dem_cli.sweep.pool import Died
 
 FAILED, WAITING = "failed", "waiting"
@@ -27,7 +27,7 @@ DIED = "its process died, twice; perhaps for want of memory"
 Summary = Mapping[str, Any]
 
 
-class Job(NamedTuple):
+class SweepJob(NamedTuple):
     """All that a process elsewhere needs to know of a run."""
 
     id: str
@@ -37,16 +37,16 @@ class Job(NamedTuple):
     folder: str  # of the results
 
 
-class Sweep(NamedTuple):
+class PlannedSweep(NamedTuple):
     """A sweep that can be done: one job per row of its table; equal runs have equal jobs."""
 
     plan: Plan
-    jobs: tuple[Job | None, ...]  # None: the changes of this run make no valid case
+    jobs: tuple[SweepJob | None, ...]  # None: the changes of this run make no valid case
     reasons: dict[int, str]  # why not, by row
     base: dict[str, Any]  # value in the file of each key that some runs leave alone
 
 
-def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Override], light: bool) -> Sweep:
+def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Override], light: bool) -> PlannedSweep:
     """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
     one that is given is changed by all of them.
 
@@ -54,7 +54,7 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Overr
     """
     _in_vain(given, plan)
     extra = _light(loaded, plan) if light else ()
-    jobs: list[Job | None] = []
+    jobs: list[SweepJob | None] = []
     wrong: dict[int, CaseError] = {}
     path = loaded.path.resolve()
     for row, run in enumerate(plan.runs):
@@ -66,12 +66,12 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Overr
             jobs.append(None)
             continue
         name = name_of(facts(case, case_text(case)))
-        jobs.append(Job(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))
+        jobs.append(SweepJob(name, str(path), loaded.text, overrides, str(folder / RUNS / name)))
     _buildable(loaded, next(job for job in jobs if job is not None) if len(wrong) < len(jobs) else None)
     mistaken = _mistaken(plan.runs, wrong)
     if mistaken:
         raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
-    return Sweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
+    return PlannedSweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
 
 
 def _in_vain(given: Sequence[Override], plan: Plan) -> None:
@@ -82,7 +82,7 @@ def _in_vain(given: Sequence[Override], plan: Plan) -> None:
             raise UsageError(f"--set {override.text}: every run of the sweep changes it; change [sweep] instead")
 
 
-def _buildable(loaded: LoadedCase, first: Job | None) -> None:
+def _buildable(loaded: LoadedCase, first: SweepJob | None) -> None:
     """Raises CaseError where neither the first run nor the case itself has blocks to be solved: all would fail."""
     if first is None:
         return
@@ -101,7 +101,7 @@ def _light(loaded: LoadedCase, plan: Plan) -> tuple[Override, ...]:
     return tuple(Override(key, tuple(key.split(".")), value) for key, value in keys)
 
 
-def _mistaken(runs: Sequence[Run], wrong: Mapping[int, CaseError]) -> list[str]:
+def _mistaken(runs: Sequence[SweepRun], wrong: Mapping[int, CaseError]) -> list[str]:
     """Messages of listed values that are wrong wherever they occur, or of everything, if all is wrong."""
     if len(wrong) == len(runs):
         return [str(error) for error in wrong.values()]
@@ -125,7 +125,7 @@ def _base(loaded: LoadedCase, plan: Plan) -> dict[str, Any]:
     return found
 
 
-def finished(sweep: Sweep) -> dict[str, Summary]:
+def finished(sweep: PlannedSweep) -> dict[str, Summary]:
     """Summaries, by name of the run, that are there already."""
     found: dict[str, Summary] = {}
     for job in sweep.jobs:
@@ -154,10 +154,10 @@ def tidy(folder: Path) -> None:
             shutil.rmtree(entry.path, ignore_errors=True)
 
 
-Spread = Callable[[Sequence[Job]], Iterator[tuple[int, Summary | Died]]]  # does jobs somewhere, in any order
+Spread = Callable[[Sequence[SweepJob]], Iterator[tuple[int, Summary | Died]]]  # does jobs somewhere, in any order
 
 
-def carried_out(sweep: Sweep, known: Mapping[str, Summary], spread: Spread) -> Iterator[tuple[str, Summary]]:
+def carried_out(sweep: PlannedSweep, known: Mapping[str, Summary], spread: Spread) -> Iterator[tuple[str, Summary]]:
     """Name and summary of each run as it ends; `known` ones are not done again."""
     left = list({job.id: job for job in sweep.jobs if job is not None and job.id not in known}.values())
     for number, summary in spread(left):
@@ -166,7 +166,7 @@ def carried_out(sweep: Sweep, known: Mapping[str, Summary], spread: Spread) -> I
         yield left[number].id, summary
 
 
-def failure(job: Job, reason: str, trace: str | None = None) -> Summary:
+def failure(job: SweepJob, reason: str, trace: str | None = None) -> Summary:
     """The record of a run that could not be done, left in its folder so that it is not tried again.
 
     Raises OutputError.

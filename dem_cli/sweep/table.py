@@ -11,18 +11,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dem_cli.output.summary import plain
+from dem_cli.output.scalars import plain
 from dem_cli.output.sweeps import CSV, FIRST, SQLITE
 from dem_cli.output.whole import whole
 from dem_cli.sweep.plan import show_value
-from dem_cli.sweep.run import FAILED, WAITING, Summary, Sweep
+from dem_cli.sweep.run import FAILED, WAITING, PlannedSweep, Summary
 
 ELSEWHERE = frozenset(("title", "version", "kind", "status", "reason", "traceback", "skipped", "search", "threads",
                        "runs_done_before"))  # fmt: skip
 Row = dict[str, Any]
 
 
-def rows(sweep: Sweep, known: Mapping[str, Summary]) -> list[Row]:
+def rows(sweep: PlannedSweep, known: Mapping[str, Summary]) -> list[Row]:
     """A row per run: `run`, the swept keys, `status`, `reason`, then the numbers and words of the summary."""
     found = []
     for number, (run, job) in enumerate(zip(sweep.plan.runs, sweep.jobs, strict=True)):

@@ -14,20 +14,20 @@ from dem_cli.errors import DemError, UsageError
 SHELVES = {"exact": "verification", "experiment": "validation", "code": "cross-code"}  # [reference] kind -> its shelf
 
 
-class Found(NamedTuple):
+class CaseSelection(NamedTuple):
     """What there is to do, and what was left out."""
 
     cases: list[Path]
     without: list[Path]  # cases without [reference]
 
 
-def find(paths: Sequence[Path], pattern: str = "", shelves: Sequence[str] = ()) -> Found:
+def find(paths: Sequence[Path], pattern: str = "", shelves: Sequence[str] = ()) -> CaseSelection:
     """Case files with a [reference] whose path matches and which have one on the shelves; every file once.
 
     pattern: a part of the path, with wildcards as in a shell. shelves: values of SHELVES; none: all.
     A file that is no TOML is among them: it fails. Raises UsageError for a path that does not exist.
     """
-    found = Found([], [])
+    found = CaseSelection([], [])
     for path in dict.fromkeys(chain.from_iterable(map(files_at, paths))):
         if pattern and not fnmatch(path.as_posix().lower(), f"*{pattern.lower()}*"):
             continue

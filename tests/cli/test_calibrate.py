@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from oracle.rolling_column import fall, foot
 
 from dem_cli import api
-from dem_cli.calibrate.answer import Found, closest, distance, rows
+from dem_cli.calibrate.answer import TrialAnswer, closest, distance, rows
 from dem_cli.calibrate.table import Calibration, NamedShape
 from dem_cli.calibrate.trials import trials
 from dem_cli.cli.main import main
@@ -145,9 +145,9 @@ MEASURED = Calibration(
 
 
 def test_distance_is_relative_to_what_was_measured():
-    assert distance(MEASURED, Found("ok", 0.132, displacement=0.0115)) == 0.0
-    assert distance(MEASURED, Found("ok", 0.132 * 1.03, displacement=0.0115 * 0.96)) == pytest.approx(0.05)
-    assert distance(MEASURED, Found("not converged", None)) is None
+    assert distance(MEASURED, TrialAnswer("ok", 0.132, displacement=0.0115)) == 0.0
+    assert distance(MEASURED, TrialAnswer("ok", 0.132 * 1.03, displacement=0.0115 * 0.96)) == pytest.approx(0.05)
+    assert distance(MEASURED, TrialAnswer("not converged", None)) is None
 
 
 def test_trials_without_an_answer_are_never_the_closest(tmp_path):
@@ -155,11 +155,11 @@ def test_trials_without_an_answer_are_never_the_closest(tmp_path):
     plan = trials(api.load_case(tmp_path / "column.toml").case)
     assert [trial.name for trial in plan][:2] == ["plane joints", "shape narrow, aperture 0.1 mm"]
     far, near, none = (
-        Found("ok", 0.1, displacement=1.0),
-        Found("ok", 0.13, displacement=0.01),
-        Found("does not stand"),
+        TrialAnswer("ok", 0.1, displacement=1.0),
+        TrialAnswer("ok", 0.13, displacement=0.01),
+        TrialAnswer("does not stand"),
     )
-    table = rows(MEASURED, plan, [Found("ok", 0.132, displacement=0.0115), none, far, near, none])
+    table = rows(MEASURED, plan, [TrialAnswer("ok", 0.132, displacement=0.0115), none, far, near, none])
     assert closest(table) == 3
     assert closest(rows(MEASURED, plan, [near, none, none, none, none])) is None
     assert [row["share_of_plane"] for row in rows(MEASURED, plan, [none, near, far, near, none])] == [None] * 5

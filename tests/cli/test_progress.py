@@ -6,8 +6,8 @@ import io
 
 import pytest
 
-from dem_cli.cli import count
-from dem_cli.cli.count import Count
+from dem_cli.cli.words import count
+from dem_cli.cli.words.count import Count
 
 
 class Clock:

@@ -23,10 +23,11 @@ pytest.importorskip("pyvista")
 pytest.importorskip("matplotlib")
 from PIL import Image
 
-from dem_cli.post import gl, movie, paint, render, style
-from dem_cli.post.render import Look
+from dem_cli.post import style
+from dem_cli.render import gl, movie, paint, render
+from dem_cli.render.render import Look
 
-ASK = "from dem_cli.post.gl import choose_window; choose_window()"
+ASK = "from dem_cli.render.gl import choose_window; choose_window()"
 
 
 @pytest.fixture(scope="module")

@@ -287,7 +287,7 @@ def test_an_audit_that_finds_something(tmp_path):
 
 
 def test_what_counts_as_balanced_is_what_the_solver_asks_for():
-    from dem_cli.solve.equilibrium import GRAVITY_TOLERANCE
+    from dem_cli.statics.equilibrium import GRAVITY_TOLERANCE
 
     assert facts.BALANCED == GRAVITY_TOLERANCE
 

@@ -20,9 +20,9 @@ from synthetic.pages import HOSTILE, evil, sweep, wall
 from synthetic.shaking import write_shaking
 
 from dem_cli.cli.main import main
-from dem_cli.output.summary import scalars
+from dem_cli.output.scalars import scalars
 from dem_cli.post.measures import scaled
-from dem_cli.post.solids import placed, pose, surface
+from dem_cli.render.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
 JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}

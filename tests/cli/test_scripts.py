@@ -32,8 +32,8 @@ def fake_python(project: Path, name: str, *, new_enough: bool) -> None:
     script.write_text(
         "#!/usr/bin/env bash\n"
         'case "$*" in\n'
-        f'  *version_info*) exit {answer} ;;\n'
-        '  *ensurepip*) exit 1 ;;\n'
+        f"  *version_info*) exit {answer} ;;\n"
+        "  *ensurepip*) exit 1 ;;\n"
         '  --version) echo "Python 3.9.2" ;;\n'
         "esac\n"
     )

@@ -140,16 +140,16 @@ def test_a_run_that_fails_is_recorded_with_its_reason(case, tmp_path):
 
 
 def test_a_fault_of_the_program_in_one_run_stops_nobody(case, tmp_path, monkeypatch):
-    import dem_cli.solve.run
+    import dem_cli.engine.job
 
-    solve = dem_cli.solve.run.run
+    solve = dem_cli.engine.job.run
 
     def sometimes(case, *rest, **more):
         if case.joints["dry"].friction == 0.4:
             raise ZeroDivisionError("of one run")
         return solve(case, *rest, **more)
 
-    monkeypatch.setattr(dem_cli.solve.run, "run", sometimes)
+    monkeypatch.setattr(dem_cli.engine.job, "run", sometimes)
     assert dem("sweep", case, "-o", tmp_path / "out", "-j", 1)[0] == 1
     rows = table(tmp_path / "out")
     assert [row["status"] for row in rows] == ["ok"] * 3 + ["failed"] * 3
@@ -191,7 +191,7 @@ def test_a_full_disk_is_no_fault_of_a_run(case, tmp_path, monkeypatch):
         ('[sweep]\n"joints.dry.frcition" = [0.5]\n', "did you mean 'friction'?"),
         ('[sweep]\n"joints.dry.friction" = [0.5, -1.0]\n', ":19:31: sweep: joints.dry.friction: -1 is not allowed"),
         ('[sweep]\n"structure.3.courses" = [4]\n', ":19:26: sweep: structure.3: no such [[structure]]"),
-        ('[sweep]\n"joints.dry.friction" = 0.5\n', ":19:25: sweep.\"joints.dry.friction\": 0.5 is not allowed"),
+        ('[sweep]\n"joints.dry.friction" = 0.5\n', ':19:25: sweep."joints.dry.friction": 0.5 is not allowed'),
         ("", "has no [sweep]"),
     ],
 )
@@ -365,7 +365,7 @@ contact_fraction = 0.3
 
 def test_many_runs_in_a_run_are_taken_up_too(case, tmp_path, monkeypatch):
     """A killed fragility study leaves its journal; the sweep goes on with it."""
-    from dem_cli.solve.batch import Batcher
+    from dem_cli.ensembles.batch import Batcher
 
     study = 'kind = "fragility"\nintensities = [0.2, 0.4, 0.6]\n'
     text = SMALL.replace("follow = 0.01\n", study).replace("courses = 2", "courses = 2\nbase_extension = 1.0")
@@ -400,9 +400,7 @@ def cluster(tmp_path, workers: int = 2):
         )
     ]
     running += [
-        subprocess.Popen(
-            [*module, "distributed.cli.dask_worker", "--nthreads", "1", "--no-nanny", *file], **quiet
-        )
+        subprocess.Popen([*module, "distributed.cli.dask_worker", "--nthreads", "1", "--no-nanny", *file], **quiet)
         for _ in range(workers)
     ]
     try:

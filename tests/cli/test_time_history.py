@@ -14,9 +14,9 @@ from synthetic.runs import load
 from synthetic.shaking import COLLAPSE, shaken, shaking_frames, shaking_rows, shaking_summary
 
 from dem_cli.api import load_case
-from dem_cli.cli import console
 from dem_cli.cli.main import main
 from dem_cli.cli.run import execute
+from dem_cli.cli.words import console
 from dem_cli.errors import SolverError
 from dem_cli.output.reader import read
 from dem_cli.output.summary import exit_code

@@ -25,18 +25,23 @@ courses = 1
 [analysis]
 kind = "{kind}"
 """
-SLIDES = BLOCK.format(kind="pushover") + """
+SLIDES = (
+    BLOCK.format(kind="pushover")
+    + """
 [reference]
 failure_load = {load}
 tolerance = 0.001
 source = "friction"
 {more}
 """
+)
 GOOD = SLIDES.format(load=0.4, more="")
 WRONG = SLIDES.format(load=0.5, more="")
 MISSED = SLIDES.format(load=0.5, more='kind = "experiment"\nmissed = "the floor was wet"')
 MET = SLIDES.format(load=0.4, more='kind = "experiment"\nmissed = "the floor was wet"')
-STANDS = BLOCK.format(kind="gravity") + """
+STANDS = (
+    BLOCK.format(kind="gravity")
+    + """
 [[reference]]
 quantity = "status"
 value = "ok"
@@ -46,6 +51,7 @@ source = "another code"
 quantity = "blocks"
 value = [1, 3]
 """
+)
 BAD = GOOD.replace("density", "denstiy")
 BROKEN = "[reference\n"
 

@@ -11,14 +11,14 @@ import numpy as np
 import tomli_w
 
 from dem_cli.api import load_case
+from dem_cli.assembly.assemble import assembly
 from dem_cli.case.schema import Case
+from dem_cli.engine import job as solver
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
-from dem_cli.model.assemble import assembly
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame, HistoryRow, Samples
-from dem_cli.solve import run as solver
-from dem_cli.solve.joints import joint_properties, law_of
-from dem_cli.solve.simulation import Simulation, compiled_advance
 
 MU, DENSITY = 0.6, 2000.0
 
@@ -104,7 +104,7 @@ def scene(case: dict | Path, *overrides: str) -> Scene:
 def solve(case: dict | Path, *overrides: str) -> tuple[dict[str, Any], Records]:
     """Summary of a run and what its observer saw."""
     made, records = scene(case, *overrides), Records()
-    return solver.run(made.case, made.model, records).summary, records
+    return solver.solve(made.case, made.model, records).summary, records
 
 
 def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6) -> Simulation:
@@ -139,7 +139,7 @@ def real_masses(sim: Simulation) -> None:
 
 def highest_frequency(sim: Simulation) -> float:
     """Of the present contacts, sticking [rad/s]; Gershgorin's bound."""
-    from dem_cli.solve.masses import fictitious_masses
+    from dem_cli.engine.fictitious_masses import fictitious_masses
 
     needed = np.zeros_like(sim.loads.inverse_masses)
     fictitious_masses(sim.model, sim.joints, sim.bodies, sim.shape, 1.0, needed)

@@ -16,7 +16,7 @@ def drawn() -> set[str]:
     assert block, "the tree starts with ```text and dem_cli/"
     names, folder = set(), ""
     for line in block.group(1).splitlines():
-        if match := re.match(r"  (\w+)/", line):
+        if match := re.match(r"  ([\w/]+)/", line):
             folder = match.group(1) + "/"
         elif match := re.match(r"(  |    )(\w+\.py)\b", line):
             names.add((folder if len(match.group(1)) == 4 else "") + match.group(2))

@@ -1,4 +1,4 @@
-"""Dependencies point one way. Each package of dem_cli may import the ones named here, itself and errors."""
+"""Imports point one way: each package of dem_cli imports the ones named here, itself and errors; no file a circle."""
 
 from __future__ import annotations
 
@@ -12,31 +12,96 @@ PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ANYTHING = None
 ALLOWED: dict[str, set[str] | None] = {
     "cli": ANYTHING,
-    "bench": {"api", "case", "contact", "kernels", "laws", "limit", "model", "output", "post", "solve"},
-    "api": {"case", "model", "structures", "laws", "solve", "output.record", "calibrate.table", "motion"},
-    "verify": {"case", "output.reference", "output.summary"},
-    "case": {"case"},
-    "sweep": {"api", "case", "output", "kernels.jit"},
-    "report": {"model", "output", "post"},
-    "post": {"output", "model", "motion"},
-    "output": {"model"},
-    "motion": {"case.base", "case.schema"},
-    "solve": {
-        "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base",
-        "case.schema", "case.vary",
+    "bench": {
+        "analyses",
+        "api",
+        "case",
+        "contact",
+        "engine",
+        "kernels",
+        "model",
+        "output.store",
+        "post.style",
     },
-    "calibrate": {"laws", "case.base", "case.schema"},
-    "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
-    "contact": {"model", "geometry", "kernels"},
-    "model": {"structures", "geometry", "contact", "case"},
-    "structures": {"geometry", "model.blocks", "case.base"},
-    "laws": {"kernels", "case.base"},
+    "api": {
+        "analyses.registry",
+        "assembly",
+        "calibrate.table",
+        "case",
+        "laws.registry",
+        "model",
+        "motion",
+        "structures.registry",
+        "tables",
+    },
+    "verify": {"case", "output.reference", "output.scalars"},
+    "sweep": {"api", "case", "kernels.jit", "output"},
+    "report": {"model", "output", "post", "render.solids"},
+    "render": {"model", "output", "post"},
+    "post": {"model", "motion", "output"},
+    "analyses": {
+        "assembly",
+        "case.schema",
+        "dynamics",
+        "engine",
+        "ensembles",
+        "kernels.records",
+        "laws",
+        "limit",
+        "model",
+        "motion",
+        "output.record",
+        "statics",
+        "tables",
+    },
+    "ensembles": {
+        "assembly",
+        "case.schema",
+        "case.vary",
+        "dynamics",
+        "engine",
+        "kernels.records",
+        "laws",
+        "limit",
+        "model",
+        "motion",
+        "output.record",
+        "statics",
+        "tables",
+    },
+    "dynamics": {
+        "assembly",
+        "case.schema",
+        "contact",
+        "engine",
+        "kernels.records",
+        "limit",
+        "model",
+        "motion",
+        "output.record",
+        "statics",
+        "tables",
+    },
+    "statics": {"case.schema", "engine", "kernels.records", "limit"},
+    "engine": {"assembly", "case.schema", "contact", "kernels", "laws", "model", "output.record", "tables"},
+    "limit": {"case.schema", "contact", "geometry", "kernels.records", "laws", "model", "output.record"},
+    "assembly": {"case", "contact", "geometry", "model", "structures"},
+    "contact": {"geometry", "kernels", "model"},
+    "structures": {"case.base", "geometry", "model.blocks"},
+    "laws": {"case.base", "kernels"},
+    "tables": {"case.base"},
+    "motion": {"case.base", "case.schema"},
+    "calibrate": {"case.base", "case.schema", "laws"},
+    "model": {"geometry"},
+    "output": {"model"},
+    "case": set(),
     "geometry": set(),
     "kernels": set(),
     "errors": set(),
     "__init__": set(),
     "__main__": {"cli"},
 }
+LARGEST = 25  # files of a package, without its __init__.py
 IN_KERNELS = {"numba", "numpy", "math", "__future__", "collections", "typing"}
 ONLY_HERE = {  # third parties that stay in the packages named
     "clarabel": {"limit"},
@@ -45,13 +110,13 @@ ONLY_HERE = {  # third parties that stay in the packages named
     "h5py": {"output", "post"},
     "meshio": {"output", "cli"},
     "jinja2": {"report"},
-    "matplotlib": {"post"},
-    "PIL": {"post"},
+    "matplotlib": {"post", "render"},
+    "PIL": {"post", "render"},
     "dask": {"sweep"},
     "pymunk": {"bench"},
     "Box2D": {"bench"},
-    "pyvista": {"post"},
-    "imageio_ffmpeg": {"post"},
+    "pyvista": {"render"},
+    "imageio_ffmpeg": {"render"},
     "numba": {"kernels"},
     "tomli": {"case"},
     "tomllib": {"case"},
@@ -62,7 +127,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 
 def dotted(path: Path) -> str:
-    """dem_cli/solve/gravity.py -> solve.gravity; the package's own __init__ keeps that name."""
+    """dem_cli/analyses/gravity.py -> solve.gravity; the package's own __init__ keeps that name."""
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
     return name.removesuffix(".__init__")
 
@@ -81,6 +146,17 @@ def imported(path: Path) -> set[str]:
 
 def within(name: str, allowed: set[str]) -> bool:
     return any(name == a or name.startswith(a + ".") for a in allowed)
+
+
+def arrows() -> dict[str, set[str]]:
+    """For each file the files of the package that it imports, at any depth and for types alone as well."""
+    names = {dotted(path) for path in MODULES}
+    found: dict[str, set[str]] = {}
+    for path in MODULES:
+        own = {name.removeprefix("dem_cli.") for name in imported(path) if name.startswith("dem_cli.")}
+        files = {name if name in names else name.rpartition(".")[0] for name in own}
+        found[dotted(path)] = (files & names) - {dotted(path)}
+    return found
 
 
 @pytest.mark.parametrize("path", MODULES, ids=dotted)
@@ -108,3 +184,35 @@ def test_third_parties_stay_where_they_belong(path):
 def test_the_table_names_no_dead_package():
     existing = {dotted(p).split(".")[0] for p in MODULES} | {"__init__"}
     assert set(ALLOWED) <= existing, f"gone: {sorted(set(ALLOWED) - existing)}"
+
+
+def test_no_circle_of_files():
+    left = arrows()
+    while True:  # take away what imports nothing that is left; what stays is on a circle or imports one
+        free = {name for name, targets in left.items() if not targets & left.keys()}
+        if not free:
+            break
+        left = {name: targets for name, targets in left.items() if name not in free}
+    assert not left, {name: sorted(targets & left.keys()) for name, targets in left.items()}
+
+
+def test_the_table_names_no_arrow_that_is_gone():
+    used: dict[str, set[str]] = {}
+    for path in MODULES:
+        names = {name.removeprefix("dem_cli.") for name in imported(path)}
+        used.setdefault(dotted(path).split(".")[0], set()).update(names)
+    dead = {
+        package: gone
+        for package, allowed in ALLOWED.items()
+        if (gone := {a for a in allowed or () if not any(within(name, {a}) for name in used[package])})
+    }
+    assert not dead
+
+
+def test_no_room_is_crowded():
+    sizes: dict[str, int] = {}
+    for path in MODULES:
+        if path.name != "__init__.py" and path.parent != PACKAGE:
+            room = str(path.parent.relative_to(PACKAGE))
+            sizes[room] = sizes.get(room, 0) + 1
+    assert not {room: n for room, n in sizes.items() if n >= LARGEST}

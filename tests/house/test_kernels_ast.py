@@ -28,11 +28,7 @@ def decorator_names(function: ast.FunctionDef) -> set[str]:
 
 def compiled_functions(tree: ast.Module) -> list[ast.FunctionDef]:
     """Functions behind one of our decorators (an overload's inner functions come with it)."""
-    return [
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef) and decorator_names(node) & COMPILED
-    ]
+    return [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and decorator_names(node) & COMPILED]
 
 
 def body_nodes(function: ast.FunctionDef):

@@ -182,9 +182,7 @@ def limit_load(
     cost[-1] = -1.0
     answer = linprog(cost, A_eq=matrix, b_eq=right, bounds=[(0, None)] * (n_forces + 1), method="highs")
     if answer.status in (2, 3):
-        return LimitLoad(
-            np.nan if answer.status == 2 else np.inf, 0.0, 0.0, *(np.zeros((0, 2)),) * 2, np.zeros((0, 3))
-        )
+        return LimitLoad(np.nan if answer.status == 2 else np.inf, 0.0, 0.0, *(np.zeros((0, 2)),) * 2, np.zeros((0, 3)))
     if answer.status != 0:
         raise RuntimeError(f"HiGHS: {answer.message}")
 

@@ -101,7 +101,5 @@ def test_any_override(tmp_path, data):
     path.write_text(TEXTS[0], encoding="utf-8")
     keys = [".".join(map(str, place)) for _, _, place in nodes(tomllib.loads(TEXTS[0]))]
     key = data.draw(st.sampled_from(keys)) + data.draw(st.sampled_from(["", ".x", ".0", "x", ".", '."a b"']))
-    value = data.draw(
-        st.sampled_from(["1", "-1", "x", "[1, 2]", "{a = 1}", "[", "", "true", "nan", "1979-05-27"])
-    )
+    value = data.draw(st.sampled_from(["1", "-1", "x", "[1, 2]", "{a = 1}", "[", "", "true", "nan", "1979-05-27"]))
     outcome(path, (f"{key}={value}",))

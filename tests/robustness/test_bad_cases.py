@@ -69,9 +69,7 @@ def test_bad_case_in_its_own_process(name, folder):
     (folder / "case.toml").write_text(text_of(BAD[name]), encoding="utf-8")
     command = [sys.executable, "-m", "dem_cli", *arguments(BAD[name])]
     environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
-    result = subprocess.run(
-        command, capture_output=True, text=True, encoding="utf-8", timeout=60, env=environment
-    )
+    result = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=60, env=environment)
     assert (result.returncode, result.stdout, result.stderr) == (2, "", expected(BAD[name]["says"]))
     assert [path.name for path in folder.iterdir()] == ["case.toml"]
 

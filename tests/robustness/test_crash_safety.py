@@ -142,11 +142,7 @@ def small_disk(tmp_path):
     disk = tmp_path / "disk"
     disk.mkdir()
     command = ["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(disk)]
-    if (
-        os.geteuid() != 0
-        or shutil.which("mount") is None
-        or subprocess.run(command, capture_output=True).returncode
-    ):
+    if os.geteuid() != 0 or shutil.which("mount") is None or subprocess.run(command, capture_output=True).returncode:
         pytest.skip("a small file system cannot be mounted here")
     yield disk
     subprocess.run(["umount", "-l", str(disk)], check=True)
@@ -178,9 +174,7 @@ def test_the_output_folder_is_a_full_disk(tmp_path, small_disk):
 def test_a_file_size_limit(tmp_path):
     """Stands in for a full disk where nothing can be mounted."""
     limit = 500_000
-    process = start(
-        tmp_path, "huge", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-    )
+    process = start(tmp_path, "huge", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
     code, said = finish(process)
     assert said == f"error: cannot write results to {tmp_path / 'out'}: the file size limit is reached\n"
     assert code == 3

@@ -186,7 +186,8 @@ def test_gravity_below_the_strength_crushes_nothing(count):
     strength = 1.03 * count * WEIGHT
     case = tower(count, {"law": "crushing", "friction": 0.6, "compression": strength}, GRAVITY)
     assert solve(case)[0]["status"] == "ok"
-    from dem_cli.solve.equilibrium import Budget, stand
+    from dem_cli.engine.budget import Budget
+    from dem_cli.statics.equilibrium import stand
 
     sim = simulation(case)
     assert stand(sim, Budget(1_000_000)).state == "equilibrium"

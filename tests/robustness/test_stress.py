@@ -23,6 +23,7 @@ stress, records, scenes, changes, proportions, steady, table = (
 )  # fmt: skip
 Answer, judge = records.Answer, records.judge
 
+
 @pytest.mark.parametrize("axis", stress.AXES)
 def test_short_form(axis):
     """Nothing wrong without a word, and most of it held."""
@@ -150,9 +151,7 @@ def oracle(scene: object, heads: bool = True) -> float:
     owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
     polygons = np.split(model.vertices + model.centroids[owner], model.part_starts[1:-1])
     mu = next(iter(case.joints.values())).friction
-    return limit_load(
-        polygons, model.fixed, mu if heads else frictionless_heads(mu), weights=model.masses
-    ).multiplier
+    return limit_load(polygons, model.fixed, mu if heads else frictionless_heads(mu), weights=model.masses).multiplier
 
 
 @pytest.mark.parametrize("name", [n for n in CLOSED if n != "wall 1.0"])

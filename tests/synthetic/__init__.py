@@ -63,15 +63,11 @@ def bed_contacts(model: Model, positions: np.ndarray, angles: np.ndarray, load: 
     a, b = (np.array([row[i] for row in rows], dtype=np.int64) for i in (0, 1))
     arm = np.array([(row[2], row[3]) for row in rows])
     cos, sin = np.cos(angles[a]), np.sin(angles[a])
-    points = positions[a] + np.stack(
-        (cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]), axis=1
-    )
+    points = positions[a] + np.stack((cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]), axis=1)
     top = c[:, 1].max() + HEIGHT
     weight = DENSITY * 9.81 * DEPTH * LENGTH / 4 * (top - c[b, 1])
     lean = np.where(arm[:, 0] > 0, 1.0 + load, 1.0 - load)
-    gaps = np.linalg.norm(positions[b] - c[b] - positions[a] + c[a], axis=1) * np.where(
-        arm[:, 0] < 0, 1.0, 0.0
-    )
+    gaps = np.linalg.norm(positions[b] - c[b] - positions[a] + c[a], axis=1) * np.where(arm[:, 0] < 0, 1.0, 0.0)
     opened = gaps > 5e-5
     normal = np.where(opened, 0.0, weight * lean)
     slips = np.abs((positions[b] - c[b] - positions[a] + c[a])[:, 0])
@@ -113,13 +109,7 @@ def wall_frames(model: Model, n_frames: int = 12, last: float = 0.02) -> list[Fr
     movers = ~model.fixed & (model.centroids[:, 1] + 0.6 * model.centroids[:, 0] > 0.065)
     for i in range(n_frames):
         stage = "gravity" if i == 0 else "loading" if i < n_frames // 2 else "collapse"
-        load = (
-            0.0
-            if i == 0
-            else min(0.64, 0.64 * i / (n_frames // 2 - 1))
-            if stage == "loading"
-            else 0.64 - 0.01 * i
-        )
+        load = 0.0 if i == 0 else min(0.64, 0.64 * i / (n_frames // 2 - 1)) if stage == "loading" else 0.64 - 0.01 * i
         d = 1e-6 * i if stage != "collapse" else last * (i - n_frames // 2 + 1) / (n_frames - n_frames // 2)
         grade = (model.centroids[:, 1] / model.centroids[:, 1].max()) * movers
         angles = -2.0 * d * grade * (model.centroids[:, 0] > 0.06) / 0.1
@@ -140,9 +130,7 @@ def history_rows(frames: list[Frame], per_frame: int = 10, n_monitors: int = 1) 
             t = k / per_frame
             load = old.load + t * (frame.load - old.load)
             d = old.displacement + t * (frame.displacement - old.displacement)
-            energy = Energy(
-                1e-6 * d, 1e-4 * load, 0.2 * d, 0.5 * load * d, 0.2 * load * d, 0.05 * load * d, 0.0
-            )
+            energy = Energy(1e-6 * d, 1e-4 * load, 0.2 * d, 0.5 * load * d, 0.2 * load * d, 0.05 * load * d, 0.0)
             rows.append(HistoryRow(frame.stage, old.step + k, load, d, 1e-5, 1e-9, energy, (d,) * n_monitors))
         old = frame
     return rows

@@ -10,7 +10,7 @@ import pytest
 from reference import result, value
 
 from dem_cli.api import load_case
-from dem_cli.model.assemble import assembly
+from dem_cli.assembly.assemble import assembly
 from dem_cli.sweep.plan import plan_of
 
 ROOT = Path(__file__).resolve().parents[2]

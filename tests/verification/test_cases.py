@@ -16,7 +16,7 @@ from casefiles import (
 )
 
 from dem_cli.api import load_case
-from dem_cli.model.assemble import assembly
+from dem_cli.assembly.assemble import assembly
 
 REFERENCED = [path for path in FILES if failure_load(path) and known_to_the_oracle(path)]
 GUESSES = [CASES / "verification" / f"wall_21_imperfect_{letter}.toml" for letter in "ab"]
@@ -44,9 +44,7 @@ def test_valid(path):
     if analysis["kind"] == "pushover" and analysis.get("pattern") != "tilt":
         free = ~expected.fixed
         scale = expected.weights.mean()
-        np.testing.assert_allclose(
-            model.live_loads[order][free] / scale, expected.live[free] / scale, atol=1e-9
-        )
+        np.testing.assert_allclose(model.live_loads[order][free] / scale, expected.live[free] / scale, atol=1e-9)
 
 
 @each_file
@@ -73,9 +71,7 @@ def test_reference_is_what_the_oracle_says(path):
         slack = 6e-4  # references printed with three digits
         assert lower - slack <= reference["failure_load"] <= min(associated.multiplier, 0.6461) + slack
     else:
-        assert reference["failure_load"] == pytest.approx(
-            associated.multiplier, abs=reference["tolerance"] / 3
-        )
+        assert reference["failure_load"] == pytest.approx(associated.multiplier, abs=reference["tolerance"] / 3)
         assert reference["tolerance"] <= 0.011 * reference["failure_load"]
 
 

@@ -91,7 +91,7 @@ def test_stiffness_damping_does_not_shrink_the_time_step(first_frequency):
 
 
 def test_a_pair_of_frequencies_has_the_ratio_at_both():
-    from dem_cli.solve.damping import Rayleigh
+    from dem_cli.tables.damping import Rayleigh
 
     mass, stiffness = Rayleigh(ratio=0.03, frequencies=(5.0, 40.0)).coefficients()
     for frequency in (5.0, 40.0):

@@ -10,11 +10,11 @@ from oracle.base_motion import pulse
 from oracle.housner import Block, overturns
 
 from dem_cli import api
+from dem_cli.analyses.fragility import run
+from dem_cli.analyses.time_history import run as repeated
+from dem_cli.ensembles import shaken_run
+from dem_cli.ensembles.batch import Batch
 from dem_cli.errors import SolverError
-from dem_cli.solve import trial
-from dem_cli.solve.batch import Batch
-from dem_cli.solve.fragility import run
-from dem_cli.solve.repeats import run as repeated
 
 BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rocking_pulse_falls.toml"
 EXACT = Block(0.5, 2.0)
@@ -137,7 +137,7 @@ def failing(n_runs):
 
 
 def test_a_run_that_fails_is_told_and_left_out(monkeypatch):
-    monkeypatch.setattr(trial, "check_finite", failing(1))
+    monkeypatch.setattr(shaken_run, "check_finite", failing(1))
     summary, rows = study("analysis.intensities=[4.2, 4.3, 4.45]", *SMALL)
     assert [row.collapsed for row in rows] == [None, False, True]
     assert "not a number" in rows[0].how
@@ -147,6 +147,6 @@ def test_a_run_that_fails_is_told_and_left_out(monkeypatch):
 
 
 def test_a_study_whose_runs_all_fail_has_no_answer(monkeypatch):
-    monkeypatch.setattr(trial, "check_finite", failing(9))
+    monkeypatch.setattr(shaken_run, "check_finite", failing(9))
     with pytest.raises(SolverError, match="no run has a result; the first: the motion of block"):
         study("analysis.intensities=[4.2, 4.3]", *SMALL)

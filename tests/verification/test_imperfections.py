@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from engine.limits import limit_loads
 
-from dem_cli.solve.joints import joint_properties, law_of
+from dem_cli.engine.properties import joint_properties, law_of
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

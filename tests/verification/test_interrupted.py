@@ -6,7 +6,7 @@ import pytest
 from casefiles import CASES
 
 from dem_cli import api
-from dem_cli.solve.run import run
+from dem_cli.analyses.solve import solve
 
 
 class ImpatientObserver:
@@ -34,14 +34,14 @@ def wall():
 
 
 def test_in_the_collapse(wall):
-    summary = run(*wall, ImpatientObserver("following the collapse")).summary
+    summary = solve(*wall, ImpatientObserver("following the collapse")).summary
     assert summary["status"] == "interrupted"
     assert summary["failure_load"] == pytest.approx(0.6, abs=0.0018)
     assert summary["failure_mode"] == "sliding"
 
 
 def test_in_the_search(wall):
-    summary = run(*wall, ImpatientObserver("raising the load")).summary
+    summary = solve(*wall, ImpatientObserver("raising the load")).summary
     assert summary["status"] == "interrupted"
     assert summary["failure_load"] is None
     low, high = summary["failure_load_bracket"]

@@ -19,9 +19,9 @@ from engine import (
     turned,
 )  # fmt: skip
 
+from dem_cli.engine.simulation import ALPHA
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import COMBINED, COMBINED_SAFETY, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
-from dem_cli.solve.simulation import ALPHA
+from dem_cli.statics.equilibrium import COMBINED, COMBINED_SAFETY, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
 
 FOLLOWED = ["collapse"]
 

@@ -30,9 +30,7 @@ def test_wall_of_21_blocks(friction):
     assert solved(polygons, fixed, frictionless_heads(friction)) == pytest.approx(
         heads_free["value"], abs=heads_free["tolerance"]
     )
-    assert solved(polygons, fixed, friction) == pytest.approx(
-        associated["value"], abs=associated["tolerance"]
-    )
+    assert solved(polygons, fixed, friction) == pytest.approx(associated["value"], abs=associated["tolerance"])
 
 
 @pytest.mark.parametrize(
@@ -61,9 +59,7 @@ def test_column_of_14_blocks_turns_over_at_width_over_height():
     assert value("thesis_14_block_column", "lambda_rigid") == pytest.approx(width / (14 * height), abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("friction", "expected"), [(1.0, 0.1483), (0.6, 0.1483), (0.5, 0.1483), (0.4, 0.0522)]
-)
+@pytest.mark.parametrize(("friction", "expected"), [(1.0, 0.1483), (0.6, 0.1483), (0.5, 0.1483), (0.4, 0.0522)])
 def test_arch_of_21_voussoirs(friction, expected):
     polygons, fixed = shapes.arch(21, 1.0, 0.15)
     assert solved(polygons, fixed, friction) == pytest.approx(expected, abs=HALF_DIGIT)

@@ -11,7 +11,7 @@ from engine import Records, block, rectangle, scene, solve, tables
 from oracle.limit_lp import limit_load
 from reference import result
 
-from dem_cli.solve import run as solver
+from dem_cli.engine import job as solver
 
 FILES = sorted((CASES / "verification").glob("safety_*.toml")) + sorted(
     (CASES / "verification").glob("least_thickness_*.toml")
@@ -150,7 +150,7 @@ def test_frames_show_the_structure_next_to_failure():
     """Geometry that is varied: frames and model are of the thin column, not of the one in the file."""
     path = CASES / "verification" / "least_thickness_column.toml"
     made, records = scene(path, "analysis.follow=0.3"), Records()
-    summary = solver.run(made.case, made.model, records).summary
+    summary = solver.solve(made.case, made.model, records).summary
     model = records.models[-1]
     assert np.ptp(model.vertices[:, 0]) == pytest.approx(summary["fails_at"])
     first, last = records.frames[0], records.frames[-1]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from engine import solve
 
-from dem_cli.solve import pushover, start
+from dem_cli.analyses import pushover
+from dem_cli.statics import warm_start
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 QUICK = "analysis.follow=0.0"
@@ -38,7 +39,7 @@ def test_small_structures_are_raised_from_gravity_and_larger_ones_follow_the_pat
 @pytest.mark.parametrize("factor", [1.3, 0.7])
 def test_a_wrong_start_is_not_believed(factor, monkeypatch):
     """Its forces do not balance at the load that it claims: the load is raised from gravity or from what holds."""
-    real = start.find_start
+    real = warm_start.find_start
 
     def wrong(job, sim):
         found, report = real(job, sim)
@@ -51,7 +52,7 @@ def test_a_wrong_start_is_not_believed(factor, monkeypatch):
 
 def test_forces_out_of_the_air_are_not_believed(monkeypatch):
     """A start whose forces are nothing like equilibrium."""
-    real = start.find_start
+    real = warm_start.find_start
 
     def wrong(job, sim):
         found, report = real(job, sim)

@@ -11,9 +11,10 @@ import pytest
 from casefiles import CASES
 from engine import block, moved, rectangle, simulation, solve, tables
 
+from dem_cli.engine.budget import Budget
 from dem_cli.kernels import records as slot
-from dem_cli.solve.equilibrium import Budget, settle_or_fail, stand
-from dem_cli.solve.failure import compliance
+from dem_cli.statics.equilibrium import settle_or_fail, stand
+from dem_cli.statics.failure_load import compliance
 
 VERIFICATION = CASES / "verification"
 QUIET = ("analysis.follow=0.0", "output.frames=0")

@@ -11,8 +11,8 @@ from oracle.limit_lp import frictionless_heads, limit_load
 
 from dem_cli.bench.cases import FOLDER, KNOWN, SIZES, answer
 from dem_cli.bench.kernels import blocks_of
+from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import limit_loads
-from dem_cli.solve.joints import joint_properties, law_of
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 COMPUTED = [*KNOWN.values(), *(known for known in SIZES if blocks_of(known) <= 231)]

@@ -8,17 +8,17 @@ import pytest
 from dem_cli.bench import constants
 from dem_cli.bench.cases import KNOWN, solve
 from dem_cli.bench.points import points_per_joint, refined, shares
-from dem_cli.solve import equilibrium, failure
-from dem_cli.solve.joints import joint_properties, law_of
-from dem_cli.solve.simulation import Simulation
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
+from dem_cli.statics import equilibrium, failure_load
 
 
 def test_tolerance_reaches_names_and_defaults_and_is_given_back():
-    before = equilibrium.TOLERANCE, failure.TOLERANCE, equilibrium.settle_or_fail.__defaults__
+    before = equilibrium.TOLERANCE, failure_load.TOLERANCE, equilibrium.settle_or_fail.__defaults__
     with constants.tolerance(1e-3):
-        assert (equilibrium.TOLERANCE, failure.TOLERANCE) == (1e-3, 1e-3)
+        assert (equilibrium.TOLERANCE, failure_load.TOLERANCE) == (1e-3, 1e-3)
         assert 1e-3 in equilibrium.settle_or_fail.__defaults__
-    assert before == (equilibrium.TOLERANCE, failure.TOLERANCE, equilibrium.settle_or_fail.__defaults__)
+    assert before == (equilibrium.TOLERANCE, failure_load.TOLERANCE, equilibrium.settle_or_fail.__defaults__)
 
 
 def test_a_loose_tolerance_overrates_a_column():

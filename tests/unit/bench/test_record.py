@@ -7,13 +7,13 @@ import json
 import pytest
 
 from dem_cli.bench import timing
-from dem_cli.bench.record import Found, as_json, group_table, read, record, records_of
-from dem_cli.bench.timing import Job, in_turn
+from dem_cli.bench.record import GroupResult, as_json, group_table, read, record, records_of
+from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.errors import UsageError
 
 
 def test_records_come_back_from_json(tmp_path):
-    found = Found([record("T21", "resolution", 0.002, [0.3, 0.1, 0.2], load=0.6, error=None)], ["a note"])
+    found = GroupResult([record("T21", "resolution", 0.002, [0.3, 0.1, 0.2], load=0.6, error=None)], ["a note"])
     path = tmp_path / "benchmarks.json"
     path.write_text(as_json({"precision": group_table(found, {"cores": 2})}), encoding="utf-8")
     group = read(path)["precision"]
@@ -32,13 +32,13 @@ def test_other_files_are_refused(tmp_path, text):
 
 def test_no_number_that_json_lacks():
     with pytest.raises(ValueError):
-        as_json({"precision": group_table(Found([record("a", "b", 1, [float("nan")])]), {})})
+        as_json({"precision": group_table(GroupResult([record("a", "b", 1, [float("nan")])]), {})})
     assert json.loads(as_json({}))["groups"] == {}
 
 
 def test_jobs_take_turns_and_the_long_ones_run_once():
     order = []
-    jobs = [Job(lambda name=name: order.append(name) or name) for name in "abc"]
+    jobs = [TimedTask(lambda name=name: order.append(name) or name) for name in "abc"]
     jobs[1].once()
     jobs[1].seconds[0] = 100.0
     in_turn(jobs, rounds=2)
@@ -54,6 +54,6 @@ def test_preparation_is_off_the_clock(monkeypatch):
     def pass_time(seconds):
         now[0] += seconds
 
-    job = Job(lambda: pass_time(2.0), prepare=lambda: pass_time(50.0))
+    job = TimedTask(lambda: pass_time(2.0), prepare=lambda: pass_time(50.0))
     in_turn([job], rounds=3)
     assert job.seconds == [2.0, 2.0, 2.0]

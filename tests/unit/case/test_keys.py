@@ -11,18 +11,18 @@ from pydantic import Field, TypeAdapter, ValidationError
 from dem_cli.api import make_case_model
 from dem_cli.case.base import CaseModel, Positive
 from dem_cli.case.explain import PAGES, entries, find
-from dem_cli.case.keys import UNITS, Table, tables, toml
+from dem_cli.case.keys import UNITS, CaseTable, tables, toml
 from dem_cli.errors import UsageError
 
 MODEL = make_case_model()
 TABLES = tables(MODEL)
 
 
-def label(table: Table) -> str:
+def label(table: CaseTable) -> str:
     return "-".join([".".join(table.path) or "case", *table.kinds[:1]])
 
 
-def mistakes(table: Table, values: dict) -> set:
+def mistakes(table: CaseTable, values: dict) -> set:
     """Keys whose values are refused; those that are missing are not among them unless they are needed by another."""
     try:
         TypeAdapter(table.declared).validate_python(values)

@@ -19,9 +19,7 @@ block = [1.0, 0.5]
 courses = 3
 blocks_per_course = 2
 """
-SECOND = (
-    '[[structure]]\nkind = "wall"\nblock = [1, 0.5]\ncourses = 1\nblocks_per_course = 1\norigin = [9, 0]\n'
-)
+SECOND = '[[structure]]\nkind = "wall"\nblock = [1, 0.5]\ncourses = 1\nblocks_per_course = 1\norigin = [9, 0]\n'
 
 
 @pytest.fixture
@@ -46,9 +44,7 @@ def test_what_may_be_left_out_is_filled_in(case_file):
 
 
 def test_filled_in_ids_avoid_the_given_ones(case_file):
-    case = load_case(
-        case_file(WALL.replace("courses = 3", 'courses = 3\nid = "wall2"') + SECOND + SECOND)
-    ).case
+    case = load_case(case_file(WALL.replace("courses = 3", 'courses = 3\nid = "wall2"') + SECOND + SECOND)).case
     assert [structure.id for structure in case.structure] == ["wall2", "wall", "wall3"]
 
 
@@ -56,10 +52,8 @@ def test_doubts(case_file):
     text = WALL.replace("2000.0", "2.0").replace("0.6", "31.0")
     loaded = load_case(case_file("gravity = 981.0\n" + text))
     assert list(loaded.warnings) == [
-        "case.toml:3:11: materials.stone.density: "
-        "2 kg/m3 is unusual for a building material, did you mean 2000?",
-        "case.toml:5:12: joints.dry.friction: "
-        "31 is unusual for tan(phi); an angle is given as friction_angle_deg",
+        "case.toml:3:11: materials.stone.density: 2 kg/m3 is unusual for a building material, did you mean 2000?",
+        "case.toml:5:12: joints.dry.friction: 31 is unusual for tan(phi); an angle is given as friction_angle_deg",
         "case.toml:1:11: gravity: 981 m/s2 is unusual; on Earth it is 9.81",
     ]
 

@@ -69,9 +69,7 @@ scalars = st.one_of(
     st.text(st.characters(exclude_categories=("Cs",)), max_size=12),
     st.datetimes(),
 )
-keys = st.text(st.characters(exclude_categories=("Cs",)), max_size=6) | st.sampled_from(
-    ["a", "b-c", "1", "x.y"]
-)
+keys = st.text(st.characters(exclude_categories=("Cs",)), max_size=6) | st.sampled_from(["a", "b-c", "1", "x.y"])
 values = st.recursive(
     scalars,
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=3),

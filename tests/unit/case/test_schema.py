@@ -83,9 +83,7 @@ def test_defaults():
 
 
 def test_a_table_is_the_kind_that_it_says():
-    case = MODEL.model_validate(
-        tables(structure=[{"kind": "ramp", "steps": [[1, 2]]}], joints={"a": {"law": "slick"}})
-    )
+    case = MODEL.model_validate(tables(structure=[{"kind": "ramp", "steps": [[1, 2]]}], joints={"a": {"law": "slick"}}))
     assert isinstance(case.structure[0], Ramp)
     assert case.structure[0].steps == ((1.0, 2.0),)
     assert isinstance(case.joints["a"], Slick)
@@ -135,10 +133,7 @@ def test_a_value_that_fits_no_member_of_a_union_is_one_mistake(value, lines):
     [
         (
             "x",
-            [
-                "joints.dry.spread: 'x' is not allowed; "
-                "must be a number > 0 or a list of 2 numbers > 0 or a table"
-            ],
+            ["joints.dry.spread: 'x' is not allowed; must be a number > 0 or a list of 2 numbers > 0 or a table"],
         ),
         ([1, -1], ["joints.dry.spread.1: -1 is not allowed; must be a number > 0"]),
         ({"side": 3}, ["joints.dry.spread.side: unknown key, did you mean 'sides'?"]),

@@ -99,9 +99,7 @@ def case_tables(draw):
         st.fixed_dictionaries(
             {
                 "materials": st.just({key: {"density": draw(positive)} for key in materials}),
-                "joints": st.dictionaries(
-                    name, st.fixed_dictionaries({"friction": positive}), min_size=1, max_size=2
-                ),
+                "joints": st.dictionaries(name, st.fixed_dictionaries({"friction": positive}), min_size=1, max_size=2),
                 "structure": st.lists(wall, min_size=1, max_size=2),
             },
             optional={

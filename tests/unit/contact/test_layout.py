@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from dem_cli.contact.layout import Layout, draw, lobatto, steepest
+from dem_cli.contact.layout import PointLayout, draw, lobatto, steepest
 from dem_cli.geometry.profile import angles
 from dem_cli.laws.coulomb import CoulombJoint
 from dem_cli.laws.profile import Profile
@@ -16,8 +16,8 @@ from dem_cli.laws.profile import Profile
 keys = st.tuples(st.integers(0, 10**6), st.integers(0, 10**6))
 
 
-def layout(seed=1, **table) -> Layout:
-    return Layout(**Profile(**table).ranges, seed=seed)
+def layout(seed=1, **table) -> PointLayout:
+    return PointLayout(**Profile(**table).ranges, seed=seed)
 
 
 def test_shape_c_of_the_thesis():
@@ -101,7 +101,7 @@ def test_lobatto_rule_is_exact_for_polynomials(n):
 def test_three_points_are_simpsons_rule():
     """A plane joint of width b: section modulus b²/6 and moment of inertia b³/12 per depth."""
     b = 0.3
-    places, gaps, shares = draw(Layout(points=3), (0, 0), b)
+    places, gaps, shares = draw(PointLayout(points=3), (0, 0), b)
     assert shares == pytest.approx([1 / 6, 2 / 3, 1 / 6])
     assert gaps.tolist() == [0.0] * 3
     inertia = (shares * b * (places - b / 2) ** 2).sum()
@@ -143,6 +143,6 @@ def test_how_steep_a_profile_may_be():
     """Three sides: φ = d / l1; five equal ones: the outer sides turn by 2 φ, d = 3 φ l."""
     assert steepest(layout(sides=3, central=0.2, aperture=1e-4), 0.04) == pytest.approx(0.00625)
     assert steepest(layout(sides=5, aperture=0.01), 1.0) == pytest.approx(1 / 30)
-    assert steepest(Layout(points=5), 1.0) == 0.0
+    assert steepest(PointLayout(points=5), 1.0) == 0.0
     drawn = steepest(layout(sides=3, aperture=[0.0, 0.01]), 1.0)
     assert 0.029 < drawn <= 0.03

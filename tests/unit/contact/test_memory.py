@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, simulation, steps, tables
 
+from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
-from dem_cli.solve.simulation import Simulation
 
 W = 2000.0 * 9.81  # of the unit block [N]
 

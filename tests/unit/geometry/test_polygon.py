@@ -65,9 +65,7 @@ def test_rectangle(width, height, corner):
     shape = polygon.rectangle(0.0, 0.0, width, height)
     assert polygon.area(shape) == pytest.approx(width * height, rel=1e-14)
     assert polygon.centroid(shape) == pytest.approx([width / 2, height / 2], rel=1e-13)
-    assert polygon.polar_moment(shape) == pytest.approx(
-        width * height * (width**2 + height**2) / 12, rel=1e-13
-    )
+    assert polygon.polar_moment(shape) == pytest.approx(width * height * (width**2 + height**2) / 12, rel=1e-13)
 
 
 @given(st.integers(3, 12), SIZES)
@@ -154,9 +152,7 @@ def test_what_is_wrong_with_the_corners(message, points):
 
 def test_compound_l_shape():
     parts = [polygon.rectangle(0, 0, 3, 1), polygon.rectangle(0, 1, 1, 2)]
-    whole = polygon.compound(
-        polygon.properties_of_all(np.concatenate(parts), np.array([0, 4, 8])), np.array([0, 0]), 1
-    )
+    whole = polygon.compound(polygon.properties_of_all(np.concatenate(parts), np.array([0, 4, 8])), np.array([0, 0]), 1)
     corners = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]]
     direct = polygon.properties(np.array(corners, float))
     assert whole.area[0] == pytest.approx(5.0)

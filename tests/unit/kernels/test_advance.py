@@ -7,8 +7,8 @@ import pytest
 from engine import block, highest_frequency, real_masses, rectangle, running_wall, simulation, steps, tables
 from reference import value
 
+from dem_cli.engine.simulation import compiled_advance
 from dem_cli.kernels import records as slot
-from dem_cli.solve.simulation import compiled_advance
 
 KN, G = 1.0e9, 9.81
 BOOK = "classical_benchmarks"

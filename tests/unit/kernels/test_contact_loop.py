@@ -10,11 +10,11 @@ import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
 from dem_cli.contact.assemble import LIKE, LIKE_ROTATION
+from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.registry import LAWS
-from dem_cli.solve.simulation import Simulation, compiled_advance
 
 PLANAR = [0, 1, 5]  # where x, y and the angle stand in space
 

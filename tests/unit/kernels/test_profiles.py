@@ -10,11 +10,11 @@ from engine import block, rectangle, scene, simulation, solve, steps, tables
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.layout import Layout
+from dem_cli.contact.layout import PointLayout
+from dem_cli.engine import simulation as engine
+from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.planar_geometry import BLEND
-from dem_cli.solve import simulation as engine
-from dem_cli.solve.joints import joint_properties, law_of
 
 APERTURE, SIDES = 0.01, 5
 
@@ -103,7 +103,7 @@ def test_a_chain_without_rise_is_a_plane_joint():
     plain = joint_properties(made.case, made.model, 1e5)
     sims = [
         engine.Simulation(made.model, law_of(made.case), properties, "large")
-        for properties in (plain, plain._replace(layouts=(Layout(points=2),)))
+        for properties in (plain, plain._replace(layouts=(PointLayout(points=2),)))
     ]
     for sim in sims:
         sim.set_load(0.3)

@@ -11,13 +11,13 @@ from engine import MU, block, mirrored, moved, rectangle, running_wall, scene, t
 from engine.limits import on_a_base, renumbered, rotated, solved, tower
 from oracle.limit_lp import limit_load as oracle_load
 
+from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
 from dem_cli.laws.coulomb import COULOMB
 from dem_cli.limit import associated
 from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.associated import FALLS, GIVEN_UP, LOCKED, OK
 from dem_cli.limit.cone import friction_of
-from dem_cli.solve.joints import joint_properties, law_of
 
 NEAR = 1e-6  # relative; the bounds are accepted up to associated.GAP, and lie closer in all of these
 
@@ -203,9 +203,7 @@ def test_locked_but_falling_is_falling():
 
 def test_weightless_blocks_fail_at_no_load():
     push = {"block": "b", "force": [1.0, 0.0], "kind": "live"}
-    case = on_a_base(
-        block("b", rectangle(0.0, 0.0, 1.0, 0.2)), load=[push], analysis={"pattern": "live"}, gravity=0.0
-    )
+    case = on_a_base(block("b", rectangle(0.0, 0.0, 1.0, 0.2)), load=[push], analysis={"pattern": "live"}, gravity=0.0)
     assert load(case) == pytest.approx(0.0, abs=1e-9)
 
 
@@ -239,9 +237,7 @@ def test_a_law_without_a_linear_cone_is_refused():
     cohesive = {"name": "glue", "shear_limit": lambda p, normal, memory, kn: p[:, 0] * normal + 1.0}
     for change in (cohesive, {"name": "glue", "scalars": 1}, {"name": "glue", "bonded": True}):
         with pytest.raises(UsageError, match="law 'glue'"):
-            limit_loads(
-                made.model, joint_properties(made.case, made.model), dataclasses.replace(COULOMB, **change)
-            )
+            limit_loads(made.model, joint_properties(made.case, made.model), dataclasses.replace(COULOMB, **change))
 
 
 def test_head_joints_without_friction():

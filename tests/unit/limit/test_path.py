@@ -9,12 +9,12 @@ import pytest
 from engine import block, rectangle, scene
 from engine.limits import mirrored_model, on_a_base, rotated, tower
 
+from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment, _apart
 from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
-from dem_cli.solve.joints import joint_properties, law_of
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 EXACT = {  # closed forms and published exact loads
@@ -112,9 +112,7 @@ def test_too_little_effort_leaves_a_state_in_equilibrium():
 
 def test_folds_of_the_central_path_are_gone_round():
     """An increment of this wall stops at a fold; by arc length it arrives, at an equilibrium under the law."""
-    structure, friction = ingredients(
-        CASES.parent / "gallery" / "gatehouse.toml", "analysis.follow=0.0"
-    )
+    structure, friction = ingredients(CASES.parent / "gallery" / "gatehouse.toml", "analysis.follow=0.0")
     problem = Elastic(structure, friction)
     rest = _at_rest(problem)
     standing = Increment(problem, rest, None).solve(1.0)

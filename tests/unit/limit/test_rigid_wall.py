@@ -33,8 +33,7 @@ def test_the_whole_wall_under_a_heavy_load():
         return split_load(WIDTH, HEIGHT, slope, MASS[2.3], tops)
 
     heavy, light, none = (  # lost by the cut; the thesis: next to nothing but for self weight
-        1.0 - load(2 * height / length, tops) / load(0.0, tops)
-        for tops in ([top._replace(weight=750.0)], [top], [])
+        1.0 - load(2 * height / length, tops) / load(0.0, tops) for tops in ([top._replace(weight=750.0)], [top], [])
     )
     assert 0.0 < heavy < light < 0.06 < none
 

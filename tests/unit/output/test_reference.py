@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dem_cli.case.reference import Reference
-from dem_cli.cli.reference import one_line
+from dem_cli.cli.words.reference import one_line
 from dem_cli.output.reference import as_declared, error, from_summary, in_summary, verdicts
 from dem_cli.output.summary import exit_code
 

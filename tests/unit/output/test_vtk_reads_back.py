@@ -40,15 +40,10 @@ def steps(path):
         reader.UpdateTimeStep(value)
         out = reader.GetOutput()
         found = [
-            {
-                data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)).copy()
-                for k in range(data.GetNumberOfArrays())
-            }
+            {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)).copy() for k in range(data.GetNumberOfArrays())}
             for data in (out.GetPointData(), out.GetCellData(), out.GetFieldData())
         ]
-        points = (
-            vtk_to_numpy(out.GetPoints().GetData()).copy() if out.GetNumberOfPoints() else np.zeros((0, 3))
-        )
+        points = vtk_to_numpy(out.GetPoints().GetData()).copy() if out.GetNumberOfPoints() else np.zeros((0, 3))
         yield value, points, *found, [corners(out.GetCell(i)) for i in range(out.GetNumberOfCells())]
 
 

@@ -7,7 +7,8 @@ import pytest
 from synthetic import DEPTH, HEIGHT, LENGTH, boxes_model, no_contacts, wall_frames, wall_model
 
 from dem_cli.output.record import STATES
-from dem_cli.post import marks, measures, solids, view
+from dem_cli.post import measures, view
+from dem_cli.render import marks, solids
 
 
 def faces_of(surface):

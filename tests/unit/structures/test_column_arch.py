@@ -66,9 +66,7 @@ def test_convex_symmetric_and_joint_to_joint(keys):
     feet = [blocks[name].parts[0] for name in names]
     for a, b in zip(ring[:-1], ring[1:]):  # neighbouring voussoirs have two corners in common
         assert shared(a, b) == 2
-    assert (
-        shared(feet[0], ring[0]) >= 1
-    )  # flush at the inner face; a level springing joint runs on into the pier
+    assert shared(feet[0], ring[0]) >= 1  # flush at the inner face; a level springing joint runs on into the pier
     assert shared(feet[1], ring[-1]) >= 1
 
 
@@ -117,9 +115,7 @@ BAD_ARCHES = {
     "radius: a circular arch needs either radius or inner_radius; found none": {"radius": None},
     "radius: a circular arch needs either radius or inner_radius; found both": {"inner_radius": 0.9},
     "radius: 0.05 is not allowed; must be more than 0.075, half the ring": {"radius": 0.05},
-    "span: not used by a circular arch, which is given by radius, inner_radius, included_angle_deg": {
-        "span": 1.0
-    },
+    "span: not used by a circular arch, which is given by radius, inner_radius, included_angle_deg": {"span": 1.0},
     "rise: missing: a segmental arch needs span and rise": {
         "shape": "segmental",
         "radius": None,
@@ -176,9 +172,7 @@ def test_the_14_block_column():
 
 
 def test_the_tapered_drums_of_dimitri():
-    blocks = drums(
-        block=[1.11, 0.85], courses=7, top_width=0.9, cap={"width": 0.9, "height": 0.21, "material": "x"}
-    )
+    blocks = drums(block=[1.11, 0.85], courses=7, top_width=0.9, cap={"width": 0.9, "height": 0.21, "material": "x"})
     widths = [np.ptp(b.parts[0][:2, 0]) for b in blocks[1:8]]
     assert widths == pytest.approx([1.11 - 0.03 * k for k in range(7)])
     assert blocks[7].parts[0][2] == pytest.approx([0.45, 5.95])
@@ -188,9 +182,7 @@ def test_the_tapered_drums_of_dimitri():
 
 
 def test_drums_one_by_one():
-    blocks = drums(
-        drums=[{"width": 1.0, "height": 0.5}, {"width": 0.8, "height": 2.0, "top_width": 0.6}], base=False
-    )
+    blocks = drums(drums=[{"width": 1.0, "height": 0.5}, {"width": 0.8, "height": 2.0, "top_width": 0.6}], base=False)
     assert [b.parts[0].max(axis=0).tolist() for b in blocks] == [[0.5, 0.5], [0.4, 2.5]]
 
 

@@ -144,7 +144,7 @@ def test_mistakes(table, message):
 def test_a_change_that_undoes_another_is_refused():
     assert "has its values already" in problem(**{FRICTION: [0.5], "joints": {"dry": {"friction": [0.6]}}})
     lost = "joints.dry.friction is changed here, and joints.dry.friction before: that would be lost"
-    assert lost in problem(**{FRICTION: [0.5, 0.6], "joints.\"dry\".friction": [0.3]})
+    assert lost in problem(**{FRICTION: [0.5, 0.6], 'joints."dry".friction': [0.3]})
     assert "structure.0 is changed here, and structure.0.courses before" in problem(
         **{COURSES: [2], "structure.0": [{"kind": "column"}]}
     )

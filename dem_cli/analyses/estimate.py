@@ -1,0 +1,210 @@
+"""What a run would do and cost, for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
+
+Only the kernels of detection run here; the stepping loop is not compiled.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.engine.clock import duration_words
+from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.properties import FIXED_RATIO, joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
+from dem_cli.model.model import Model
+from dem_cli.model.scales import stiffness_scale
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+Rows = list[tuple[str, str]]
+STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of cases/verification
+    "gravity": (500, 10_000),
+    "pushover": (10_000, 200_000),
+    "settlement": (20_000, 100_000),
+    "safety": (2_000, 60_000),  # each of its runs
+    "modes": (200, 10_000),
+}
+IN_SECONDS = ("time-history", "fragility")  # kinds that solve.estimate_shaking knows
+VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
+FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
+NANOSECONDS = {"fixed": 10, "large": 20}  # per contact point and step, one core (scripts/benchmark)
+BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
+
+
+def describe(case: Case, model: Model) -> Rows:
+    """Label and text of each line of `dem check` that needs joints."""
+    if case.analysis.kind in IN_SECONDS:
+        return _shaking(case, model)
+    tilting = getattr(case.analysis, "pattern", None) == "tilt"
+    scale = 1.0 if tilting else live_scale(model)
+    properties = joint_properties(case, model, _ratio(case, model))
+
+    def simulation(kinematics: str) -> Simulation:
+        return Simulation(model, law_of(case), properties, kinematics, live_scale=scale, tilting=tilting, safety=1.0)
+
+    wanted = case.analysis.kinematics
+    moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
+    moving = why_moving(case, model) if moving is None else moving
+    sim = simulation("fixed" if moving is None else "large")
+    return [
+        *_blocks(model, case.gravity),
+        *_joints(case, sim),
+        *_stiffness(case, sim),
+        ("kinematics", _kinematics(wanted, moving)),
+        ("time step", _time_step(sim)),
+        *_runs(case),
+        ("cost", _cost(case, sim)),
+        ("load", _load(case, model)),
+        ("monitors", _monitors(case)),
+    ]
+
+
+def _shaking(case: Case, model: Model) -> Rows:
+    from dem_cli.analyses.estimate_shaking import describe_shaking
+    from dem_cli.dynamics.history import damping_of_start, shaken
+
+    sim = shaken(case, model, damping_of_start(case, model))
+    return [
+        *_blocks(model, case.gravity),
+        *_joints(case, sim),
+        *_stiffness(case, sim),
+        *describe_shaking(case, sim),
+        ("monitors", _monitors(case)),
+    ]
+
+
+def _ratio(case: Case, model: Model) -> float:
+    """kn·h/W of "auto" joints at the start of the run."""
+    if case.analysis.kind == "settlement":
+        from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
+
+        return of_settlement(model)
+    return FIXED_RATIO
+
+
+def _blocks(model: Model, gravity: float) -> Rows:
+    """Weight and the extreme blocks among those that can move."""
+    free = np.flatnonzero(~model.fixed)
+    if not len(free):
+        return [("weight", "0 N: no block can move")]
+    masses = model.masses[free]
+    rows = [("weight", f"{masses.sum() * gravity:.6g} N (free blocks)")]
+    for label, i in (("smallest block", free[_largest(-masses)]), ("largest block", free[_largest(masses)])):
+        rows.append((label, f"'{model.block_ids[i]}', {model.masses[i]:.4g} kg"))
+    return rows
+
+
+def _largest(values: np.ndarray) -> int:
+    """Index of the first of the largest values; round-off does not choose between equal ones."""
+    top = values.max()
+    return int(np.flatnonzero(values >= top - 1e-9 * abs(top))[0])
+
+
+def _joints(case: Case, sim: Simulation) -> Rows:
+    """How many joints there are, and of what kind; a joint is a pair of faces."""
+    number = len(sim.joints.blocks)
+    near = "" if sim.kinematics == "fixed" else " (with faces that may meet)"
+    rows = [("joints", f"{number:,}{near}, {len(sim.joints.kn):,} contact points")]
+    materials = sim.model.block_material[sim.joints.blocks]
+    named = sim.properties.by_material[materials[:, 0], materials[:, 1]]
+    bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], 1]) > BED
+    for k, name in enumerate(sim.properties.names):
+        here = named == k
+        count = int((here & bed).sum())
+        rows.append((f"joint {name}", f"{count:,} bed joints, {int(here.sum()) - count:,} others"))
+    return rows
+
+
+def _stiffness(case: Case, sim: Simulation) -> Rows:
+    """Joint stiffness in effect, and kn·h/W (h: smallest edge, W: mean block weight over its joint)."""
+    scale = stiffness_scale(sim.model)
+    rows = []
+    for name, kn, ks in zip(sim.properties.names, sim.properties.kn, sim.properties.ks, strict=True):
+        table = case.joints[name]
+        given = " and ".join(key for key in ("kn", "ks") if getattr(table, key) == "auto")
+        origin = f", {given} chosen (auto)" if given else ""
+        rows.append((f"stiffness {name}", f"kn {kn:.4g} Pa/m, ks {ks:.4g} Pa/m, kn·h/W {kn / scale:.3g}{origin}"))
+    return rows
+
+
+def _kinematics(wanted: str, moving: str | None) -> str:
+    if moving:
+        return f"large: {moving}"
+    if wanted != "auto":
+        return f"{wanted} (as the case says)"
+    return "fixed (auto): all joints are closed, and the geometry of the start is exact for a failure load"
+
+
+def _time_step(sim: Simulation) -> str:
+    """The pseudo-step, and the joint that would limit a step with real masses."""
+    joints, model = sim.joints, sim.model
+    if not len(joints.kn):
+        return "1 (quasi-static); there are no joints"
+    inverse = sim.loads.inverse_masses[:, 0]
+    ratio = np.where(model.fixed, 0.0, 1.0 / np.where(inverse > 0.0, inverse, 1.0)) / model.masses
+    block = _largest(ratio)
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    touching = np.flatnonzero((joints.blocks[owner] == block).any(axis=1))
+    text = "1 (quasi-static, fictitious masses: no block limits it)"
+    if not len(touching):
+        return text
+    stiffest = owner[touching[_largest(np.maximum(joints.kn, joints.ks)[touching])]]
+    other = joints.blocks[stiffest][joints.blocks[stiffest] != block][0]
+    # The fictitious mass is the one whose critical step is 1, and that step goes with the root of the mass.
+    real = 1.0 / np.sqrt(ratio[block])
+    names = f"'{model.block_ids[block]}' on '{model.block_ids[other]}'"
+    return f"{text}; with real masses {names} would limit it to {real:.2g} s"
+
+
+def _runs(case: Case) -> Rows:
+    """Of a safety analysis: what is varied, and how many runs that takes. Raises CaseError where it cannot be."""
+    if case.analysis.kind != "safety":
+        return []
+    from dem_cli.ensembles.static_values import expected, scale_of
+
+    scale, (fewest, most) = scale_of(case), expected(case)
+    named = "F" if case.analysis.of_strength else case.analysis.vary
+    return [("runs", f"{fewest} to {most}, {named} between {scale.low:g} and {scale.high:g}")]
+
+
+def _cost(case: Case, sim: Simulation) -> str:
+    """Seconds of one core, from the steps that such an analysis took elsewhere."""
+    kind, points = case.analysis.kind, len(sim.joints.kn)
+    few, many = STEPS.get(kind, STEPS["pushover"])
+    few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
+    if kind == "safety":
+        from dem_cli.ensembles.static_values import expected
+
+        few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
+    nanoseconds = NANOSECONDS[sim.kinematics]
+    seconds = [1e-9 * steps * points * nanoseconds for steps in (few, many)]
+    basis = f"{few:,} to {many:,} steps × {points:,} points × {nanoseconds} ns"
+    if getattr(case.analysis, "follow", 0.0) > 0.0:
+        fewest, most = FOLLOW_STEPS
+        seconds = [s + 1e-9 * n * points * NANOSECONDS["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
+        basis += f", then {fewest:,} to {most:,} × {NANOSECONDS['large']} ns for the collapse"
+    return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis})"
+
+
+def _load(case: Case, model: Model) -> str:
+    """What the multiplier λ acts on."""
+    pattern = getattr(case.analysis, "pattern", None)
+    if pattern is None:
+        moved = f", {len(case.settlement)} support(s) moved" if case.settlement else ""
+        return f"dead loads only{moved}"
+    fx, fy = model.live_loads[:, : model.dimension].sum(axis=0)
+    total = f"[{fx + 0.0:.4g}, {fy + 0.0:.4g}] N"
+    what = {
+        "mass": f"λ × weight of each block along {list(case.analysis.direction)}",
+        "live": "λ × live loads",
+        "tilt": f"table turned by atan λ towards {'+x' if case.analysis.direction[0] > 0 else '−x'}",
+    }[pattern]
+    return f"{pattern}: {what}; {total} at λ = 1"
+
+
+def _monitors(case: Case) -> str:
+    texts = [f"{' '.join(filter(None, (m.quantity, m.component)))} of '{m.place}'" for m in case.monitor]
+    return ", ".join(texts) if texts else "none"

@@ -1,0 +1,83 @@
+"""What a time history would do and cost, for `dem check`: frequencies, time step, steps, run time."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from dem_cli.analyses.modes import touching_points
+from dem_cli.dynamics.frequencies import modes, system
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.engine.clock import duration_words
+from dem_cli.ensembles.record_search import runs_per_record
+from dem_cli.motion.build import motions_of, suites_of
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.dynamic import DynamicSimulation
+
+NANOSECONDS = {False: 20, True: 55}  # per contact point and step, one core, without and with dashpots
+PER_STEP = 0.4  # µs beside them
+
+
+def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]]:
+    """Lines of `dem check`. Raises CaseError where analysis.time_step is not stable."""
+    analysis = case.analysis
+    step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
+    return [
+        ("damping", sim.damping.words),
+        ("highest frequency", step.cause),
+        ("time step", _step(step)),
+        ("first frequency", _first(sim)),
+        *_cost(case, sim, step),
+    ]
+
+
+def _step(step: TimeStep) -> str:
+    if not math.isfinite(step.limit):
+        return "free: nothing limits it"
+    return f"{step.step:.3g} s, {step.step / step.limit:.2g} of the largest stable one, {step.limit:.3g} s"
+
+
+def _first(sim: DynamicSimulation) -> str:
+    found = modes(system(sim, touching_points(sim)), 1, sim.model.dimension, sim.model.n_blocks)
+    if not len(found.frequencies):
+        return "none: no joint holds any block"
+    return f'{found.frequencies[0]:.4g} Hz, all joints that touch closed; kind = "modes" has those under gravity'
+
+
+def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str, str]]:
+    analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
+    length, points = analysis.duration or ground.duration, len(sim.joints.kn)
+    if length <= 0.0:
+        return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
+    runs, said = _runs(case)
+    peak = "" if analysis.kind == "fragility" else f", peak {ground.peak:.4g} m/s²"
+    rows = [("load", f"{length:g} s of motion{peak}"), *([("runs", said)] if said else [])]
+    if not math.isfinite(step.step):
+        return rows
+    steps = math.ceil(length / step.step)
+    each_point = NANOSECONDS[sim.damping.in_joints]
+    seconds = (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
+    work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
+    each = f"{runs:,} runs × " if runs > 1 else ""
+    return [
+        *rows,
+        ("steps", f"{steps:,}"),
+        ("cost", f"{duration_words(seconds)} on one core ({each}{steps:,} steps × ({work}))"),
+    ]
+
+
+def _runs(case: Case) -> tuple[int, str]:
+    """How many runs there are at most, and why; no words for one."""
+    analysis = case.analysis
+    repeats = 1 + analysis.repeats
+    words = f" × {repeats} with repeats" if repeats > 1 else ""
+    if analysis.kind != "fragility":
+        return repeats, f"{repeats} with repeats" if repeats > 1 else ""
+    records = sum(map(len, suites_of(case)))
+    levels = runs_per_record(analysis)
+    name = "steps of bisection" if analysis.bisects else "intensities"
+    runs = records * levels * repeats
+    return runs, f"{records} records × {levels} {name}{words}: {'at most ' if analysis.bisects else ''}{runs:,}"

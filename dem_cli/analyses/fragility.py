@@ -1,0 +1,220 @@
+"""kind = "fragility": which intensities of a set of records a structure survives.
+
+Overturning is not monotone in amplitude: a structure may fall at one intensity and survive a higher one. The collapse
+intensity of a record is the lowest one at which the structure fell among those that were tried.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.engine.audit import CLOSURE
+from dem_cli.engine.job import Outcome
+from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
+from dem_cli.ensembles.capacities import Bounds, bounds_of, distribution, outcomes, split, survived_above
+from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
+from dem_cli.ensembles.shaken_run import OnlyProgress, RestedStructure
+from dem_cli.ensembles.variants import Variant
+from dem_cli.errors import SolverError
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer, RunRow, distinct
+from dem_cli.statics.equilibrium import FALLS
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.motion.motion import Motion
+    from dem_cli.tables.analysis import FragilityAnalysis
+
+MOST_LISTED = 5  # runs that one warning names
+FEW = 2  # intervals between levels that any narrow distribution fits
+
+
+def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+    """Outcome of all runs. Raises CaseError without any record, SolverError where no run has a result."""
+    return FragilityStudy(case, model, observer, batch or Batch()).run()
+
+
+class FragilityStudy:
+    """All records at all intensities, on the structure of the case and on slightly different ones."""
+
+    def __init__(self, case: Case, model: Model, observer: Observer, batch: Batch):
+        self.case, self.model, self.observer, self.batch = case, model, observer, batch
+        self.analysis: FragilityAnalysis = case.analysis
+        self.started = time.perf_counter()
+        self.records = records_of(case)
+        self.names = distinct([record.name for record in self.records])
+        self.warnings: list[str] = []
+
+    def run(self) -> Outcome:
+        """Rest, all runs, and what they say."""
+        self.rested = self._rest()
+        if not self.rested[0].stands:
+            return Outcome(self._facts() | {"status": FALLS, "collapse_intensities": None, "runs": 0})
+        self.batcher = Batcher(self.rested, self._motion, self.batch)
+        pairs = [(s, r) for r in range(len(self.records)) for s in range(len(self.rested)) if self.rested[s].stands]
+        tasks, expected = self._plan(pairs)
+
+        def say(done: int) -> None:
+            total = max(expected, done)
+            self.observer.progress(f"runs {done:,} of {total:,}", math.nan, math.nan, done / total)
+
+        say(len(self.batcher.done))
+        self.batcher.work(tasks, say)
+        self.observer.runs(self._rows())
+        return Outcome(self._facts() | self._answer(pairs) | self._effort())
+
+    def _rest(self) -> list[RestedStructure]:
+        """All structures, at rest under their dead loads."""
+        quiet, found = OnlyProgress(self.observer), []
+        for number in range(1 + self.analysis.repeats):
+            found.append(RestedStructure(Variant(self.case, self.model, number), self.records, quiet))
+        fell = [rested.variant.number for rested in found if not rested.stands]
+        if fell and found[0].stands:
+            self.warnings.append(f"{len(fell)} of {len(found) - 1} perturbed structures do not stand: left out")
+        return found
+
+    def _motion(self, trial: ShakingTrial) -> list[Motion]:
+        return [scaled(self.records[trial.record], trial.intensity, self.analysis)]
+
+    def _plan(self, pairs: Sequence[tuple[int, int]]) -> tuple[list[Task], int]:
+        """Tasks, and how many runs they will ask for (of a bisection: at most)."""
+        analysis = self.analysis
+        if not analysis.bisects:
+            trials = [ShakingTrial(s, r, a) for s, r in pairs for a in analysis.levels]
+            return [*each(trials)], len(trials)
+        return [bisection(analysis, s, r) for s, r in pairs], len(pairs) * runs_per_record(analysis)
+
+    def _rows(self) -> list[RunRow]:
+        """All runs in the order of records, structures and intensities, whatever the order in which they came."""
+        rows = []
+        for trial in sorted(self.batcher.done, key=lambda t: (t.record, t.structure, t.intensity)):
+            run, peak = self.batcher.done[trial], self._motion(trial)[0].peak
+            acceleration = peak * self.rested[trial.structure].variant.motion
+            rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
+                               run.collapsed, run.time, run.how, run.peaks))  # fmt: skip
+        return rows
+
+    # -- what the runs say -------------------------------------------------------------------------
+
+    def _answer(self, pairs: Sequence[tuple[int, int]]) -> dict[str, Any]:
+        found = {(s, r): outcomes(self.batcher.done, s, r) for s, r in pairs}
+        structures = sorted({s for s, _ in pairs})
+        bounds = {pair: bounds_of(runs) for pair, runs in found.items()}
+        complete = [r for r in range(len(self.records)) if all(bounds[s, r] is not None for s in structures)]
+        if not complete:
+            raise SolverError(f"no run has a result; the first: {next(iter(self.batcher.done.values())).how}")
+        self._warn_failed()
+        table = np.array([[bounds[s, r] for s in structures] for r in complete], float)
+        levels = list(self.analysis.levels)
+        answer: dict[str, Any] = {
+            "status": "ok",
+            "records": self.names,
+            "collapse_intensities": [_upper(bounds[0, r]) for r in range(len(self.records))],
+            "stood_up_to": [_lower(bounds[0, r]) for r in range(len(self.records))],
+            **distribution(table, levels, self.analysis.confidence, self.case.seed),
+            "never_collapsed": int(np.isinf(table[:, :, 1]).sum()),
+            "collapsed_at_lowest": int((table[:, :, 0] == 0.0).sum()),
+            "unit_acceleration": self.analysis.unit_acceleration,
+            "search": "bisection" if self.analysis.bisects else "grid",
+        }
+        if not self.analysis.bisects:
+            answer |= {"levels": levels, "share": [_share(found.values(), level) for level in levels]}
+        above = [
+            {"record": self.names[r], "structure": s, "collapsed": bounds[s, r].upper, "survived": survived_above(runs)}
+            for (s, r), runs in found.items()
+            if survived_above(runs)
+        ]
+        answer["non_monotone"] = above
+        self._warn_about(answer, len(np.unique(table.reshape(-1, 2), axis=0)))
+        if len(structures) > 1:
+            answer["repeats"] = {
+                "structures": structures[1:],
+                "collapse_intensities": [[_upper(bounds[s, r]) for s in structures] for r in range(len(self.records))],
+                "dispersion": split(table),
+            }
+        return answer
+
+    def _warn_failed(self) -> None:
+        failed = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
+        for trial, run in failed[:MOST_LISTED]:
+            self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
+        if failed:
+            self.warnings.append(f"{len(failed)} of {len(self.batcher.done)} runs failed and are left out")
+
+    def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
+        """What a reader of the curve must know; intervals: different bounds of capacities."""
+        if answer["median"] is not None and intervals <= FEW:
+            self.warnings.append(
+                f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
+                "resolved, closer levels are needed"
+            )
+        if self.analysis.bisects:
+            self.warnings.append(
+                "bisection takes for granted that a structure that falls falls at every higher intensity too; rocking "
+                "structures need not: a lower collapse may be missed (search = 'grid' with intensities tries all)"
+            )
+        if self.analysis.repeats == 0:
+            self.warnings.append(
+                "each run hangs on chance: rocking is ill-conditioned, and structures that differ by 0.1 % fall at "
+                "other intensities; repeats = 5 shows by how much"
+            )
+        worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
+        if worst is not None and abs(worst) > CLOSURE:
+            self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")
+        if answer["never_collapsed"] and answer["median"] is not None:
+            highest = self.analysis.levels[-1]
+            self.warnings.append(f"{answer['never_collapsed']} collapse intensities are above {highest:g}: not known")
+
+    # -- how it was obtained -----------------------------------------------------------------------
+
+    def _facts(self) -> dict[str, Any]:
+        first = self.rested[0]
+        compiling = sum(rested.compile_seconds for rested in self.rested)
+        return {
+            "joints": first.sim.first_joints,
+            "contacts": first.sim.first_points,
+            "steps": 0,
+            "time_step": first.step.step,
+            "largest_time_step": first.step.limit,
+            "damping": first.damping.words,
+            "solve_seconds": time.perf_counter() - self.started - compiling,
+            "compile_seconds": compiling,
+            "energy_closure": None,
+            "warnings": self.warnings,
+        }
+
+    def _effort(self) -> dict[str, Any]:
+        done = self.batcher.done.values()
+        return {
+            "runs": len(done),
+            "runs_done_before": len(done) - self.batcher.fresh,
+            "steps": sum(run.steps for run in done),
+            "seconds": sum(run.seconds for run in done),
+            "threads": self.batch.threads,
+            "energy_closure": _worst(run.closure for run in done if run.collapsed is False),
+            "energy_closure_of_collapses": _worst(run.closure for run in done if run.collapsed),
+        }
+
+
+def _worst(closures: Iterable[float | None]) -> float | None:
+    """The largest of the energy errors."""
+    return max((closure for closure in closures if closure is not None), key=abs, default=None)
+
+
+def _upper(bounds: Bounds | None) -> float | None:
+    return None if bounds is None or math.isinf(bounds.upper) else bounds.upper
+
+
+def _lower(bounds: Bounds | None) -> float | None:
+    return None if bounds is None else bounds.lower
+
+
+def _share(found: Any, level: float) -> float | None:
+    """Share of all that were tried at a level that fell."""
+    tried = [runs[level] for runs in found if level in runs]
+    return sum(tried) / len(tried) if tried else None

@@ -1,0 +1,28 @@
+"""kind = "gravity": does the structure stand under its dead loads?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dem_cli.engine.job import Job, Outcome
+from dem_cli.errors import SolverError
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer
+from dem_cli.statics.equilibrium import FALLS, settle
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+
+def run(case: Case, model: Model, observer: Observer) -> Outcome:
+    """Outcome of a gravity analysis; status "ok" means that it stands."""
+    job = Job.start(case, model, observer)
+    sim = job.first_simulation()
+    track = job.track(sim)
+    try:
+        status = "ok" if settle(sim, track, job.budget).state == "equilibrium" else FALLS
+    except SolverError as error:
+        status = "not converged"
+        job.warnings.append(str(error))
+    track.flush()
+    return job.outcome([sim], {"status": status, "largest_displacement": sim.largest_displacement()})

@@ -1,0 +1,219 @@
+"""kind = "modes": natural frequencies and mode shapes under gravity, and joint stiffness from a measured frequency.
+
+Gravity comes first, with geometry that moves, because it says which contact points are closed and where the blocks
+are; a time history starts from the same state. Then all is linear: closed points are springs, open ones nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.simulation import Simulation
+from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.model.model import Model
+from dem_cli.model.scales import mean_weight
+from dem_cli.output.record import Frame, Observer
+from dem_cli.statics.equilibrium import FALLS, settle, stand
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+PRESSED = 1e-4  # of the mean weight of a block: a point with less than that may be round-off of the equilibrium
+CLOSES = 1e-6  # of the smallest edge: a gap below that is closed (contact.start.TOUCH), but for what gravity opened
+PULL = 1e-6  # of the elastic displacement of a weight on a point, to see whether it carries tension
+VISIBLE, LARGEST_TURN = 0.06, 0.2  # of the size of the structure, and rad: how far the picture of a mode moves
+AXES = "xyz"
+AGREES, ROUNDS = 1e-4, 8  # of a frequency: how near a calibrated structure comes to the measured one; most attempts
+SINKS, MOST_STEPS = 0.05, 200_000  # of an attempt: overlap in smallest edges, and steps to stand
+
+
+def run(case: Case, model: Model, observer: Observer) -> Outcome:
+    """Outcome of a modal analysis. Raises CaseError where the structure has no mode with the number asked for."""
+    job = Job.start(case, model, observer)
+    sim = _simulation(job)
+    track = job.track(sim)
+    found: dict[str, Any] = {}
+    try:
+        stands = settle(sim, track, job.budget).state == "equilibrium"
+        found = {"status": "ok", **_answer(job, sim)} if stands else {"status": FALLS}
+    except SolverError as error:
+        found["status"] = "not converged"
+        job.warnings.append(str(error))
+    track.flush()
+    return job.outcome([sim], found)
+
+
+def _simulation(job: Job) -> Simulation:
+    return job.simulation("fixed" if job.case.analysis.kinematics == "fixed" else "large")
+
+
+def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
+    """Keys of the summary; the shapes go to the observer as frames."""
+    wanted, model = job.case.analysis, sim.model
+    job.clock.progress("modes", 0.0, 0.0, 0.9)
+    springs = {name: _springs(sim, name) for name in ("pressed", "touching")}
+    count = max(wanted.count, wanted.mode if wanted.measured is not None else 1)
+    found = _modes(sim, springs[wanted.contacts], count)
+    if wanted.measured is not None and len(found.frequencies) < wanted.mode:
+        text = f"{wanted.mode} is too high: the structure has {len(found.frequencies)} natural frequencies above 0"
+        raise CaseError([CaseProblem(("analysis", "mode"), text)])
+    for number in range(min(len(found.frequencies), wanted.count) if job.case.output.frames else 0):
+        job.clock.frame(_frame(sim, found.shapes[number], number + 1))
+    answer = {
+        "frequencies": found.frequencies[: wanted.count],
+        "effective_masses": {
+            AXES[axis]: found.effective_masses[: wanted.count, axis] for axis in range(model.dimension)
+        },
+        "total_mass": float(model.masses[~model.fixed].sum()),
+        "highest_frequency": highest_frequency(sim) / (2.0 * math.pi),
+        "springs": {name: int(points.sum()) for name, points in springs.items()},
+        "first_frequency": {name: _first(_modes(sim, points, 1)) for name, points in springs.items()},
+        "mechanisms": found.mechanisms,
+        "loose_blocks": [model.block_ids[i] for i in found.loose],
+    }
+    _doubts(job, found)
+    if wanted.measured is not None:
+        answer["calibration"] = _calibration(job, sim, float(found.frequencies[wanted.mode - 1]))
+    return answer
+
+
+def _first(found: Modes) -> float | None:
+    return float(found.frequencies[0]) if len(found.frequencies) else None
+
+
+def _springs(sim: Simulation, contacts: str) -> np.ndarray:
+    """Which contact points act, by the choice of the case, (n_points,) bool."""
+    return closed_points(sim) if contacts == "pressed" else touching_points(sim)
+
+
+def _modes(sim: Simulation, closed: np.ndarray, count: int) -> Modes:
+    found = system(sim, closed, geometric=sim.kinematics == "large")
+    return modes(found, count, sim.model.dimension, sim.model.n_blocks)
+
+
+def closed_points(sim: Simulation) -> np.ndarray:
+    """Contact points that answer any small motion: pressed together, or held by a bond, (n_points,) bool."""
+    free, d = sim.free, sim.model.dimension
+    weight = mean_weight(sim.loads.dead[free], sim.loads.live[free], d) if len(free) else 1.0
+    closed = sim.contacts.normal > PRESSED * weight
+    if sim.law.bonded:
+        closed |= _bonds(sim, np.flatnonzero(~closed), weight)
+    return closed
+
+
+def touching_points(sim: Simulation) -> np.ndarray:
+    """The same and all that have no gap, such as head joints that carry nothing yet, (n_points,) bool."""
+    return closed_points(sim) | (sim.measured().gaps <= CLOSES * sim.smallest)
+
+
+def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
+    """Whether a point that is not pressed carries tension when it is pulled a little, (n_points,) bool."""
+    joints, contacts, memory = sim.joints, sim.measured(), sim.contacts.memory.copy()
+    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    still = (0.0,) * (sim.model.dimension - 1)
+    holds = np.zeros(len(joints.kn), bool)
+    for i in points:
+        gap = contacts.gaps[i] + PULL * weight / joints.kn[i]
+        normal = sim.law.function(
+            gap, still, tuple(contacts.shear[i]), joints.kn[i], joints.ks[i], joints.law, owner[i], memory, i
+        )[0]
+        holds[i] = normal != 0.0
+    return holds
+
+
+def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
+    """The structure moved along a mode so far that it can be seen; `step` is the number of the mode."""
+    model, d = sim.model, sim.model.dimension
+    free = ~model.fixed
+    reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, d:]).max(axis=1) * sim.shape.radii
+    size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
+    turn = float(np.abs(shape[:, d:]).max())
+    amplitude = min(VISIBLE * size / reach.max(), LARGEST_TURN / turn if turn > 0.0 else math.inf)
+    rest = sim.frame("mode")
+    return rest._replace(
+        step=number,
+        displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
+        positions=rest.positions + amplitude * shape[:, :d],
+        orientations=rest.orientations + amplitude * shape[:, d:],
+        velocities=np.zeros_like(rest.velocities),
+    )
+
+
+def _doubts(job: Job, found: Modes) -> None:
+    names = [name for name, table in job.case.joints.items() if "auto" in (table.kn, table.ks)]
+    if names:
+        key = "kn and ks" if job.case.joints[names[0]].kn == "auto" else "ks"
+        job.warnings.append(
+            f"{key} of joint '{names[0]}' is chosen by the program (auto): the frequencies follow from that choice, "
+            "not from the structure; give kn and ks, or a measured frequency (analysis.measured)"
+        )
+    if found.mechanisms:
+        ids = [job.model.block_ids[i] for i in found.loose[:5]]
+        more = f" and {len(found.loose) - 5} more" if len(found.loose) > 5 else ""
+        job.warnings.append(
+            f"{found.mechanisms} motions strain no joint and have no frequency; blocks in them: {', '.join(ids)}{more}"
+        )
+
+
+def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
+    """Joint stiffness at which the mode has the measured frequency: all kn and ks times (measured/computed)².
+
+    That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
+    with the new stiffness, and the factor is corrected until the frequency is met.
+    """
+    wanted = job.case.analysis
+    tried: list[float] = []
+    factor, found, sinks = 1.0, computed, sim.largest_overlap() / sim.smallest
+    while len(tried) < ROUNDS and abs(found / wanted.measured - 1.0) > AGREES:
+        factor *= (wanted.measured / found) ** 2
+        frequency = _frequency_with(job, sim, factor) if sinks / factor < SINKS else None
+        if frequency is None:
+            job.warnings.append(
+                f"joints as soft as {wanted.measured:g} Hz asks for ({factor:.3g} times kn and ks) do not carry the "
+                "structure: the measured frequency does not belong to this mode, or not to this structure"
+            )
+            break
+        found = frequency
+        tried.append(found)
+    met = abs(found / wanted.measured - 1.0) <= AGREES
+    if not met and len(tried) == ROUNDS:
+        job.warnings.append(f"the calibrated frequency is {found:.4g} Hz instead of {wanted.measured:g} Hz")
+    return {
+        "mode": wanted.mode,
+        "measured": wanted.measured,
+        "computed": computed,
+        "factor": factor,
+        "joints": _scaled(sim, factor),
+        "frequencies_tried": tried,
+        "met": met,
+    }
+
+
+def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
+    """kn and ks [Pa/m] of each named joint, times a factor."""
+    properties = sim.properties
+    return {
+        name: {"kn": float(factor * kn), "ks": float(factor * ks)}
+        for name, kn, ks in zip(properties.names, properties.kn, properties.ks, strict=True)
+    }
+
+
+def _frequency_with(job: Job, sim: Simulation, factor: float) -> float | None:
+    """The frequency of the measured mode [Hz] with stiffness scaled; None where the structure does not stand then."""
+    wanted = job.case.analysis
+    tables = {name: job.case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
+    again = _simulation(replace(job, case=job.case.model_copy(update={"joints": tables})))
+    try:
+        if stand(again, Budget(min(MOST_STEPS, wanted.max_steps))).state != "equilibrium":
+            return None
+    except SolverError:
+        return None
+    frequencies = _modes(again, _springs(again, wanted.contacts), wanted.mode).frequencies
+    return float(frequencies[wanted.mode - 1]) if len(frequencies) >= wanted.mode else None

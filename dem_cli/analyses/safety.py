@@ -1,0 +1,240 @@
+"""kind = "safety": by which factor strengths may fall, or how thin a structure may be, before it fails.
+
+Every value is a run of its own (ensembles/static_run.py); the search only says which value comes next. What it
+reports is the last value proven to stand and the first proven to fail.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+from dem_cli.engine.audit import CLOSURE
+from dem_cli.engine.job import Outcome
+from dem_cli.engine.kinematics import why_moving
+from dem_cli.ensembles import bisection
+from dem_cli.ensembles.bisection import Ends
+from dem_cli.ensembles.shaken_run import OnlyProgress
+from dem_cli.ensembles.static_bound import Bound, bound
+from dem_cli.ensembles.static_run import StaticRun, decide, fall
+from dem_cli.ensembles.static_values import changed, checked_model, scale_of, weaker
+from dem_cli.errors import CaseError
+from dem_cli.laws.strength import strengths
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.tables.safety import SafetyAnalysis
+
+BEYOND = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
+NOT_CONVERGED, INTERRUPTED = "not converged", "interrupted"
+
+
+def run(case: Case, model: Model, observer: Observer) -> Outcome:
+    """Outcome of a safety analysis. Raises CaseError where nothing can be varied as the case says."""
+    return SafetyStudy(case, model, observer).run()
+
+
+class SafetyStudy:
+    """All runs of a safety analysis."""
+
+    def __init__(self, case: Case, model: Model, observer: Observer):
+        self.case, self.model, self.observer = case, model, observer
+        self.analysis: SafetyAnalysis = case.analysis
+        self.scale = scale_of(case)
+        self.started, self.compiling = time.perf_counter(), 0.0
+        self.told: dict[float, StaticRun] = {}  # only of the values next to the answer
+        self.runs: list[dict[str, Any]] = []
+        self.answers: dict[float, bool] = {}
+        self.undecided: set[float] = set()  # values at which neither equilibrium nor failure was proven
+        self.warnings: list[str] = []
+        self.steps, self.closure = 0, 0.0
+        self.known: Bound | str | None = None  # what limit analysis says
+
+    def run(self) -> Outcome:
+        """Limit analysis where it can tell, then the runs, then what is to be seen of them."""
+        known = self.known = self._bound()
+        guess = Ends(known.carried, known.impossible) if isinstance(known, Bound) else None
+        start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
+        status = "ok"
+        try:
+            ends = bisection.search(
+                self._stands, self.scale, self.analysis.resolution, guess, self.analysis.scan, start
+            )
+        except KeyboardInterrupt:
+            if not self.answers:
+                raise
+            status, ends = INTERRUPTED, self._nearest()
+        if status == "ok" and ends.fails in self.undecided:
+            status = f"{NOT_CONVERGED}: neither equilibrium nor failure was proven at {self._named(ends.fails)}"
+            ends = self._nearest()
+        if status == "ok" and None in ends:
+            status = self._nowhere(ends)
+        self._check(ends)
+        self._show(ends, 0.0 if status == INTERRUPTED else self.analysis.follow)
+        return Outcome(self._answer(status, ends) | self._facts(ends))
+
+    # -- runs --------------------------------------------------------------------------------------
+
+    def variant(self, value: float) -> tuple[Case, Model]:
+        """Case and model at a value."""
+        if self.analysis.of_strength:
+            return weaker(self.case, value), self.model
+        case = changed(self.case, self.analysis.vary, value)
+        return case, checked_model(case, value)
+
+    def _stands(self, value: float) -> bool:
+        """Whether the structure is proven to stand at a value; each is run once."""
+        if value not in self.answers and value not in self.undecided:
+            self._run(value)
+        return self.answers.get(value, False)
+
+    def _run(self, value: float) -> None:
+        text = f"{len(self.runs) + 1}. run: {self._named(value)}"
+        self.observer.progress(text, math.nan, math.nan, None)
+        try:
+            told = decide(*self.variant(value), OnlyProgress(self.observer), value, self._past(value) >= 0.0)
+        except CaseError as error:  # both ends of the range are possible
+            self._give_up(value, str(error))
+            return
+        self.steps += told.run.steps
+        self.compiling += told.job.clock.compiling
+        self.runs.append(told.run.summary())
+        self.warnings += [text for text in told.job.warnings if text not in self.warnings]
+        if told.run.stands is None:
+            self._give_up(value, told.run.why)
+            return
+        self.answers[value] = told.run.stands
+        if told.run.stands:
+            self.closure = max(self.closure, told.run.closure, key=abs)
+        self.told[value] = told
+        near = set(self._nearest())
+        self.told = {v: kept for v, kept in self.told.items() if v in near}
+
+    def _give_up(self, value: float, why: str) -> None:
+        """Nothing was proven at a value: it counts as one that does not stand, and as none that fails."""
+        self.undecided.add(value)
+        self.warnings.append(f"{self._named(value)}: {why}")
+
+    def _nearest(self) -> Ends:
+        """The values tried that are next to the change."""
+        tried = sorted(self.answers.items())
+        return bisection.first_change(tried) if tried else Ends(None, None)
+
+    def _bound(self) -> Bound | str | None:
+        if not self.analysis.limit:
+            return None
+        moving = why_moving(self.case, self.model)
+        if moving:
+            return f"not tried: {moving}"
+        self.observer.progress("limit analysis", 0.0, 0.0, None)
+        return bound(self.variant, self.scale, self.analysis.resolution)
+
+    # -- what they say -----------------------------------------------------------------------------
+
+    def _named(self, value: float) -> str:
+        return f"F = {value:.5g}" if self.analysis.of_strength else f"{self.analysis.vary} = {value:.6g}"
+
+    def _nowhere(self, ends: Ends) -> str:
+        """The status where all values have the same end."""
+        low, high = self.scale.low, self.scale.high
+        if not self.analysis.of_strength:
+            return f"{'stands' if ends.fails is None else 'fails'} at both {self._named(low)} and {high:.6g}"
+        if ends.fails is None:
+            return f"no failure up to F = {high:g}"
+        return f"fails even at F = {low:g}"
+
+    def _past(self, value: float) -> float:
+        """How far a value is beyond what limit analysis proved impossible; negative: not, or not known."""
+        if not isinstance(self.known, Bound):
+            return -math.inf
+        return (value - self.known.impossible) * math.copysign(1.0, self.known.impossible - self.known.carried)
+
+    def _check(self, ends: Ends) -> None:
+        """Words about answers that contradict each other."""
+        if bisection.changes(self.answers) > 1:
+            tried = ", ".join(f"{v:.5g} {'stands' if s else 'fails'}" for v, s in sorted(self.answers.items()))
+            self.warnings.append(f"not monotone: {tried}; the answer is the first failure from the side that stands")
+        if isinstance(self.known, Bound) and ends.stands is not None:
+            impossible = self.known.impossible
+            if self._past(ends.stands) > BEYOND * abs(impossible):
+                self.warnings.append(
+                    f"it stands at {self._named(ends.stands)}, where limit analysis proves that nothing can "
+                    f"({impossible:.5g} and beyond): do not trust this run"
+                )
+        if abs(self.closure) > CLOSURE:
+            self.warnings.append(f"the energy does not close: {self.closure:.2%} is missing; do not trust this run")
+
+    def _answer(self, status: str, ends: Ends) -> dict[str, Any]:
+        bracket = sorted(end for end in ends if end is not None) if None not in ends else None
+        of_strength = self.analysis.of_strength
+        name = "safety_factor" if of_strength else "critical_value"
+        found = ends.stands if status == "ok" else None
+        answer: dict[str, Any] = {"status": status, "vary": self.analysis.vary}
+        answer |= {name: found, f"{name}_bracket": bracket, "stands_at": ends.stands, "fails_at": ends.fails}
+        if of_strength:
+            there = {key for table in self.case.joints.values() for key in strengths(table)}
+            answer["reduce"] = [key for key in self.analysis.reduce if key in there]
+            if found is not None:
+                answer["strengths_needed"] = {
+                    joint: strengths(table) for joint, table in weaker(self.case, found).joints.items()
+                }
+        failing = self.told.get(ends.fails) if ends.fails is not None else None
+        if failing is not None:
+            answer |= failing.run.mechanism
+            answer["proof_of_failure"] = failing.run.proof or {"why": failing.run.why}
+        answer["load"] = self.analysis.constant_load
+        if self.known is not None:
+            answer["limit_analysis"] = self.known.summary() if isinstance(self.known, Bound) else {"note": self.known}
+        answer["runs"] = self.runs
+        return answer
+
+    def _facts(self, ends: Ends) -> dict[str, Any]:
+        """How it was obtained; joints and contacts are those of the structure next to failure."""
+        told = next(iter(self.told.values()), None)
+        return {
+            "joints": told.sim.first_joints if told else None,
+            "contacts": told.sim.first_points if told else None,
+            "kinematics": told.sim.kinematics if told else None,
+            "steps": self.steps,
+            "time_step": 1.0,
+            "solve_seconds": time.perf_counter() - self.started - self.compiling,
+            "compile_seconds": self.compiling,
+            "energy_closure": self.closure,
+            "skipped": told.job.skipped if told else [],
+            "warnings": self.warnings,
+        }
+
+    # -- what is to be seen ------------------------------------------------------------------------
+
+    def _show(self, ends: Ends, follow: float) -> None:
+        """Rows and frames of the last structure that stands and of the first that fails, and its collapse."""
+        standing, failing = (self.told.get(v) if v is not None else None for v in ends)
+        base = failing or standing
+        if base is None:
+            return
+        if base.model is not self.model:
+            self.observer.structure(base.model)
+        if standing is not None and standing.model.n_blocks == base.model.n_blocks:
+            self._hand_over(standing, base)
+        if failing is None:
+            return
+        if follow == 0.0:
+            self._hand_over(failing, base)
+            return
+        quiet = fall(failing, self.observer, follow, self.case.output.frames)
+        if quiet is not None:
+            self.warnings.append(f"the collapse was not followed to its end: {quiet}")
+
+    def _hand_over(self, told: StaticRun, base: StaticRun) -> None:
+        """Rows, and the frame as a displacement of the structure that is drawn."""
+        for row in told.rows:
+            self.observer.row(row)
+        if self.case.output.frames == 0:
+            return
+        frame, shift = told.frame, base.model.centroids - told.model.centroids
+        contacts = frame.contacts
+        moved = contacts._replace(points=contacts.points + shift[contacts.blocks[:, 0]])
+        self.observer.frame(frame._replace(positions=frame.positions + shift, contacts=moved))

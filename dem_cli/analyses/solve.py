@@ -1,0 +1,23 @@
+"""Solve a case: the analysis that it names, from a model to an outcome."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dem_cli.analyses.registry import ANALYSES
+from dem_cli.engine.job import Outcome
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.ensembles.batch import Batch
+
+
+def solve(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+    """Solve a case with the analysis that it names. Raises SolverError where the solver gives up.
+
+    batch: how to do the runs of an analysis that consists of many.
+    """
+    solve = ANALYSES[case.analysis.kind].load()
+    return solve(case, model, observer) if batch is None else solve(case, model, observer, batch)

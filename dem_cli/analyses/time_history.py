@@ -1,0 +1,104 @@
+"""analysis.repeats of a time history: the same motion on slightly different structures, and how much peaks differ.
+
+One record is one draw: an exact integration of rocking blocks whose records are scaled by 0.1 % has another outcome in
+19 of 240 cases (docs/rocking.md). A peak without its spread says little.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.history import TimeHistory
+from dem_cli.engine.job import Job, Outcome
+from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
+from dem_cli.ensembles.shaken_run import OnlyProgress, RestedStructure, ShakenRunResult
+from dem_cli.ensembles.variants import Variant
+from dem_cli.model.model import Model
+from dem_cli.motion.build import motions_of
+from dem_cli.output.record import Observer, RunRow
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+EARTHQUAKES = ("record", "artificial")  # kinds of [motion] that are one draw of many, and are made with scipy
+ONE_DRAW = (
+    "the peaks are those of one record on one structure: rocking is ill-conditioned, and a change of 0.1 % may give "
+    "others, or a collapse; repeats = 20 shows their spread, kind = 'fragility' that of many records"
+)
+PERCENTILES = {"min": 0.0, "p16": 16.0, "median": 50.0, "p84": 84.0, "max": 100.0}
+
+
+def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+    """Outcome of a time history, and how sensitive it is. Raises SolverError where it blows up."""
+    job = Job.start(case, model, observer)
+    for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
+        job.clock.imported(module)
+    outcome = TimeHistory(job, GroundMotion(motions_of(case), model)).run()
+    if doubtful(case):
+        outcome.summary["warnings"].append(ONE_DRAW)
+    if case.analysis.repeats and outcome.summary["status"] == "ok":
+        found = repeated(case, model, observer, batch or Batch())
+        outcome.summary["warnings"] += found.pop("warnings")
+        outcome.summary |= found
+    return outcome
+
+
+def doubtful(case: Case) -> bool:
+    """Whether the peaks of a case lack their sensitivity."""
+    return case.analysis.repeats == 0 and any(table.kind in EARTHQUAKES for table in case.motion)
+
+
+def repeated(case: Case, model: Model, observer: Observer, batch: Batch) -> dict[str, Any]:
+    """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed."""
+    started = time.perf_counter()
+    motions, quiet = motions_of(case), OnlyProgress(observer)
+    structures = [RestedStructure(Variant(case, model, 1 + k), motions, quiet) for k in range(case.analysis.repeats)]
+    trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
+    batcher = Batcher(structures, lambda _: motions, batch)
+
+    def say(done: int) -> None:
+        observer.progress(f"repeats {done:,} of {len(trials):,}", math.nan, math.nan, done / max(len(trials), 1))
+
+    batcher.work([*each(trials)], say)
+    runs = [batcher.done[trial] for trial in trials]
+    observer.runs(_rows(trials, runs, structures, max((motion.peak for motion in motions), default=0.0)))
+    warnings = [f"structure {1 + t.structure}: {run.how}" for t, run in zip(trials, runs) if run.collapsed is None]
+    fell = case.analysis.repeats - len(trials)
+    if fell:
+        warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
+    return {
+        "repeats": spread([run for run in runs if run.collapsed is not None], len(case.monitor))
+        | {"seconds": sum(run.seconds for run in runs)},
+        "repeat_seconds": time.perf_counter() - started,
+        "warnings": warnings,
+    }
+
+
+def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
+    """How many collapsed, and the percentiles of the peaks of the others: a list, None for each where none stood."""
+    peaks = np.array([run.peaks for run in runs if not run.collapsed]).reshape(-1, n_monitors)
+    collapsed = len(runs) - len(peaks)
+    columns = [
+        {name: float(np.percentile(column, q)) for name, q in PERCENTILES.items()} if len(column) else None
+        for column in peaks.T
+    ]
+    share = collapsed / len(runs) if runs else None
+    return {"runs": len(runs), "collapsed": collapsed, "share_collapsed": share, "peaks": columns}
+
+
+def _rows(
+    trials: Sequence[ShakingTrial], runs: Sequence[ShakenRunResult], structures: Sequence[RestedStructure], peak: float
+) -> list[RunRow]:
+    return [
+        RunRow(
+            1 + trial.structure, "", 1.0, peak * structures[trial.structure].variant.motion, run.collapsed, run.time,
+            run.how, run.peaks,
+        )
+        for trial, run in zip(trials, runs, strict=True)
+    ]  # fmt: skip

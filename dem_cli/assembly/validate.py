@@ -1,0 +1,284 @@
+"""Is this a structure at all? Mistakes of geometry that stop a run, and oddities that only deserve a word."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.contact.layout import PointLayout, steepest
+from dem_cli.errors import CaseProblem
+from dem_cli.geometry import polygon
+from dem_cli.model.blocks import Block
+from dem_cli.model.model import Model
+from dem_cli.model.places import block_at, undeformed
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+OVERLAP = 1e-6  # of the smaller block: deeper is a mistake
+TOUCH = 1e-3  # of the smaller block: a wider gap is no support
+SLIVER = 1e-3  # width over length of a block
+SIZE_RATIO = 1e3  # largest over smallest free block
+MASS_RATIO = 1e6  # heaviest over lightest free block
+STEEPEST = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
+REMOTE = 1e8  # distance from the origin over the size of a typical free part
+SHOWN = 5  # mistakes of one sort that are reported one by one
+
+
+class Neighbours(NamedTuple):
+    """Pairs of convex parts that touch, overlap or nearly touch, whatever block they belong to."""
+
+    parts: np.ndarray  # (n, 2)
+    blocks: np.ndarray  # (n, 2)
+    separation: np.ndarray  # negative: overlap [m], (n,)
+    scale: np.ndarray  # size of the smaller one of the two [m], (n,)
+
+
+def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
+    """Everything that makes the geometry unusable; `blocks` in the order of the model."""
+    found = shape_problems(model, blocks)
+    if found:
+        return found
+    near = _neighbours(model)
+    note = " (with the errors of [[imperfection]])" if case.imperfection else ""
+    found = overlap_problems(model, blocks, near, note) + compound_problems(model, blocks, near)
+    found += monitor_problems(case, model) + profile_problems(case, model)
+    if not model.fixed.any():
+        path = ("structure", 0) if case.structure else ("block", 0)
+        message = "no block is fixed, everything would fall; give a structure a base or a block fixed = true"
+        return [*found, CaseProblem(path, message)]
+    return found + support_problems(model, blocks, near)
+
+
+def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors at a point where there is no block, or of blocks that share no joint."""
+    low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
+    return shared_problems(case, model) + [
+        CaseProblem(
+            ("monitor", i, "point"),
+            f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
+        )
+        for i, monitor in enumerate(case.monitor)
+        if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
+    ]
+
+
+def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors of the joint of two blocks that share none."""
+    wanted = [(i, monitor.between) for i, monitor in enumerate(case.monitor) if monitor.between is not None]
+    if not wanted:
+        return []
+    from dem_cli.assembly.assemble import assembly
+    from dem_cli.contact.between import StartJoints
+
+    joints, blocks, found = StartJoints(model), assembly(case).block_map, []
+    for i, (a, b) in wanted:
+        near = joints.neighbours(blocks[a])
+        if blocks[b] not in near:
+            message = f"'{a}' and '{b}' share no joint at the start"
+            listed = ", ".join(f"'{model.block_ids[k]}'" for k in near) or "none"
+            found.append(CaseProblem(("monitor", i, "between"), f"{message}; joints of '{a}' are with: {listed}"))
+    return found
+
+
+def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Profiles that are too steep on the shortest joint that has them."""
+    profiles = {name: table.profile for name, table in case.joints.items() if getattr(table, "profile", None)}
+    if not profiles:
+        return []
+    from dem_cli.contact.assemble import END_TO_END, STEEP, overlap_lengths
+
+    corners = undeformed(model)
+    sides = polygon.sizes(model.vertices, model.part_starts)
+    faces = find_joints(model, corners, TOUCH * float(sides.min()))
+    along = corners[faces.edges[:, 1]] - corners[faces.edges[:, 0]]
+    beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
+    blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(faces.edges, corners)
+    whole = np.hypot(*(corners[faces.edges[:, 3]] - corners[faces.edges[:, 2]]).T)
+    pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
+    named = np.array([case.joint_between(*pair) for pair in pairs])
+    found = []
+    for name, table in profiles.items():
+        has_it = (named == name) & (lengths > END_TO_END * whole)
+        if table.only != "all":
+            has_it &= beds == (table.only == "bed")
+        if has_it.any():
+            k = np.flatnonzero(has_it)[lengths[has_it].argmin()]
+            slope = steepest(PointLayout(seed=case.seed, **table.ranges), float(lengths[k]))
+            if slope > STEEPEST:
+                a, b = (model.block_ids[i] for i in blocks[k])
+                message = f"too large for the joint of '{a}' and '{b}', {lengths[k]:.3g} m long: "
+                message += f"a side of the profile has a slope of {slope:.2g} there, at most {STEEPEST:g} is allowed"
+                found.append(CaseProblem(("joints", name, "profile", "aperture"), message))
+    return found
+
+
+def warnings(model: Model) -> list[str]:
+    """What makes a run slow or inexact without being wrong."""
+    free = ~model.fixed
+    if not free.any():
+        return ["every block is fixed: nothing can move"]
+    part = np.nonzero(free[model.part_blocks])[0]
+    sizes = polygon.sizes(model.vertices, model.part_starts)[part]
+    areas = polygon.properties_of_all(model.vertices, model.part_starts).area[part]
+    names = [model.block_ids[i] for i in model.part_blocks[part]]
+    block = np.nonzero(free)[0]
+    return [
+        *_remote(model, float(np.median(sizes))),
+        *_slivers(areas / sizes**2, names),
+        *_spread("size", sizes, names, SIZE_RATIO),
+        *_spread("mass", model.masses[block], [model.block_ids[i] for i in block], MASS_RATIO),
+    ]
+
+
+def _remote(model: Model, size: float) -> list[str]:
+    """Coordinates of 16 digits, of which the distance from the origin takes too many to say what touches.
+
+    Solvers count coordinates from the structure (model.scales.origin_of); what the case says cannot be mended.
+    """
+    low, high = model.centroids.min(axis=0), model.centroids.max(axis=0)
+    away = float(np.hypot(*np.maximum(np.maximum(low, -high), 0.0)))
+    if away <= REMOTE * size:
+        return []
+    return [
+        f"the blocks lie {away:.3g} m from [0, 0], {away / size:.1e} times the size of one: too few digits are left to "
+        "say which faces touch; shift the structure to the origin"
+    ]
+
+
+def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
+    """`slim`: area over the square of the diagonal, about width over length."""
+    wrong = np.nonzero(slim < SLIVER)[0]
+    if not wrong.size:
+        return []
+    worst = np.argmin(slim)
+    more = f" (and {wrong.size - 1} more)" if wrong.size > 1 else ""
+    return [f"block '{names[worst]}'{more} is a sliver (width / length = {slim[worst]:.1e}): expect tiny steps"]
+
+
+def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -> list[str]:
+    large, small = np.argmax(values), np.argmin(values)
+    ratio = values[large] / values[small]
+    if ratio <= limit:
+        return []
+    return [f"block '{names[large]}' has {ratio:.1e} times the {what} of '{names[small]}': expect a slow run"]
+
+
+def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
+    """Parts without area or not convex."""
+    starts = model.part_starts
+    areas = polygon.properties_of_all(model.vertices, starts).area
+    least = polygon.TOLERANCE * polygon.sizes(model.vertices, starts) ** 2
+    flat = areas <= least
+    bent = ~polygon.are_convex(model.vertices, starts) & ~flat
+    found = []
+    for wrong, what in ((flat, "has no area, or its corners run clockwise"), (bent, "is not convex")):
+        hit = np.unique(model.part_blocks[wrong])
+        found += _first_few([(blocks[i].path, f"block '{blocks[i].id}' {what}") for i in hit])
+    return found
+
+
+def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, note: str = "") -> list[CaseProblem]:
+    """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
+    a, b = near.blocks.T
+    wrong = (near.separation < -OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
+    found, seen = [], set()
+    for k in np.nonzero(wrong)[0][np.argsort(near.separation[wrong], kind="stable")]:
+        pair = tuple(sorted(near.blocks[k].tolist(), key=lambda i: (blocks[i].path[:1] == ("block",), blocks[i].path)))
+        if pair in seen:
+            continue
+        seen.add(pair)
+        first, second = (blocks[i] for i in pair)
+        depth = -near.separation[k]
+        found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth:.3g} m{note}"))
+    return _first_few(found)
+
+
+def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
+    """Parts of one block that overlap each other, or that do not hang together."""
+    if model.n_parts == model.n_blocks:
+        return []
+    same = near.blocks[:, 0] == near.blocks[:, 1]
+    deep = same & (near.separation < -OVERLAP * near.scale)
+    first_part = np.searchsorted(model.part_blocks, np.arange(model.n_blocks))
+    found = []
+    for k in np.nonzero(deep)[0]:
+        block, depth = near.blocks[k, 0], -near.separation[k]
+        p, q = near.parts[k] - first_part[block] + 1
+        message = f"parts {p} and {q} of block '{blocks[block].id}' overlap by {depth:.3g} m"
+        found.append((blocks[block].path, message))
+    touching = same & (near.separation <= TOUCH * near.scale)
+    group = _components(model.n_parts, near.parts[touching])
+    loose = np.unique(model.part_blocks[group != group[first_part[model.part_blocks]]])
+    found += [(blocks[i].path, f"the parts of block '{blocks[i].id}' do not touch each other") for i in loose]
+    return _first_few(found)
+
+
+def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
+    """Groups of blocks from which no chain of touching blocks leads to a fixed one."""
+    touching = near.separation <= TOUCH * near.scale
+    group = _components(model.n_blocks, near.blocks[touching])
+    held = np.zeros(model.n_blocks, bool)
+    held[group[model.fixed]] = True
+    found = []
+    for g in np.unique(group[~held[group]]):
+        inside = group == g
+        i, j, gap = _nearest_pair(model, inside)
+        others = int(inside.sum()) - 1
+        also = f" and {others} more touching it" if others else ""
+        message = f"nothing holds up block '{blocks[i].id}'{also}"
+        message += f"; the nearest other block is '{blocks[j].id}', about {gap:.3g} m away"
+        found.append((blocks[i].path, message))
+    return _first_few(found)
+
+
+def _neighbours(model: Model) -> Neighbours:
+    parts_alone = model._replace(
+        part_blocks=np.arange(model.n_parts), fixed=np.zeros(model.n_parts, bool)
+    )  # so that parts of one block and fixed blocks are compared as well
+    corners = world_corners(block_shape(model), model.centroids, np.zeros((model.n_blocks, 1)))
+    sizes = polygon.sizes(model.vertices, model.part_starts)
+    free = ~model.fixed[model.part_blocks]
+    reach = TOUCH * float(sizes[free].max() if free.any() else sizes.max())
+    faces = find_joints(parts_alone, corners, reach)
+    return Neighbours(faces.parts, model.part_blocks[faces.parts], faces.separation, sizes[faces.parts].min(axis=1))
+
+
+def _components(n: int, pairs: np.ndarray) -> np.ndarray:
+    """The smallest number reachable from each of n nodes through the pairs, (n,)."""
+    label = np.arange(n)
+    while True:
+        before = label.copy()
+        least = np.minimum(label[pairs[:, 0]], label[pairs[:, 1]])
+        for side in (0, 1):
+            np.minimum.at(label, label[pairs[:, side]], least)
+        label = label[label]
+        if (label == before).all():
+            return label
+
+
+def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
+    """Lowest block inside the group, the nearest block outside, and the distance of their boxes [m]."""
+    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
+    corners = model.vertices + model.centroids[owner]
+    starts = np.searchsorted(owner, np.arange(model.n_blocks))
+    low = np.minimum.reduceat(corners, starts, axis=0)
+    high = np.maximum.reduceat(corners, starts, axis=0)
+    i = int(np.nonzero(inside)[0][0])
+    gaps = np.maximum(np.maximum(low - high[i], low[i] - high), 0.0)
+    distance = np.where(inside, np.inf, np.hypot(*gaps.T))
+    j = int(np.argmin(distance))
+    return i, j, float(distance[j])
+
+
+def _first_few(found: Sequence[tuple[tuple, str]]) -> list[CaseProblem]:
+    """The first mistakes of a sort; the last one reported says how many more there are."""
+    shown = [CaseProblem(path, message) for path, message in found[:SHOWN]]
+    rest = len(found) - SHOWN
+    if rest > 0:
+        last = shown[-1]
+        shown[-1] = CaseProblem(last.path, f"{last.message}; and {rest} more of this sort")
+    return shown

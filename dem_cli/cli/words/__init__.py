@@ -1,0 +1,1 @@
+"""What users read: answers, remarks and tables in words."""

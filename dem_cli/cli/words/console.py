@@ -1,0 +1,253 @@
+"""Every line that a user of `dem run` reads: progress on stderr, the answer on stdout."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+from dem_cli.cli.words.fragility import fragility_rows
+from dem_cli.cli.words.modes import mode_rows
+from dem_cli.cli.words.reference import reference_rows
+from dem_cli.cli.words.safety import safety_rows
+
+_FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
+_BAR_EVERY = 0.1  # s
+_LINE_EVERY = 10.0  # s
+_COMPILING = "compiling"
+
+
+def metres(value: float) -> str:
+    """A length with a readable unit: 1.2e-05 -> "12 µm"."""
+    for scale, unit in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
+        if abs(value) >= scale or unit == "µm":
+            return f"{value / scale:.3g} {unit}"
+    raise AssertionError("unreachable")
+
+
+def seconds(value: float) -> str:
+    """A duration as people say it."""
+    if value < 0.995:
+        return f"{1000 * value:.0f} ms"
+    if value < 120:
+        return f"{value:.1f} s" if value < 10 else f"{value:.0f} s"
+    return f"{value / 60:.0f} min" if value < 7200 else f"{value / 3600:.1f} h"
+
+
+class Progress:
+    """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
+
+    def __init__(self, quiet: bool = False, stream: TextIO | None = None):
+        self.quiet = quiet
+        self.stream = stream or sys.stderr
+        self.on_terminal = self.stream.isatty()
+        self.start = time.monotonic()
+        self._next = self.start + (_FIRST_BAR if self.on_terminal else _LINE_EVERY)
+        self._bar: Any = None
+
+    def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Say where the run stands; cheap enough to be called often."""
+        now = time.monotonic()
+        if not self.quiet and stage.startswith(_COMPILING):  # said at once: it takes seconds
+            self.stop()
+            print(stage, file=self.stream, flush=True)
+        elif not self.quiet and now >= self._next:
+            self._next = now + (_BAR_EVERY if self.on_terminal else _LINE_EVERY)
+            self._say(now, stage, load, displacement, fraction)
+
+    def _say(self, now: float, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        drive = f"base {load:+.3f} g" if stage == "shaking" else f"load {load:.4f}"
+        where = "" if math.isnan(load) else f"{drive}, displacement {metres(displacement)}"  # many runs: none of them
+        if self.on_terminal:
+            self._draw(stage, where, fraction)
+        else:
+            says = f"{where}{self._left(now, fraction)}".removeprefix(", ")
+            print(f"{stage}: {says}", file=self.stream, flush=True)
+
+    def _left(self, now: float, fraction: float | None) -> str:
+        elapsed = now - self.start
+        if not fraction:
+            return f", {seconds(elapsed)} so far"
+        return f", {100 * fraction:.0f} %, about {seconds(elapsed * (1 - fraction) / fraction)} left"
+
+    def _draw(self, stage: str, where: str, fraction: float | None) -> None:
+        if self._bar is None:
+            self._bar = _new_bar(self.stream)
+            self._task = self._bar.add_task(stage, total=None, where=where)
+            self._bar.start()
+        total = None if fraction is None else 1.0
+        self._bar.update(self._task, description=stage, total=total, completed=fraction or 0.0, where=where)
+
+    def stop(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.stop()
+
+
+def _new_bar(stream: TextIO) -> Any:
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.description:<8}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.fields[where]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    return Bar(*columns, console=Console(file=stream), transient=True)
+
+
+MOST_PEAKS = 8  # of monitors, a line each
+MOST_TURNS = 6  # of a load path, in one line
+STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
+
+
+def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
+    """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
+    rows = answer_rows(summary) + [("warning", text) for text in summary.get("warnings", ())]
+    if verbose:
+        rows += [("skipped", text) for text in summary.get("skipped", ())]
+    rows.append(("written to", f"{folder} ({', '.join(files)})"))
+    return "\n".join([str(summary["title"]), *(f"  {label:<14} {text}" for label, text in rows)])
+
+
+def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of each line of an answer of any kind, without warnings."""
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
+    rows += safety_rows(summary)
+    return [*rows, *_sureness_rows(summary), *_cost_rows(summary)]
+
+
+def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    if summary["status"] != "ok":
+        rows.append(("status", str(summary["status"])))
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    if load is not None:
+        between = f"  (between {_load(bracket[0])} and {_load(bracket[1])})" if bracket and None not in bracket else ""
+        rows.append(("failure load", f"{_load(load)}{between}"))
+    if summary.get("failure_mode"):
+        rows.append(("failure mode", str(summary["failure_mode"])))
+    if summary.get("onset_of_displacements") is not None:
+        rows.append(("first motion", f"{_load(summary['onset_of_displacements'])}, more than joints deform"))
+    turns = summary.get("turning_points")
+    if turns:
+        text = ", ".join(f"{metres(turn['displacement'])} at {_load(turn['load'])}" for turn in turns[:MOST_TURNS])
+        rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
+    reached = summary.get("reached")
+    if reached:
+        where = f"{reached['time']:.4g} s" if "time" in reached else f"load {_load(reached['load'])}"
+        where += f", displacement {metres(reached['displacement'])}"
+        rows.append(("reached", f"{reached['stage']}, {where}"))
+    return rows
+
+
+def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Of a time history: did it stand, how far did it go, what took the energy."""
+    rows = []
+    if summary.get("collapsed") is not None:
+        at = summary.get("collapse_time")
+        fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
+        rows.append(("result", fell if summary["collapsed"] else "stood"))
+    peaks = summary.get("peaks") or {}
+    for name, found in list(peaks.items())[:MOST_PEAKS]:
+        peak, residual = (_measure(found[key], found["unit"]) for key in ("peak", "residual"))
+        rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} in the end"))
+    if len(peaks) > MOST_PEAKS:
+        rows.append(("", f"and {len(peaks) - MOST_PEAKS} more in summary.json"))
+    shares = {name: share for name, share in (summary.get("energy_shares") or {}).items() if share >= 0.0005}
+    if shares:
+        listed = sorted(shares.items(), key=lambda item: -item[1])
+        rows.append(("energy went to", ", ".join(f"{name.replace('_', ' ')} {100 * s:.3g} %" for name, s in listed)))
+    return rows
+
+
+def _measure(value: float | None, unit: str) -> str:
+    """A value of a monitor with its unit."""
+    if value is None:
+        return "–"
+    return metres(value) if unit == "m" else f"{value:.3g} {unit}"
+
+
+def _load(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4f}" if abs(value) < 100 else f"{value:.6g}"
+
+
+def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    parts = []
+    if load and bracket and None not in bracket:
+        parts.append(f"±{50 * (bracket[1] - bracket[0]) / abs(load):.2g} %")
+    if summary.get("energy_closure") is not None:
+        parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
+    if parts:
+        rows.append(("how sure", ", ".join(parts)))
+    start = summary.get("start") or {}
+    if start.get("kind") in STARTS and start.get("load") is not None:
+        rows.append(("started from", f"{STARTS[start['kind']]} at {_load(start['load'])}, {seconds(start['seconds'])}"))
+    limits = summary.get("limit_analysis") or {}
+    known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
+    if known:
+        text = ", ".join(f"{_load(limits[key])} {key.replace('_', '-')}" for key in known)
+        rows.append(("limit analysis", text))
+    return rows + reference_rows(summary)
+
+
+def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    counts = [f"{summary[key]:,} {key}" for key in ("blocks", "joints", "steps") if summary.get(key) is not None]
+    time_text = seconds(summary["solve_seconds"]) if summary.get("solve_seconds") is not None else ""
+    return [("solved in", " · ".join([time_text, *counts] if time_text else counts))] if counts else []
+
+
+def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
+    """The result of a limit analysis as text."""
+    limits = summary["limit_analysis"]
+    rows = [] if summary["status"] == "ok" else [("status", str(summary["status"]))]
+    if limits["associated"] is not None:
+        low, high = limits["associated_bounds"]
+        how = f"between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
+        rows.append(("associated", f"{_load(limits['associated'])}  ({how})"))
+    if limits.get("non_associated") is not None:
+        how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
+        final = limits.get("non_associated_final_load")
+        if final is not None and final < 0.98 * limits["non_associated"]:
+            how = f"highest load of a path that drops to {_load(final)} then, {how}"
+        rows.append(("non-associated", f"{_load(limits['non_associated'])}  ({how})"))
+    if limits.get("non_associated_at_least") is not None:
+        how = f"{limits['non_associated_status']}, {seconds(limits['non_associated_seconds'])}"
+        rows.append(("non-associated", f"at least {_load(limits['non_associated_at_least'])}  ({how})"))
+    if limits.get("rigid_wall") is not None:
+        rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
+    if limits["heads"] == "frictionless":
+        rows.append(("head joints", "without friction"))
+    rows += _cost_rows(summary)
+    rows += [("warning", text) for text in summary.get("warnings", ())]
+    if folder is not None:
+        rows.append(("written to", str(folder)))
+    return "\n".join([str(summary["title"]), *(f"  {label:<14} {text}" for label, text in rows)])
+
+
+def show(lines: str) -> None:
+    """Print the answer, on stdout."""
+    print(lines, flush=True)
+
+
+def note(line: str, quiet: bool = False) -> None:
+    """Print a remark, on stderr."""
+    if not quiet:
+        print(line, file=sys.stderr, flush=True)

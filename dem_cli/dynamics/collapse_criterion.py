@@ -1,0 +1,70 @@
+"""Whether a structure that is shaken has collapsed, or its motion is none: what time histories look at on the way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.engine.measures import closure
+from dem_cli.errors import SolverError
+
+if TYPE_CHECKING:
+    from dem_cli.dynamics.time_step import TimeStep
+    from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.tables.analysis import ShakingAnalysis
+
+BLOW_UP = 0.2  # energy error over the largest energy from which a run is stopped
+
+
+class CollapsedBlock(NamedTuple):
+    """The first block that collapsed."""
+
+    block: str
+    time: float  # [s]
+    how: str
+
+
+def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock | None:
+    """The block that turned or sank farthest beyond the limits of the case, where there is one."""
+    free, d = sim.free, sim.model.dimension
+    turned = np.abs(sim.bodies.orientations[free, 0])
+    sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
+    limit = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
+    for values, limits, word, unit in (
+        (np.degrees(turned), np.full(len(free), analysis.fallen_deg), "turned by", "°"),
+        (sank, limit, "sank by", " m"),
+    ):
+        over = values - limits
+        if len(over) and over.max() > 0.0:
+            k = int(over.argmax())
+            return CollapsedBlock(sim.model.block_ids[free[k]], sim.time, f"{word} {values[k]:.3g}{unit}")
+    return None
+
+
+def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:
+    """Raises SolverError where the motion makes energy."""
+    sim.most_kinetic = max(sim.most_kinetic, sim.centred_kinetic_energy())
+    error = closure(sim)
+    if abs(error) > BLOW_UP and sim.energy().kinetic > sim.noticeable_energy:
+        block = sim.model.block_ids[_fastest(sim)]
+        raise SolverError(
+            f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "
+            f"fastest; the step {step.step:.3g} s is {step.step / step.limit:.0%} of the limit of "
+            "the joints of the start, lower analysis.margin"
+        )
+
+
+def check_finite(sim: DynamicSimulation) -> None:
+    """Raises SolverError that names time and block where a number is no number."""
+    bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
+    if bad.any():
+        name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
+        raise SolverError(f"the motion of block '{name}' is not a number at {sim.time:.4g} s: lower analysis.margin")
+
+
+def _fastest(sim: DynamicSimulation) -> int:
+    """The block with the largest velocity of a corner."""
+    d = sim.model.dimension
+    speeds = np.sqrt((sim.bodies.velocities[:, :d] ** 2).sum(axis=1))
+    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, d:]).max(axis=1)).argmax())

@@ -1,0 +1,222 @@
+"""Natural frequencies of a structure on its joints: stiffness of the contact springs, real masses, eigenvalues.
+
+    K = Bᵀ diag(k) B + G,   K φ = ω² M φ
+
+B: relative motion at every contact point (limit.matrices), k: its normal and shear stiffness; free blocks only. G, on
+request: the geometric stiffness of the contact forces (solve.geometric), a share W/(kn h) of the rest.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
+from dem_cli.errors import SolverError
+from dem_cli.limit.matrices import compatibility
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+    from dem_cli.engine.simulation import Simulation
+
+DENSE = 30  # degrees of freedom up to which a full matrix is used; beyond, threads of BLAS may cost more than they give
+DENSE_SHARE = 0.5  # of all modes: from there on as well
+ACCURATE = 1e-6  # residual over the highest eigenvalue, whose error is of its square
+ZERO, SHIFT = 1e-12, 1e-10  # of the highest eigenvalue: no vibration below it; where the lowest ones are looked for
+EQUAL = 1e-6  # shares of energy that are no further apart are the same: the first block or joint is named
+
+
+class System(NamedTuple):
+    """Springs and masses of the free degrees of freedom: block by block, translations first."""
+
+    rows: csr_array  # √k B M^(-1/2), (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
+    geometric: csr_array | None  # M^(-1/2) G M^(-1/2) [1/s2], (n_free, n_free); None: left out
+    masses: np.ndarray  # [kg, kg m2], (n_free,)
+    blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
+
+    @property
+    def matrix(self) -> csr_array:
+        """M^(-1/2) K M^(-1/2) [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
+        springs = (self.rows.T @ self.rows).tocsr()
+        return springs if self.geometric is None else springs + self.geometric
+
+    @property
+    def stiffness(self) -> csr_array:
+        """K [N/m, N, N m], (n_free, n_free)."""
+        from scipy.sparse import diags_array
+
+        roots = diags_array(np.sqrt(self.masses))
+        return (roots @ self.matrix @ roots).tocsr()
+
+
+class Highest(NamedTuple):
+    """The fastest vibration of a structure, and what has it."""
+
+    frequency: float  # ω [rad/s]; 0 where no joint holds any block
+    exact: bool  # False: not an eigenvalue but a bound above it
+    block: int  # that moves most (by kinetic energy); -1: none
+    joint: int  # of the simulation, that is strained most among those of this block; -1: none
+
+
+class Modes(NamedTuple):
+    """The slowest vibrations of a structure, slowest first."""
+
+    frequencies: np.ndarray  # [Hz], (n,)
+    shapes: np.ndarray  # [m, rad], scaled to φᵀ M φ = 1 kg m2; zero for fixed blocks, (n, n_blocks, n_dof)
+    effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
+    mechanisms: int  # motions of free blocks that no joint holds back: without a frequency, not among the above
+    loose: np.ndarray  # blocks that take part in these, (n_loose,)
+
+
+def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = False) -> System:
+    """Springs and masses of a simulation where its blocks are now.
+
+    closed: which contact points act, (n_points,) bool; default: all in the list, also those that are open and may
+    close: no state of the structure with these joints vibrates faster. geometric: with the forces that act now.
+    """
+    from scipy.sparse import diags_array
+
+    contacts = sim.measured()  # and frames and levers of this instant
+    model, joints, d = sim.model, sim.joints, sim.model.dimension
+    blocks = np.flatnonzero(~model.fixed)
+    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]]).ravel()
+    springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
+    if closed is not None:
+        springs = springs * closed[:, None]
+    per_mass = diags_array(1.0 / np.sqrt(masses))
+    rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ per_mass).tocsr()
+    rows.eliminate_zeros()
+    turning = None
+    if geometric:
+        turning = (per_mass @ geometric_stiffness(model, joints, contacts, sim.bodies) @ per_mass).tocsr()
+    return System(rows, turning, masses, blocks)
+
+
+def highest_frequency(sim: Simulation) -> float:
+    """Highest natural frequency ω [rad/s] with all contact points closed; 0 where there are none.
+
+    The largest eigenvalue to round-off, or Gershgorin's bound above it where the iteration does not converge.
+    """
+    return _largest(system(sim))[0]
+
+
+def limiting(sim: Simulation) -> Highest:
+    """The highest natural frequency, and the block and the joint that its mode moves and strains most."""
+    found = system(sim)
+    frequency, vector = _largest(found)
+    if frequency == 0.0:
+        return Highest(0.0, True, -1, -1)
+    exact = vector is not None
+    if vector is None:  # the degree of freedom with the largest bound
+        vector = np.zeros(len(found.masses))
+        vector[_gershgorin(found.matrix).argmax()] = 1.0
+    block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1))]
+    owner = np.repeat(np.arange(len(sim.joints.blocks)), np.diff(sim.joints.starts))
+    energy = ((found.rows @ vector).reshape(len(owner), -1) ** 2).sum(axis=1)
+    strained = np.bincount(owner, energy, len(sim.joints.blocks))
+    strained[~(sim.joints.blocks == block).any(axis=1)] = -1.0
+    return Highest(frequency, exact, int(block), _first_largest(strained))
+
+
+def _largest(found: System) -> tuple[float, np.ndarray | None]:
+    """Highest frequency [rad/s] and its mode times √M, (n_free,); no mode where the frequency is but a bound."""
+    n = len(found.masses)
+    if n == 0 or found.rows.nnz == 0:
+        return 0.0, np.zeros(n)
+    matrix = found.matrix
+    if n <= DENSE:
+        values, vectors = np.linalg.eigh(matrix.toarray())
+        return float(np.sqrt(values[-1])), vectors[:, -1]
+    from scipy.sparse.linalg import ArpackError, eigsh
+
+    try:
+        values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=ACCURATE)
+    except ArpackError:
+        return float(np.sqrt(_gershgorin(matrix).max())), None
+    return float(np.sqrt(values[0])), vectors[:, 0]
+
+
+def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
+    """The `count` lowest natural frequencies above 0 with their shapes; fewer where there are not so many.
+
+    The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
+    """
+    n_free = len(found.blocks)
+    n_dof = dimension * (dimension + 1) // 2
+    entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
+    strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
+    held = np.repeat(strained, n_dof)
+    values, held_vectors = _lowest(found.matrix[held][:, held], count)
+    flat = np.zeros((len(values), n_free * n_dof))
+    flat[:, held] = held_vectors.T
+    vectors = flat.reshape(len(values), n_free, n_dof)
+    still = values == 0.0
+    loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > EQUAL).any(axis=0)
+    masses = found.masses.reshape(n_free, n_dof)
+    moving = vectors[~still] / np.sqrt(masses)
+    shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
+    shapes = np.zeros((len(moving), n_blocks, n_dof))
+    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum())[:, None, None]
+    return Modes(
+        frequencies=np.sqrt(values[~still]) / (2.0 * np.pi),
+        shapes=shapes,
+        effective_masses=shares**2,
+        mechanisms=int(still.sum() + (~held).sum()),
+        loose=found.blocks[loose],
+    )
+
+
+def _lowest(matrix: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """All eigenvalues up to 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
+    n = matrix.shape[0]
+    largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
+    while True:
+        if n <= DENSE or asked >= DENSE_SHARE * n:
+            values, vectors = np.linalg.eigh(matrix.toarray())
+        else:
+            values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)
+        values[values < ZERO * largest] = 0.0
+        stop = int((values == 0.0).sum()) + count
+        if len(values) >= min(stop, n - 1):
+            return values[:stop], vectors[:, :stop]
+        asked = max(2 * asked, stop)
+
+
+def _shift_invert(matrix: csr_array, count: int, shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """The `count` lowest eigenvalues in ascending order, with their vectors (n, count)."""
+    from scipy.sparse.linalg import ArpackError, eigsh
+
+    try:
+        values, vectors = eigsh(matrix.tocsc(), k=count, sigma=-shift, v0=start_vector(matrix.shape[0]))
+    except ArpackError as error:
+        raise SolverError(f"the {count} lowest natural frequencies were not found: {error}") from None
+    order = np.argsort(values, kind="stable")
+    return values[order], vectors[:, order]
+
+
+def _signs(shapes: np.ndarray, shares: np.ndarray, mass: float) -> np.ndarray:
+    """1 or −1 for each shape (n, n_blocks, n_dof): with the base where it follows it, else its first large part up."""
+    signs = np.empty(len(shapes))
+    for i, (shape, share) in enumerate(zip(shapes, shares)):
+        axis = _first_largest(np.abs(share))
+        excited = share[axis] ** 2 > EQUAL * mass
+        leading = share[axis] if excited else shape.ravel()[_first_largest(np.abs(shape).ravel())]
+        signs[i] = 1.0 if leading >= 0.0 else -1.0
+    return signs
+
+
+def start_vector(n: int) -> np.ndarray:
+    """A vector for iterations that no mode is orthogonal to, always the same, (n,)."""
+    return np.random.default_rng(0).standard_normal(n)
+
+
+def _gershgorin(matrix: csr_array) -> np.ndarray:
+    """Sums of absolute values by row, the largest of which no eigenvalue exceeds, (n,)."""
+    return np.asarray(abs(matrix).sum(axis=1)).ravel()
+
+
+def _first_largest(values: np.ndarray) -> int:
+    """Index of the first of the largest values; round-off does not choose between equal ones."""
+    return int(np.flatnonzero(values >= values.max() - EQUAL * abs(values.max()))[0])

@@ -1,0 +1,217 @@
+"""kind = "time-history": the motion of a structure while its supports move."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.collapse_criterion import check_energy, check_finite
+from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
+from dem_cli.dynamics.damping import damping_of
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.initial_state import set_initial
+from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.dynamic import DynamicSimulation
+from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.properties import DYNAMIC_RATIO, joint_properties, law_of, laws_of
+from dem_cli.engine.viscous import Damping
+from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.kernels.records import Watch
+from dem_cli.model.model import Model
+from dem_cli.model.scales import origin_of, smallest_edge
+from dem_cli.output.record import Energy, Samples
+from dem_cli.statics.equilibrium import FALLS, stand
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.track import Track
+
+LONGEST_LOOK = 0.1  # s from one look to the next, at most
+SETTLING = 4_000_000  # steps to come to rest, at most
+ROWS = 200  # looks along the way: energies, collapse, whether all is well
+WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
+TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
+GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a run warns
+
+
+class SnapshotTimes:
+    """When snapshots are due: at even times from a start to an end, each once."""
+
+    def __init__(self, start: float, end: float, count: int):
+        self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
+
+    def due(self, time: float) -> bool:
+        """Whether a snapshot was due up to now since the last one."""
+        before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
+        return self.shown > before
+
+
+class TimeHistory:
+    """One run: a structure under one motion of the ground."""
+
+    def __init__(self, job: Job, ground: GroundMotion):
+        self.job, self.ground, self.case = job, ground, job.case
+        self.duration = _duration(job.case, ground)
+        self.damping = damping_of_start(job.case, job.model)
+        self.sim, self.step = self._simulation()
+        self.track: Track = job.track(self.sim)
+        self.overlap = 0.0
+
+    def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
+        """The simulation, with laws that know the time step."""
+        analysis, model = self.case.analysis, self.job.model
+
+        def make(step: float) -> DynamicSimulation:
+            return shaken(self.case, model, self.damping, step)
+
+        sim = self.job.clock.compiled(lambda: make(math.inf))
+        found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
+        if not math.isfinite(found.step):
+            found = found._replace(step=min(1e-4, 1e-3 * self.duration))
+        if any(law.rates for law in laws_of(self.case)):
+            sim = self.job.clock.compiled(lambda: make(found.step))
+        return sim, found
+
+    def run(self) -> Outcome:
+        """Rest, first motion, shaking; the summary."""
+        if not self.start():
+            return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0})
+        return self._outcome(self._shake())
+
+    def start(self) -> bool:
+        """Rest under dead loads, then the first motion; False where there is no rest."""
+        sim, case = self.sim, self.case
+        if case.analysis.settle:
+            self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
+            if self._stands() != "equilibrium":
+                self.track.write("gravity")
+                self.track.frame("gravity")
+                return False
+        sim.begin(self.step.step)
+        if case.initial:
+            set_initial(case, sim)
+        if case.initial or not case.analysis.settle:
+            sim.start_moving()
+        self.track.write("shaking")
+        self.track.frame("shaking")
+        return True
+
+    def _stands(self) -> str:
+        """State under dead loads. Raises SolverError where neither equilibrium nor a fall is found."""
+        steps = min(self.case.analysis.max_steps, SETTLING)
+        try:
+            return stand(self.sim, Budget(steps)).state
+        except SolverError as error:
+            raise SolverError(
+                f"no rest under dead loads was found in {steps:,} steps before the motion: soften the joints, make "
+                f"weights more alike, or start as drawn (analysis.settle = false); {error}"
+            ) from error
+
+    def _shake(self) -> dict[str, Any]:
+        """Stretches of the motion until its end, or until a collapse was followed long enough."""
+        sim, output, dt = self.sim, self.case.output, self.step.step
+        every = max(1, round(1.0 / (output.rate * dt)))
+        total = max(1, math.ceil(self.duration / dt))
+        if total > self.case.analysis.max_steps:
+            raise SolverError(
+                f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
+                f"({self.case.analysis.max_steps:,}): {self.step.cause}"
+            )
+        stretch = max(1, math.ceil(min(total / ROWS, LONGEST_LOOK / dt)))  # whatever the rate of samples
+        done, fallen, end = 0, None, self.duration
+        frames = SnapshotTimes(0.0, end, output.frames)
+        while done < total and sim.time < end - 0.5 * dt:
+            n = min(stretch, total - done, max(1, math.ceil((end - sim.time) / dt - 0.5)))
+            self._stretch(n, every)
+            done += n
+            self._look()
+            if fallen is None:
+                fallen = fallen_block(sim, self.case.analysis)
+                if fallen is not None:
+                    end = min(end, fallen.time + self.case.analysis.after_collapse)
+                    frames = SnapshotTimes(sim.time, end, max(output.frames // 2, 2))
+            if frames.due(sim.time + 0.5 * dt):
+                self.track.frame("collapse" if fallen else "shaking")
+            self.track.observer.progress("shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0))
+        found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
+        found["collapse_time"] = None if fallen is None else fallen.time
+        if fallen is not None:
+            found |= {"collapse_block": fallen.block, "collapse": fallen.how}
+        return found
+
+    def _stretch(self, n_steps: int, every: int) -> None:
+        """n_steps of motion, sampled every so many steps since the start of the run."""
+        sim, monitors, dt = self.sim, self.job.monitors, self.step.step
+        done = round(sim.time / dt)
+        since = done % every  # steps since the last sample was due, which the stretch begins with
+        n_samples = -(-(since + n_steps) // every)
+        n_dof = sim.bodies.velocities.shape[1]
+        watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
+        sim.shake(self.ground.stretch((done - since) * dt, since + n_steps, dt), n_steps, watch, since)
+        check_finite(sim)
+        new = slice(1 if since else 0, None)  # the first sample of a stretch that begins between two is none
+        times = (dt * (done - since + every * np.arange(n_samples)))[new]
+        if len(times):
+            base = self.ground.of_base(times)
+            self.track.observer.samples(Samples(times, base, monitors.series(watch.samples[new], base)))
+        sim.show_base(self.ground.along(sim.time), self.case.gravity)
+
+    def _look(self) -> None:
+        """The books of this instant; stops a run that makes energy."""
+        sim = self.sim
+        self.track.write("shaking")
+        self.overlap = max(self.overlap, sim.largest_overlap())
+        check_energy(sim, self.step)
+
+    def _outcome(self, found: dict[str, Any]) -> Outcome:
+        """The summary, audited."""
+        sim = self.sim
+        shares = energy_shares(sim.energy())
+        if shares.get("local", 0.0) > GOVERNS:
+            self.job.warnings.append(
+                f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "
+                "slows every motion; use it for nothing but a test"
+            )
+        return self.job.outcome([sim], found | {
+            "time_step": self.step.step,
+            "largest_time_step": self.step.limit,
+            "duration": sim.time,
+            "peak_ground_acceleration": self.ground.peak,
+            "damping": self.damping.words,
+            "energy_shares": shares,
+            "largest_displacement": sim.largest_displacement(),
+            "largest_overlap": self.overlap,
+            "unbalanced_force": None,
+        })  # fmt: skip
+
+
+def damping_of_start(case: Case, model: Model) -> Damping:
+    """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
+    properties = joint_properties(case, model, DYNAMIC_RATIO)
+    joints, _ = joints_of_start(model, bodies_at_rest(model, origin_of(model)), properties, smallest_edge(model))
+    return damping_of(case, model, joints)
+
+
+def shaken(case: Case, model: Model, damping: Damping, step: float = math.inf) -> DynamicSimulation:
+    """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
+    return DynamicSimulation(model, law_of(case), joint_properties(case, model, DYNAMIC_RATIO, step), damping)
+
+
+def energy_shares(energy: Energy) -> dict[str, float]:
+    """What each way of losing energy took of all that was lost; nothing where nothing was."""
+    taken = {WAYS.get(name, name): getattr(energy, name) for name in TAKERS}
+    total = sum(taken.values())
+    return {name: value / total for name, value in taken.items() if value != 0.0} if total > 0.0 else {}
+
+
+def _duration(case: Case, ground: GroundMotion) -> float:
+    """How long to look. Raises CaseError where neither the case nor a motion says it."""
+    duration = case.analysis.duration or ground.duration
+    if duration <= 0.0:
+        message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"
+        raise CaseError([CaseProblem(("analysis", "duration"), message)])
+    return duration

@@ -1,0 +1,156 @@
+"""What a rocking block loses when it lands: Housner's ratio, and the dashpot that gives a wanted one.
+
+With dashpots that do not pull, the ratio r of angular velocities after and before landing falls with the damping
+towards that of Housner's rigid block, from above. A wanted r is sought by rocking the block, alone on its joint, as
+the run does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from dem_cli.assembly.assemble import assembly
+from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.kernels.records import Joints, Watch
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.tables.damping import DampingTable
+
+HOUSNER_FRACTION = 2.0  # of critical: within 3e-4 of Housner's ratio for h/b from 2 to 5 (docs/rocking.md)
+MOST, LEAST = 4.0, 0.1  # fractions of critical between which a ratio is sought; with less, landings are many bounces
+TILT = 0.3  # of the angle at which the block would fall
+LANDED = 0.05  # of the first tilt: beyond it on the other side the block has landed and does not chatter any more
+LOOK = 2e-3  # share of the longest possible time between two looks
+
+
+class RockingBlock(NamedTuple):
+    """A block on the joint that it rocks on."""
+
+    block: int
+    support: int  # the block below
+    frequency: float  # √(K/M), K the normal stiffness of the joint and M the mass of the block [rad/s]
+    ends: np.ndarray  # where it turns, from its centroid [m], (2, d)
+
+
+def reference_block(case: Case, model: Model, joints: Joints, table: DampingTable) -> RockingBlock:
+    """The block that [damping] names, else the heaviest free one on a support. Raises CaseError where there is none."""
+    if table.block is not None:
+        chosen = assembly(case).block_map[table.block]
+        mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
+        path, what = ("damping", "block"), f"block '{table.block}' rests on nothing"
+    else:
+        held = model.fixed[joints.blocks].sum(axis=1) == 1
+        carried = joints.blocks[held][~model.fixed[joints.blocks[held]]]
+        chosen = int(carried[model.masses[carried].argmax()]) if len(carried) else -1
+        mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
+        path, what = ("damping", "restitution"), "no block rests on a support; name one (damping.block)"
+    if not len(mine):
+        raise CaseError([CaseProblem(path, what)])
+    up = model.dimension - 1
+    heights = [joints.points[joints.starts[j] : joints.starts[j + 1], up].mean() for j in mine]
+    joint = int(mine[int(np.argmin(heights))])
+    points = slice(joints.starts[joint], joints.starts[joint + 1])
+    a, b = joints.blocks[joint].tolist()
+    support = b if a == chosen else a
+    stiffness = float(joints.kn[points].sum())
+    ends = joints.points[points][[0, -1]] - model.centroids[chosen]
+    return RockingBlock(chosen, support, float(np.sqrt(stiffness / model.masses[chosen])), ends)
+
+
+def housner(model: Model, reference: RockingBlock) -> float:
+    """Ratio of angular velocities of a rigid block that turns from one end of its joint to the other without slip or
+    bounce: (I + m r·r') / (I + m r'²), of moments about the new end (Housner 1963; 1 − 1.5 sin²α for a rectangle).
+    """
+    mass, inertia = model.masses[reference.block], model.inertias[reference.block, 0]
+    old, new = reference.ends
+    return float((inertia + mass * old @ new) / (inertia + mass * new @ new))
+
+
+def fraction_of(case: Case, model: Model, joints: Joints, table: DampingTable) -> tuple[float, str]:
+    """Fraction of critical that gives the wanted restitution, and words about it. Raises CaseError out of reach."""
+    reference = reference_block(case, model, joints, table)
+    rigid, name = housner(model, reference), model.block_ids[reference.block]
+    if table.restitution == "housner":
+        return HOUSNER_FRACTION, f"restitution of Housner, {rigid:.4g} for block '{name}'"
+    wanted = float(table.restitution)  # type: ignore[arg-type]
+    least, most = rocked(case, model, reference, MOST), rocked(case, model, reference, LEAST)
+    if not least < wanted < most:
+        message = (
+            f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {least:.4f} to {most:.4f} "
+            f"(Housner: {rigid:.4f}); or name another block (damping.block)"
+        )
+        raise CaseError([CaseProblem(("damping", "restitution"), message)])
+
+    def error(logarithm: float) -> float:
+        return rocked(case, model, reference, float(np.exp(logarithm))) - wanted
+
+    found = float(np.exp(brentq(error, np.log(LEAST), np.log(MOST), xtol=1e-3, rtol=1e-6)))
+    return found, f"restitution {wanted:g} of block '{name}', {found:.3g} of critical"
+
+
+def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float) -> float:
+    """Ratio of angular velocities when the block lands, from the heights before and after it."""
+    from dem_cli.dynamics.ground import GroundMotion
+    from dem_cli.dynamics.initial_state import tilt
+    from dem_cli.dynamics.time_step import time_step
+    from dem_cli.engine.budget import Budget
+    from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.engine.properties import DYNAMIC_RATIO, joint_properties, law_of
+    from dem_cli.engine.viscous import Damping
+    from dem_cli.statics.equilibrium import stand
+
+    pair = only(model, [reference.support, reference.block])
+    properties = joint_properties(case, model, DYNAMIC_RATIO)
+    sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction))
+    stand(sim, Budget(200_000))
+    rest = float(sim.bodies.positions[1, pair.dimension - 1])
+    dt = time_step(sim, case.analysis.margin).step
+    sim.begin(dt)
+    slender = np.arctan2(np.abs(reference.ends[:, 0]).min(), np.abs(reference.ends[:, 1]).max())
+    angle = float(TILT * slender)
+    tilt(sim, np.array([1]), angle)
+    sim.start_moving()
+    start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
+    ground = GroundMotion([], pair)
+    radius = float(np.sqrt((reference.ends**2).sum(axis=1)).max())
+    longest = 20.0 * np.sqrt(radius / max(case.gravity, 1e-9))
+    n, highest = max(1, int(LOOK * longest / dt)), 0.0
+    watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
+    while sim.time < longest:
+        sim.shake(ground.stretch(sim.time, n, dt), n, watch)
+        place, speed = watch.samples[:, 0, 0], watch.samples[:, 0, 1]
+        beyond = place[:, pair.dimension] < -LANDED * angle
+        highest = max(highest, float((place[beyond, pair.dimension - 1] - rest).max(initial=0.0)))
+        if (beyond & (speed[:, pair.dimension] > 0.0)).any():
+            break
+    return float(np.sqrt(highest / start))
+
+
+def only(model: Model, blocks: list[int]) -> Model:
+    """The model with these blocks alone, in this order, the first of them fixed."""
+    parts = [np.flatnonzero(model.part_blocks == block) for block in blocks]
+    corners = [
+        np.concatenate([np.arange(model.part_starts[p], model.part_starts[p + 1]) for p in of_block])
+        for of_block in parts
+    ]
+    sizes = np.diff(model.part_starts)[np.concatenate(parts)]
+    pick = np.array(blocks)
+    return model._replace(
+        block_ids=tuple(model.block_ids[i] for i in blocks),
+        block_material=model.block_material[pick],
+        fixed=np.arange(len(blocks)) == 0,
+        thickness=model.thickness[pick],
+        masses=model.masses[pick],
+        inertias=model.inertias[pick],
+        centroids=model.centroids[pick],
+        part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in parts]),
+        part_starts=np.concatenate([[0], np.cumsum(sizes)]),
+        vertices=model.vertices[np.concatenate(corners)],
+        dead_loads=model.dead_loads[pick],
+        live_loads=model.live_loads[pick],
+    )

@@ -1,0 +1,92 @@
+"""What a run says about itself: books that do not balance, blocks too light or joints too uneven, and what to do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.engine.measures import closure, free_falls
+from dem_cli.model.scales import CLOSURE, OVERLAP, WEIGHTLESS, own_weights
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.simulation import Simulation
+
+SHEAR = (0.01, 10.0)  # ks/kn of given joints that structures were tested with
+LEANS = 0.006  # displacement before failure, in widths of blocks, from which loads were more than 0.5 % off
+UNEVEN = 1e3  # how much faster than another a block may fall in pseudo-time before it is worth a word
+
+
+def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[str]:
+    """Doubts about the answer `found`, the worst first; where there is none, how to get one."""
+    said = []
+    worst = max((closure(sim) for sim in sims), key=abs)
+    overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
+    if abs(worst) > CLOSURE:
+        advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
+        said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
+    if overlap > OVERLAP:
+        said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
+    said += _weightless(sims[0]) + _shear(sims[0]) + _leaning(case, sims[0], found.get("displacement_at_failure"))
+    if found.get("status") == "not converged":
+        said.append(_advice(case, sims[0], found.get("failure_load_bracket", [None, None])))
+    return said
+
+
+def _weightless(sim: Simulation) -> list[str]:
+    dead, live = sim.loads.dead[sim.free], sim.loads.live[sim.free]
+    d = sim.model.dimension
+    light = np.flatnonzero(np.sqrt((dead[:, :d] ** 2).sum(axis=1)) < own_weights(dead, live, d))
+    if not len(light):
+        return []
+    more = f" (and {len(light) - 1} more)" if len(light) > 1 else ""
+    name = sim.model.block_ids[sim.free[light[0]]]
+    return [f"the weight of block '{name}'{more} is below {WEIGHTLESS:g} of the mean: its equilibrium is not proven"]
+
+
+def _shear(sim: Simulation) -> list[str]:
+    """Joints that only a user can have asked for: "auto" has ks = kn."""
+    properties = sim.properties
+    ratios = properties.ks / properties.kn
+    return [
+        f"ks/kn = {ratio:.3g} of joint '{name}' is outside {SHEAR[0]:g} to {SHEAR[1]:g}: sudden sliding may have "
+        "lowered the load by some per cent"
+        for name, ratio in zip(properties.names, ratios)
+        if not SHEAR[0] * (1 - 1e-9) <= ratio <= SHEAR[1] * (1 + 1e-9)
+    ]
+
+
+def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
+    """Where the case asks for geometry that moves nobody has looked for the load of blocks on stiff joints."""
+    given = any(joint.kn != "auto" for joint in case.joints.values())
+    if case.analysis.kinematics != "large" or not given or moved is None:
+        return []
+    share = moved / float(np.median(sim.widths[sim.free]))
+    if share <= LEANS:
+        return []
+    return [
+        f"with the given kn blocks move {share:.2g} of their width before failure: the failure load may differ from "
+        "that of blocks on stiff joints by more than 0.5 %"
+    ]
+
+
+def _advice(case: Case, sim: Simulation, bracket: list[float | None]) -> str:
+    """What is known and what may be done where all steps were used up."""
+    low, high = bracket
+    known = f"it stands at {low:.5g}" if low is not None else "no equilibrium was proven"
+    if high is not None:
+        known += f" and fails at {high:.5g}"
+    ways = [f"raise analysis.max_steps ({case.analysis.max_steps:,})"]
+    if getattr(case.analysis, "resolution", None) is not None:
+        ways.append(f"accept a wider bracket (analysis.resolution {case.analysis.resolution:g})")
+    fall, ids = free_falls(sim)[sim.free], sim.model.block_ids
+    fastest = fall.max(initial=0.0)
+    slow = np.flatnonzero((fall > 0.0) & (fall * UNEVEN < fastest))
+    if len(slow):
+        slowest = slow[fall[slow].argmin()]
+        ways.append(
+            f"make joints or weights more alike: block '{ids[sim.free[slowest]]}' is "
+            f"{fastest / fall[slowest]:.0e} times as slow as '{ids[sim.free[fall.argmax()]]}'"
+        )
+    return f"not converged: {known}; " + "; or ".join(ways)

@@ -1,0 +1,19 @@
+"""The budget of a run: how many solver steps it may still take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dem_cli.errors import SolverError
+
+
+@dataclass
+class Budget:
+    """Solver steps that may still be spent. `spend` raises SolverError when there are none left."""
+
+    left: int
+
+    def spend(self, steps: int, doing: str) -> None:
+        self.left -= steps
+        if self.left < 0:
+            raise SolverError(f"gave up {doing}: all steps of analysis.max_steps are used up")

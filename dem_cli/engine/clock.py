@@ -1,0 +1,76 @@
+"""Solving time: the clock of a run, which stands still while kernels are compiled and results are written."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from dem_cli.kernels.jit import cache_is_cold
+from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+
+
+class Clock:
+    """Seconds of solving, without the compilation of kernels and what the observer does with results.
+
+    It is an observer itself and hands everything on.
+    """
+
+    def __init__(self, observer: Observer) -> None:
+        self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
+        self.observer = observer
+
+    def frame(self, frame: Frame) -> None:
+        begun = time.perf_counter()
+        self.observer.frame(frame)
+        self.observing += time.perf_counter() - begun
+
+    def row(self, row: HistoryRow) -> None:
+        begun = time.perf_counter()
+        self.observer.row(row)
+        self.observing += time.perf_counter() - begun
+
+    def samples(self, samples: Samples) -> None:
+        begun = time.perf_counter()
+        self.observer.samples(samples)
+        self.observing += time.perf_counter() - begun
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        self.observer.runs(rows)
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        begun = time.perf_counter()
+        self.observer.progress(stage, load, displacement, fraction)
+        self.observing += time.perf_counter() - begun
+
+    def compiled(self, make: Callable[[], Simulation]) -> Simulation:
+        """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
+        cold, begun = cache_is_cold(), time.perf_counter()
+        if cold:
+            self.progress("compiling (once)", 0.0, 0.0, None)
+        sim = make()
+        built = time.perf_counter()
+        sim.compile()
+        self.compiling += time.perf_counter() - (begun if cold else built)
+        return sim
+
+    def imported(self, module: str) -> None:
+        """Imports a module that only some runs need, off the clock."""
+        begun = time.perf_counter()
+        import_module(module)
+        self.compiling += time.perf_counter() - begun
+
+    def seconds(self) -> float:
+        return time.perf_counter() - self.started - self.compiling - self.observing
+
+
+def duration_words(value: float) -> str:
+    """Two figures are more than such an estimate is worth."""
+    for limit, unit, name in ((0.1, 1e-3, "ms"), (120.0, 1.0, "s"), (7200.0, 60.0, "min")):
+        if value < limit:
+            return f"{value / unit:.2g} {name}"
+    return f"{value / 3600.0:.2g} h"

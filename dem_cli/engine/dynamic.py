@@ -1,0 +1,214 @@
+"""A structure in real time: masses of the blocks, ground motion, dampers; after it came to rest in pseudo-time."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.assemble import JointProperties
+from dem_cli.engine.simulation import Simulation
+from dem_cli.kernels import records as slot
+from dem_cli.kernels.drift import drift_corners
+from dem_cli.kernels.planar_forces import make_planar_forces
+from dem_cli.kernels.planar_profiles import make_profiled_forces
+from dem_cli.kernels.records import Dampers, Ground, Watch
+from dem_cli.kernels.shake import make_shake
+from dem_cli.laws.law import Law
+from dem_cli.model.model import Model
+from dem_cli.output.record import Energy, Frame
+
+if TYPE_CHECKING:
+    from dem_cli.engine.viscous import Damping
+
+WIDE_SKIN = 0.15  # blocks that rock move far: fewer detections are worth more joints to look at
+
+
+@cache
+def compiled_shake(law: Law, profiled: bool, damped: bool):
+    """The stepping loop of time histories for one law and one kind of joints; compiled at its first call."""
+    make = make_profiled_forces if profiled else make_planar_forces
+    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), drift_corners, damped)
+
+
+class DynamicSimulation(Simulation):
+    """A simulation that can be shaken: first quasi-static as any other, from `begin` on in seconds.
+
+    damping     what the joints and blocks lose (dynamics/damping.py)
+    """
+
+    def __init__(self, model: Model, law: Law, properties: JointProperties, damping: Damping):
+        self.damping = damping
+        self.real, self.dt = False, 1.0
+        self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
+        n_damped = model.dimension * (1 + len(damping.elements)) if damping.in_joints else 0
+        super().__init__(model, law, properties, "large", n_damped=n_damped, skin=WIDE_SKIN)
+
+    # -- from pseudo-time to time ------------------------------------------------------------------
+
+    def begin(self, dt: float) -> None:
+        """From here on a step takes dt [s]: real masses, no limit of speed, books that start anew."""
+        model = self.model
+        self.rest()
+        self.real, self.dt, self.time = True, dt, 0.0
+        self.loads.inverse_masses[:] = np.where(model.fixed[:, None], 0.0, 1.0 / _masses(model))
+        self.loads.speed_limits[:] = np.inf
+        self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
+        self.control[slot.MASS_RATE] = self.damping.mass
+        self._new_dampers()
+        self.ledger[:] = 0.0
+        self.ledger[slot.EXTERNAL] = self.elastic_energy()  # what the springs hold was given before
+        self.centred = self.ledger.copy()
+        self.bodies.means[:] = 0.0
+
+    def start_moving(self) -> None:
+        """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
+        kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
+        self._run(0, 1, self._still(1), _no_watch(self))
+        change, elastic = (self.bodies.velocities - before)[self.free], self.elastic_energy()  # of springs at time 0
+        self.restore(saved)
+        self.ledger[slot.EXTERNAL] = elastic + kinetic
+        self._new_dampers()
+        self.bodies.velocities[self.free] -= 0.5 * change
+
+    def set_masses(self) -> None:
+        if not self.real:
+            super().set_masses()
+
+    def _after_detection(self) -> None:
+        super()._after_detection()
+        if self.real:
+            self._new_dampers()
+
+    def _new_dampers(self) -> None:
+        """Dampers of the present joints; what they remember is with the points already."""
+        joints, contacts, d = self.joints, self.contacts, self.model.dimension
+        n = len(joints.kn)
+        self.dampers = Dampers(
+            first=self.law.n_memory(d),
+            viscosity=self.damping.viscosities(self.model, joints),
+            elements=self._decays(),
+            rates=np.zeros((n, d)),
+            gains=np.ones((n, d)),
+            shares=np.ones(n),
+            slips=contacts.slip.copy(),
+            states=(contacts.normal != 0.0).astype(np.int8),
+            masses=self.masses,
+            pushes=np.zeros_like(self.bodies.velocities),
+        )
+
+    def _decays(self) -> np.ndarray:
+        """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""
+        share, rate = self.damping.elements.T
+        gains = -share * np.expm1(-rate * self.dt) / rate
+        return np.ascontiguousarray(np.column_stack([np.exp(-rate * self.dt), gains]))
+
+    # -- stepping ----------------------------------------------------------------------------------
+
+    def compile(self) -> None:
+        """Compile or load both loops; no step is done."""
+        super().compile()
+        self._new_dampers()
+        control = self.control.copy()
+        self._run(0, 0, self._still(0), _no_watch(self))
+        self.control[:] = control
+
+    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0) -> None:
+        """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
+
+        The books are closed in the middle of the last step, where places, velocities and forces are of one time.
+        """
+        step, end = first, first + n_steps
+        while step < end:
+            last = step == end - 1
+            if last:
+                before = self.ledger.copy()
+            step += self._run(step, 1 if last else end - 1 - step, ground, watch)
+            if last:
+                self.centred = 0.5 * (before + self.ledger)
+                self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]
+            if self._detection_due():
+                self.detect()
+        self.steps += n_steps
+        self.time = self.dt * (round(self.time / self.dt) + n_steps)
+
+    def _still(self, n_steps: int) -> Ground:
+        """A ground at rest."""
+        d, n_dof = self.model.dimension, self.bodies.velocities.shape[1]
+        return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
+
+    def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
+        run = compiled_shake(self.law, self.properties.profiled, self.damping.in_joints)
+        return run(
+            first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.contacts, self.loads,
+            self.control, self.ledger, ground, self.dampers, watch, self.like, self.like_rotation,
+        )  # fmt: skip
+
+    # -- measures ----------------------------------------------------------------------------------
+
+    def centred_kinetic_energy(self) -> float:
+        """Of the mean velocities of the last step [J]."""
+        inverse = self.loads.inverse_masses.ravel()
+        moving = inverse > 0.0
+        return 0.5 * float((self.bodies.means[moving] ** 2 / inverse[moving]).sum())
+
+    def energy(self) -> Energy:
+        """The ledger since `begin` [J], one step back from the positions; external: base and loads, without gravity."""
+        if not self.real:
+            return super().energy()
+        d, free, ledger = self.model.dimension, self.free, self.centred
+        weight = -self.loads.dead[free, d - 1]
+        height = self.displacement()[free, d - 1] - self.dt * self.bodies.velocities[free, d - 1]
+        gravity = float((weight * height).sum())
+        held = self._held_by_elements()
+        return Energy(
+            kinetic=self.centred_kinetic_energy(),
+            elastic=self.elastic_energy() + held,
+            gravity=gravity,
+            external=float(ledger[slot.EXTERNAL]) + gravity,
+            friction=float(ledger[slot.FRICTION]),
+            damping=float(ledger[slot.DAMPING]),
+            supports=float(ledger[slot.SUPPORT]),
+            dashpots=float(ledger[slot.DASHPOT]),
+            mass_damping=float(ledger[slot.MASS]),
+            maxwell=float(ledger[slot.MAXWELL]) - held,
+        )
+
+    def _held_by_elements(self) -> float:
+        """Energy in the springs of Maxwell elements [J]."""
+        joints, d, held = self.joints, self.model.dimension, 0.0
+        for e, (share, _) in enumerate(self.damping.elements):
+            column = self.dampers.first + d * (e + 1)
+            forces = self.contacts.memory[:, column : column + d]
+            held += float((forces[:, 0] ** 2 / (share * joints.kn)).sum())
+            held += float(((forces[:, 1:] ** 2).sum(axis=1) / (share * joints.ks)).sum())
+        return 0.5 * held
+
+    @property
+    def noticeable_energy(self) -> float:
+        """What lifts the whole structure by a thousandth of its smallest edge [J]."""
+        weights = np.abs(self.loads.dead[self.free, : self.model.dimension]).sum()
+        return 1e-3 * self.smallest * float(weights)
+
+    def show_base(self, acceleration: float, gravity: float) -> None:
+        """The load that records show: acceleration of the base over gravity."""
+        self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
+
+    def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
+        """Of the last step, relative to the base [m/s², rad/s²], (..., n_dof)."""
+        means = self.bodies.means.reshape(self.bodies.velocities.shape)
+        return 2.0 * (self.bodies.velocities[blocks] - means[blocks]) / self.dt
+
+    def frame(self, stage: str) -> Frame:
+        """A snapshot."""
+        return super().frame(stage)._replace(time=self.time)
+
+
+def _masses(model: Model) -> np.ndarray:
+    """Masses and moments of inertia of all blocks [kg, kg m²], (n_blocks, n_dof)."""
+    return np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
+
+
+def _no_watch(sim: Simulation) -> Watch:
+    return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))

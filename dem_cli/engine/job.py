@@ -1,0 +1,94 @@
+"""From a case and its model to an outcome: what every analysis shares."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from dem_cli.engine.audit import warnings as doubts
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.clock import Clock
+from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.measures import closure
+from dem_cli.engine.monitors import Monitors
+from dem_cli.engine.properties import FIXED_RATIO, joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.track import Track
+from dem_cli.model.model import Model
+from dem_cli.output.record import Observer
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+
+@dataclass
+class Outcome:
+    """What a solver returns; `summary` holds the keys of summary.json that are the solver's."""
+
+    summary: dict[str, Any]
+
+
+@dataclass
+class Job:
+    """One run: the case, its model, and what its stages share."""
+
+    case: Case
+    model: Model
+    clock: Clock
+    monitors: Monitors
+    budget: Budget
+    skipped: list[str] = field(default_factory=list)  # what the case did not need
+    warnings: list[str] = field(default_factory=list)
+
+    @classmethod
+    def start(cls, case: Case, model: Model, observer: Observer) -> Job:
+        """A job that reports to `observer`. Raises CaseError where a monitor has no block."""
+        return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps))
+
+    def simulation(self, kinematics: str, ratio: float = FIXED_RATIO) -> Simulation:
+        """A compiled simulation of the case; `ratio` is the kn·h/W of "auto" joints."""
+        tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
+        return self.clock.compiled(
+            lambda: Simulation(
+                self.model,
+                law_of(self.case),
+                joint_properties(self.case, self.model, ratio),
+                kinematics,
+                live_scale=1.0 if tilting else live_scale(self.model),
+                tilting=tilting,
+            )
+        )
+
+    def first_simulation(self) -> Simulation:
+        """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
+        moving = why_moving(self.case, self.model)
+        if moving is None:
+            self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
+            self.skipped.append("detection: done once, nothing moves visibly before failure")
+        elif moving:
+            self.skipped.append(f"fixed geometry: {moving}")
+        return self.simulation("fixed" if moving is None else "large")
+
+    def track(self, sim: Simulation) -> Track:
+        """Rows and frames of a simulation."""
+        return Track(sim, self.clock, self.monitors, self.case.output.frames)
+
+    def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
+        """The summary of all simulations of this job, audited."""
+        worst = max((closure(sim) for sim in sims), key=abs)
+        overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
+        self.warnings += doubts(self.case, sims, found)
+        summary = {
+            "joints": sims[0].first_joints,
+            "contacts": sims[0].first_points,
+            "steps": sims[-1].steps,
+            "time_step": 1.0,
+            "solve_seconds": self.clock.seconds(),
+            "compile_seconds": self.clock.compiling,
+            "energy_closure": worst,
+            "largest_overlap": overlap * sims[0].smallest,
+            "unbalanced_force": sims[0].unbalanced,
+            "skipped": self.skipped,
+            "warnings": self.warnings,
+        }
+        return Outcome(summary | found)

@@ -1,0 +1,212 @@
+"""[[monitor]]: numbers followed through a run; the same formulas for one instant and for a stretch of time, 2D.
+
+A sample holds position (with the angle), velocity and acceleration of a block, all at one instant and relative
+to the base: samples are (n, n_watched, 3, n_dof).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.model.places import block_at
+from dem_cli.model.scales import origin_of
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case, Monitor
+    from dem_cli.contact.between import StartJoints
+    from dem_cli.engine.simulation import Simulation
+
+OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
+
+
+class Points(NamedTuple):
+    """Material points: they move with their blocks. All of a case at once, as a stretch of time is short."""
+
+    rows: np.ndarray  # of their blocks in the samples, (n_points,)
+    starts: np.ndarray  # centroids of their blocks, undeformed, as the samples count [m], (n_points, d)
+    arms: np.ndarray  # from these centroids, undeformed [m], (n_points, d)
+
+
+class PointMotion:
+    """How all points move over a stretch of time."""
+
+    def __init__(self, points: Points, samples: np.ndarray):
+        self.points, self.samples = points, samples[:, points.rows]
+        angles = self.samples[:, :, 0, 2]
+        self.cosines, self.sines = np.cos(angles), np.sin(angles)
+        self.arms = self.turned(points.arms)
+
+    def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
+        c, s = self.cosines[:, which], self.sines[:, which]
+        x, y = vectors[:, 0], vectors[:, 1]
+        return np.stack([c * x - s * y, s * x + c * y], axis=2)
+
+    @cached_property
+    def displacement(self) -> np.ndarray:
+        """From the undeformed places [m], (n, n_points, d)."""
+        return self.samples[:, :, 0, :2] - self.points.starts + self.arms - self.points.arms
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """v + ω × r, (n, n_points, d)."""
+        motion = self.samples[:, :, 1]
+        return motion[:, :, :2] + motion[:, :, 2:] * across(self.arms)
+
+    @cached_property
+    def acceleration(self) -> np.ndarray:
+        """a + α × r − ω² r, (n, n_points, d)."""
+        spins, change = self.samples[:, :, 1, 2:], self.samples[:, :, 2]
+        return change[:, :, :2] + change[:, :, 2:] * across(self.arms) - spins**2 * self.arms
+
+
+class JointMonitors(NamedTuple):
+    """Pairs of points that lay opposite each other across joints: at its two ends for an opening, in the middle for a
+    slip. They are measured in the undeformed frame of the joint, which turns with the first block.
+    """
+
+    first: np.ndarray  # points on the first block, (n_pairs,)
+    second: np.ndarray  # and on the second
+    apart: np.ndarray  # from the first to the second, undeformed [m], (n_pairs, d)
+    axes: np.ndarray  # along which they are measured, undeformed: the normal, or the tangent for a slip, (n_pairs, d)
+    begins: np.ndarray  # first pair of each of these monitors, (n,)
+    columns: np.ndarray  # and its number among all, (n,)
+
+    def fill(self, out: np.ndarray, motion: PointMotion) -> None:
+        """The largest of the pairs of each monitor [m], into its column of out (n, n_monitors)."""
+        moved = motion.displacement
+        distances = self.apart + moved[:, self.second] - moved[:, self.first]
+        along = (distances * motion.turned(self.axes, self.first)).sum(axis=2)
+        out[:, self.columns] = np.maximum.reduceat(along, self.begins, axis=1)
+
+
+class PointMonitor(NamedTuple):
+    """A vector at a material point, its length or a component of it; or how far the point's block has turned."""
+
+    column: int
+    point: int
+    quantity: str
+    component: str | None
+    absolute: bool
+
+    def fill(self, out: np.ndarray, motion: PointMotion, base: np.ndarray) -> None:
+        """Its column of out (n, n_monitors)."""
+        if self.quantity == "rotation":
+            out[:, self.column] = motion.samples[:, self.point, 0, 2]
+            return
+        vectors = getattr(motion, self.quantity)[:, self.point]
+        if self.absolute:
+            vectors = vectors + base[:, OF_BASE[self.quantity]]
+        if self.component is None:
+            out[:, self.column] = np.hypot(vectors[:, 0], vectors[:, 1])
+        else:
+            out[:, self.column] = vectors[:, "xy".index(self.component)]
+
+
+class Monitors:
+    """Values of all monitors of a case, in the order of the case file.
+
+    watched  numbers of the blocks that must be known for it, ascending
+    """
+
+    def __init__(self, case: Case, model: Model):
+        self.tables, self.model = case.monitor, model
+        blocks = self._blocks(case)
+        self.watched = np.unique(np.array([b for pair in blocks for b in pair], np.int64))
+        self.origin = origin_of(model)
+        self._joints: StartJoints | None = None
+        self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
+        self._at_points: list[PointMonitor] = []
+        pairs: list[tuple] = []
+        for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
+            if table.between is None:
+                self._at_points.append(self._point_monitor(column, table, found[0]))
+            else:
+                pairs += self._pairs(column, table.quantity, *found)
+        self._at_joints: JointMonitors | None = None
+        if pairs:
+            first, second, apart, axes, columns = map(np.array, zip(*pairs, strict=True))
+            unique, begins = np.unique(columns, return_index=True)
+            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique)
+        self._points = self._all_points()
+
+    def values(self, sim: Simulation) -> tuple[float, ...]:
+        """At this instant; velocities per unit of the solver's time."""
+        if not self.tables:
+            return ()
+        bodies, watched = sim.bodies, self.watched
+        places = np.column_stack([bodies.positions[watched], bodies.orientations[watched]])
+        sample = np.stack([places, bodies.velocities[watched], sim.accelerations(watched)], axis=1)
+        still = np.zeros((1, 3, self.model.dimension))
+        return tuple(self.series(sample[np.newaxis], still)[0].tolist())
+
+    def series(self, samples: np.ndarray, base: np.ndarray) -> np.ndarray:
+        """Over time, (n, n_monitors).
+
+        samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
+        of the base at the same instants [m, s], (n, 3, d).
+        """
+        out = np.zeros((len(samples), len(self.tables)))
+        if self.tables:
+            motion = PointMotion(self._points, samples)
+            for monitor in self._at_points:
+                monitor.fill(out, motion, base)
+            if self._at_joints is not None:
+                self._at_joints.fill(out, motion)
+        return out
+
+    def _blocks(self, case: Case) -> list[tuple[int, ...]]:
+        """Blocks of each monitor; that there are any is checked with the model."""
+        from dem_cli.assembly.assemble import assembly
+
+        names = assembly(case).block_map if any(monitor.point is None for monitor in self.tables) else {}
+        found: list[tuple[int, ...]] = []
+        for monitor in self.tables:
+            if monitor.point is None:
+                found.append(tuple(names[name] for name in monitor.between or (monitor.block,) if name is not None))
+            else:
+                block = block_at(self.model, np.array(monitor.point))
+                assert block is not None  # model.validate
+                found.append((block,))
+        return found
+
+    def _point(self, block: int, arm: np.ndarray) -> int:
+        """Number of a new point."""
+        self._places.append((block, arm))
+        return len(self._places) - 1
+
+    def _point_monitor(self, column: int, table: Monitor, block: int) -> PointMonitor:
+        centroid = self.model.centroids[block]
+        arm = np.zeros(self.model.dimension) if table.point is None else np.array(table.point) - centroid
+        return PointMonitor(column, self._point(block, arm), table.quantity, table.component, table.absolute)
+
+    def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:
+        """Of one monitor: first and second point, distance, axis and the number of the monitor."""
+        from dem_cli.contact.between import StartJoints
+
+        self._joints = self._joints or StartJoints(self.model)
+        ends = self._joints.ends(first, second)
+        assert ends is not None  # model.validate
+        places, axis = list(zip(ends.on_first, ends.on_second, strict=True)), ends.normal
+        if quantity == "slip":
+            places, axis = [(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))], across(ends.normal)
+        rows = []
+        for on_first, on_second in places:
+            apart = self.model.centroids[second] + on_second - self.model.centroids[first] - on_first
+            rows.append((self._point(first, on_first), self._point(second, on_second), apart, axis, column))
+        return rows
+
+    def _all_points(self) -> Points:
+        d = self.model.dimension
+        blocks = np.array([block for block, _ in self._places], np.int64)
+        arms = np.array([arm for _, arm in self._places]).reshape(-1, d)
+        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms)
+
+
+def across(vectors: np.ndarray) -> np.ndarray:
+    """Vectors turned by +90°, (..., 2): velocities of their tips at unit spin."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

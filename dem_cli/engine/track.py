@@ -1,0 +1,46 @@
+"""What a run hands to its observer: rows and frames, now or after a pass proved worth keeping."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dem_cli.output.record import HistoryRow, Observer
+
+if TYPE_CHECKING:
+    from dem_cli.engine.monitors import Monitors
+    from dem_cli.engine.simulation import Simulation
+
+
+class Track:
+    """Rows and frames of one simulation."""
+
+    def __init__(self, sim: Simulation, observer: Observer, monitors: Monitors, frames: int):
+        self.sim, self.observer, self.monitors, self.frames = sim, observer, monitors, frames
+        self.kept: list[HistoryRow] = []
+
+    def row(self, stage: str) -> HistoryRow:
+        """The history row of this instant."""
+        sim = self.sim
+        return HistoryRow(
+            stage, sim.steps, sim.load * sim.live_scale, sim.largest_displacement(), sim.unbalanced,
+            sim.largest_overlap(), sim.energy(), self.monitors.values(sim), sim.time,
+        )  # fmt: skip
+
+    def keep(self, stage: str) -> None:
+        """Remember a row until `flush`."""
+        self.kept.append(self.row(stage))
+
+    def frame(self, stage: str) -> None:
+        """Hand over a frame where frames are wanted."""
+        if self.frames > 0:
+            self.observer.frame(self.sim.frame(stage))
+
+    def flush(self) -> None:
+        """Hand over what was kept."""
+        for row in self.kept:
+            self.observer.row(row)
+        self.kept.clear()
+
+    def write(self, stage: str) -> None:
+        """Hand over a row now."""
+        self.observer.row(self.row(stage))

@@ -1,0 +1,98 @@
+"""Many runs at once, over threads: the compiled loops let go of the interpreter. Finished runs go to a journal."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from dem_cli.ensembles.shaken_run import RestedStructure, ShakenRunResult
+
+if TYPE_CHECKING:
+    from dem_cli.motion.motion import Motion
+
+ASK = 0.2  # s between two looks at an interrupt and at the progress
+
+
+class ShakingTrial(NamedTuple):
+    """A run to be done: which structure, which record, how strong."""
+
+    structure: int
+    record: int
+    intensity: float
+
+
+class RunStore(Protocol):
+    """Who keeps finished runs; what it has is not done again."""
+
+    def known(self) -> Mapping[tuple, tuple]:
+        """Runs that were finished before: Trial and Run as plain tuples."""
+
+    def add(self, key: tuple, values: tuple) -> None:
+        """Keep a run; a kill does not lose it."""
+
+
+class Batch(NamedTuple):
+    """How many runs are done."""
+
+    threads: int = 1
+    journal: RunStore | None = None
+
+
+Answer = Callable[[ShakingTrial], ShakenRunResult]  # does a run, or looks it up
+Task = Callable[[Answer], None]  # asks for runs, one after the other
+Say = Callable[[int], None]  # is told how many runs are done
+
+
+class Batcher:
+    """Does runs of rested structures under scaled records; the results do not depend on the number of threads.
+
+    done   all results so far
+    fresh  how many of them were computed here
+    """
+
+    def __init__(
+        self, structures: Sequence[RestedStructure], motions: Callable[[ShakingTrial], Sequence[Motion]], batch: Batch
+    ):
+        self.structures, self.motions, self.batch = structures, motions, batch
+        known = batch.journal.known() if batch.journal else {}
+        self.done: dict[ShakingTrial, ShakenRunResult] = {
+            ShakingTrial(*key): ShakenRunResult(*values) for key, values in known.items()
+        }
+        self.fresh = 0
+        self._lock, self._cancelled = threading.Lock(), threading.Event()
+
+    def answer(self, trial: ShakingTrial) -> ShakenRunResult:
+        """The result of a run."""
+        found = self.done.get(trial)
+        if found is not None:
+            return found
+        run = self.structures[trial.structure].shaken(self.motions(trial), self._cancelled.is_set)
+        with self._lock:
+            if self.batch.journal is not None:
+                self.batch.journal.add(trial, run)
+            self.done[trial] = run
+            self.fresh += 1
+        return run
+
+    def work(self, tasks: Sequence[Task], say: Say) -> None:
+        """All tasks; an interrupt in between leaves what is finished in the journal."""
+        with ThreadPoolExecutor(max(1, min(self.batch.threads, len(tasks)))) as pool:
+            try:
+                pending = {pool.submit(task, self.answer) for task in tasks}
+                while pending:
+                    finished, pending = wait(pending, ASK, FIRST_COMPLETED)
+                    say(len(self.done))
+                    for future in finished:
+                        future.result()
+            except BaseException:
+                self._cancelled.set()
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+
+
+def each(trials: Sequence[ShakingTrial]) -> Iterator[Task]:
+    """A task per run."""
+    for trial in trials:
+        yield lambda answer, trial=trial: answer(trial) and None  # type: ignore[misc]

@@ -1,0 +1,92 @@
+"""What runs at several intensities say about the capacity of a structure under each record, and about all records."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.ensembles.batch import ShakingTrial
+from dem_cli.ensembles.lognormal import Lognormal, bootstrap, fit
+from dem_cli.ensembles.shaken_run import ShakenRunResult
+
+RESAMPLES = 400
+POINTS = 101  # of the curve in summary.json
+
+
+class Bounds(NamedTuple):
+    """A capacity lies between these intensities: stood at the one, fell at the other."""
+
+    lower: float  # 0: fell at the lowest that was tried
+    upper: float  # infinite: never fell
+
+
+Outcomes = dict[float, bool]  # collapsed at an intensity, ascending; without the runs that failed
+
+
+def outcomes(done: Mapping[ShakingTrial, ShakenRunResult], structure: int, record: int) -> Outcomes:
+    """All runs of one structure under one record."""
+    found = {
+        trial.intensity: run.collapsed
+        for trial, run in done.items()
+        if (trial.structure, trial.record) == (structure, record) and run.collapsed is not None
+    }
+    return dict(sorted(found.items()))
+
+
+def bounds_of(found: Outcomes) -> Bounds | None:
+    """The lowest intensity at which it fell, and the next lower one at which it was tried; None: never tried."""
+    if not found:
+        return None
+    upper = min((a for a, fell in found.items() if fell), default=math.inf)
+    return Bounds(max((a for a, fell in found.items() if not fell and a < upper), default=0.0), upper)
+
+
+def survived_above(found: Outcomes) -> list[float]:
+    """Intensities that it survived although it fell at a lower one."""
+    lowest = min((a for a, fell in found.items() if fell), default=math.inf)
+    return [a for a, fell in found.items() if not fell and a > lowest]
+
+
+def distribution(bounds: np.ndarray, levels: Sequence[float], confidence: float, seed: int) -> dict[str, Any]:
+    """Keys of the summary: the lognormal fit, its confidence and the curve.
+
+    bounds: (n_records, n_structures, 2).
+    """
+    lower, upper = bounds[:, :, 0], bounds[:, :, 1]
+    found = fit(lower.ravel(), upper.ravel())
+    if found is None:
+        return {"median": None, "dispersion": None, "confidence": None, "curve": None}
+    at = _range(found, levels)
+    band = bootstrap(lower, upper, at, confidence, seed, RESAMPLES) if len(lower) > 1 else None
+    curve = {"intensity": at, "share": found.share(at)}
+    sure = None
+    if band is not None:
+        curve |= {"low": band.low, "high": band.high}
+        sure = {"level": confidence, "median": band.median, "dispersion": band.dispersion, "resamples": band.resamples}
+    return {"median": found.median, "dispersion": found.dispersion, "confidence": sure, "curve": curve}
+
+
+def _range(found: Lognormal, levels: Sequence[float]) -> np.ndarray:
+    """Intensities of the curve: all that were tried, and 99 % of the distribution as far as that is near."""
+    low = min(levels[0], max(found.median * math.exp(-2.6 * found.dispersion), 0.5 * levels[0]))
+    high = max(levels[-1], min(found.median * math.exp(2.6 * found.dispersion), 1.5 * levels[-1]))
+    return np.linspace(low, high, POINTS)
+
+
+def split(bounds: np.ndarray) -> dict[str, float] | None:
+    """Dispersion between records, and within a record between its structures, by analysis of variance of logarithms.
+
+    Of records under which every structure stood and fell at some intensity. bounds: (n_records, n_structures, 2).
+    None: fewer than two of these, or one structure.
+    """
+    whole = ((bounds[:, :, 0] > 0.0) & np.isfinite(bounds[:, :, 1])).all(axis=1)
+    n = bounds.shape[1]
+    if whole.sum() < 2 or n < 2:
+        return None
+    logs = np.log(bounds[whole]).mean(axis=2)
+    within = float(logs.var(axis=1, ddof=1).mean())
+    between = max(float(logs.mean(axis=1).var(ddof=1)) - within / n, 0.0)
+    return {"records": math.sqrt(between), "perturbation": math.sqrt(within), "of_records": int(whole.sum())}

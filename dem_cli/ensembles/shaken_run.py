@@ -1,0 +1,137 @@
+"""One of many runs: a structure at rest, a motion of the ground, and whether it collapsed. Little Python per run."""
+
+from __future__ import annotations
+
+import math
+import time
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.history import TimeHistory
+from dem_cli.engine.job import Job
+from dem_cli.engine.measures import closure
+from dem_cli.errors import SolverError
+from dem_cli.kernels import records as slot
+from dem_cli.kernels.records import Watch
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.ensembles.variants import Variant
+    from dem_cli.motion.motion import Motion
+    from dem_cli.output.record import Observer
+
+LOOK = 0.1  # s of motion between two looks: collapse times are known to this
+ENERGY_EVERY = 10  # looks from one look into the books to the next
+STILL = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
+QUIET = 1e-3  # ... with so much of the noticeable energy at most
+
+
+class ShakenRunResult(NamedTuple):
+    """What became of one run."""
+
+    collapsed: bool | None  # None: it failed
+    time: float | None  # of the collapse [s]
+    how: str  # the block that collapsed and how, or why the run failed
+    peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
+    steps: int
+    closure: float | None  # energy error over the largest energy
+    seconds: float  # CPU of the thread [s]
+
+
+class RunCancelled(Exception):
+    """Nobody waits for this run any more."""
+
+
+class OnlyProgress:
+    """An observer of structures that come to rest: nothing of them is kept."""
+
+    def __init__(self, observer: Observer):
+        self.progress = observer.progress
+
+    def frame(self, *_: Any) -> None: ...
+    def row(self, *_: Any) -> None: ...
+    def samples(self, *_: Any) -> None: ...
+    def runs(self, *_: Any) -> None: ...
+    def structure(self, *_: Any) -> None: ...
+
+
+class RestedStructure:
+    """A structure that has come to rest, from which any number of motions start."""
+
+    def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer):
+        self.variant, self.case = variant, variant.case
+        job = Job.start(variant.case, variant.model, observer)
+        history = TimeHistory(job, GroundMotion(records, variant.model))
+        self.stands = history.start()
+        self.sim, self.step, self.monitors, self.damping = history.sim, history.step, job.monitors, history.damping
+        self.compile_seconds = job.clock.compiling
+        self.absolute = any(monitor.absolute for monitor in variant.case.monitor)
+        dt = self.step.step
+        self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
+        self.stretch = self.every * max(1, round(LOOK / (self.every * dt)))
+        self.coda = getattr(variant.case.analysis, "coda", 0.0)
+
+    def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
+        """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
+
+        Raises Cancelled.
+        """
+        begun = time.thread_time()
+        sim = deepcopy(self.sim)
+        ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
+        peaks, found, how = np.zeros(len(self.case.monitor)), None, ""
+        try:
+            found = self._shake(sim, ground, peaks, cancelled)
+        except SolverError as error:
+            how = str(error)
+            collapsed, at = None, None
+        else:
+            collapsed, at = found is not None, found and found.time
+            how = f"'{found.block}' {found.how}" if found else ""
+        steps, balance = sim.steps - self.sim.steps, None if collapsed is None else closure(sim)
+        return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, time.thread_time() - begun)
+
+    def _shake(self, sim: DynamicSimulation, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]):
+        """The first block that collapsed; None where all come through the motion, and the time after it."""
+        analysis, dt = self.case.analysis, self.step.step
+        total = math.ceil((analysis.duration or ground.duration) / dt)
+        most = total + math.ceil(self.coda / dt)
+        done = looks = 0
+        while done < most:
+            if cancelled():
+                raise RunCancelled
+            n = min(self.stretch, (total if done < total else most) - done)
+            self._stretch(sim, ground, n, peaks)
+            done, looks = done + n, looks + 1
+            check_finite(sim)
+            if looks % ENERGY_EVERY == 0:
+                check_energy(sim, self.step)
+            found = fallen(sim, analysis)
+            if found is not None:
+                return found
+            if done >= total and _at_rest(sim):
+                return None
+        return None
+
+    def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: np.ndarray) -> None:
+        """n_steps of motion, with the peaks of the monitors."""
+        start, d = sim.time, sim.model.dimension
+        blocks, n_dof = self.monitors.watched, sim.bodies.velocities.shape[1]
+        samples = np.zeros((-(-n_steps // self.every), len(blocks), 3, n_dof))
+        sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, Watch(blocks, self.every, samples))
+        if len(peaks):
+            times = start + self.step.step * self.every * np.arange(len(samples))
+            base = ground.of_base(times) if self.absolute else np.zeros((len(samples), 3, d))
+            np.maximum(peaks, np.abs(self.monitors.series(samples, base)).max(axis=0), out=peaks)
+
+
+def _at_rest(sim: DynamicSimulation) -> bool:
+    """Neither moving nor about to: a block at the turning point of its rocking is not in balance."""
+    still = sim.control[slot.UNBALANCED] < STILL
+    return bool(still and sim.centred_kinetic_energy() < QUIET * sim.noticeable_energy)

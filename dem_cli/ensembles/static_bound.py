@@ -1,0 +1,96 @@
+"""Where failure can be at the earliest, by limit analysis: values at which no forces in the friction cones exist.
+
+That is a bound, as friction is associated in it, and a first guess for the runs that decide.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.ensembles.bisection import Scale
+from dem_cli.errors import CaseError, UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.limit.matrices import Structure
+    from dem_cli.model.model import Model
+
+CLOSER = 0.1  # width of its bracket over that of the runs
+
+Variant = Callable[[float], tuple["Case", "Model"]]  # case and model at a value
+
+
+class Bound(NamedTuple):
+    """Between two values: forces in equilibrium exist at `carried`, and are proved impossible at `impossible`."""
+
+    carried: float
+    impossible: float
+    programs: int  # linear programs solved
+    seconds: float
+
+    def summary(self) -> dict[str, Any]:
+        """What summary.json says under `limit_analysis`."""
+        return {
+            "carried_at": self.carried,
+            "impossible_at": self.impossible,
+            "programs": self.programs,
+            "seconds": self.seconds,
+        }
+
+
+def bound(variant: Variant, scale: Scale, resolution: float) -> Bound | str:
+    """The change between the ends of `scale`, by bisection; or why there is none to tell."""
+    begun, programs = time.perf_counter(), 0
+
+    def carried(value: float) -> bool | None:
+        nonlocal programs
+        programs += 1
+        return stands(*variant(value))
+
+    try:
+        low, high = scale.low, scale.high
+        at_low, at_high = carried(low), carried(high)
+        if None in (at_low, at_high):
+            return "limit analysis did not converge"
+        if at_low == at_high:
+            what = "finds forces in equilibrium" if at_low else "proves equilibrium impossible"
+            return f"limit analysis {what} at both {low:g} and {high:g}"
+        while not scale.close(low, high, CLOSER * resolution):
+            middle = scale.middle(low, high)
+            found = carried(middle)
+            if found is None:
+                return "limit analysis did not converge"
+            low, high = (middle, high) if found == at_low else (low, middle)
+    except (UsageError, CaseError) as error:
+        return str(error)
+    ends = (low, high) if at_low else (high, low)
+    return Bound(*ends, programs, time.perf_counter() - begun)
+
+
+def stands(case: Case, model: Model) -> bool | None:
+    """Whether limit analysis finds forces that carry dead loads and the constant load of the case; None: not known.
+
+    Raises UsageError where the law has no cone |T| ≤ μ N.
+    """
+    from dem_cli.limit.analysis import start_structure
+    from dem_cli.limit.associated import carried
+    from dem_cli.limit.cone import friction_of
+
+    structure = start_structure(model, joint_properties(case, model))
+    if not structure.dead.any():
+        return True  # nothing to carry
+    friction = friction_of(structure.joints, law_of(case))
+    return carried(_under_load(structure, case), friction)[0]
+
+
+def _under_load(structure: Structure, case: Case) -> Structure:
+    """The structure with the constant load among its dead ones; a turned table has less of them."""
+    load = case.analysis.constant_load
+    share = 1.0 / np.sqrt(1.0 + load**2) if case.analysis.pattern == "tilt" else 1.0
+    dead = share * (structure.dead + load * structure.live)
+    return structure._replace(dead=dead, live=dead)  # the live load only says how large loads are

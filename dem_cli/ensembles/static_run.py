@@ -1,0 +1,190 @@
+"""One run of a safety analysis: a structure under constant loads, put on from zero, until it rests or has failed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from dem_cli.engine.job import Job
+from dem_cli.engine.measures import closure
+from dem_cli.errors import SolverError
+from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.statics.equilibrium import Verdict, settle_or_fail, stand
+from dem_cli.statics.failure_load import compliance
+from dem_cli.statics.mechanism import describe
+from dem_cli.statics.post_peak import fall_under, soften_falls
+from dem_cli.statics.warm_start import LIMIT, find_start, place
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.track import Track
+    from dem_cli.model.model import Model
+
+SHARES = (0.5, 0.8, 0.9, 0.95, 0.98, 1.0)  # of the load, held one after the other
+NEAR, GENTLE = 0.9, 0.005  # a failure that near the whole load is tried again by halves of its step, down to this:
+# a larger step may have shaken down what a smaller one does not
+SOFT = 0.5  # displacement in smallest edges, over the resolution, from which geometry must move on given stiffness
+
+
+class StaticRunResult(NamedTuple):
+    """What became of one value."""
+
+    value: float
+    stands: bool | None  # None: neither was proven
+    why: str  # the proof in words, or why there is none
+    unbalanced: float  # largest unbalanced force at the end, in weights of its own block
+    proof: dict[str, float] | None  # of a failure by power
+    at_share: float  # share of the load that was reached
+    mechanism: dict[str, Any]  # of a failure: mode, who takes part
+    displacement: float  # largest of a centroid [m]
+    steps: int
+    seconds: float  # of solving, without compilation
+    closure: float  # energy error over the largest energy
+
+    def summary(self) -> dict[str, Any]:
+        """One line of the table of runs."""
+        return {
+            "value": self.value,
+            "stands": self.stands,
+            "why": self.why,
+            "unbalanced": self.unbalanced,
+            "displacement": self.displacement,
+            "steps": self.steps,
+            "seconds": self.seconds,
+        }
+
+
+class StaticRun(NamedTuple):
+    """A run with what it would show."""
+
+    run: StaticRunResult
+    case: Case
+    model: Model
+    job: Job
+    sim: Simulation
+    frame: Frame  # at the end
+    rows: list[HistoryRow]
+
+
+def decide(case: Case, model: Model, observer: Observer, value: float, hopeless: bool = False) -> StaticRun:
+    """Equilibrium or failure of a case under its constant load.
+
+    hopeless: known to have no equilibrium, so that the first failure will do.
+    """
+    job = Job.start(case, model, observer)
+    told = _decided(job, job.first_simulation(), value, hopeless)
+    given = any(joint.kn != "auto" for joint in case.joints.values())
+    soft = told.run.displacement > SOFT * case.analysis.resolution * told.sim.smallest
+    if told.run.stands and soft and given and told.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
+        told = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was
+    return told
+
+
+def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticRun:
+    track, before, share = job.track(sim), sim.save(), 0.0
+    try:
+        verdict, before, share = _loaded(job, sim, track, hopeless)
+    except SolverError as error:
+        verdict, why = Verdict("unknown", sim.unbalanced), str(error)
+    else:
+        why = _proof(verdict, share, job.case.analysis.constant_load)
+    failed = verdict.state == "failure"
+    run = StaticRunResult(
+        value,
+        {"equilibrium": True, "failure": False}.get(verdict.state),
+        why,
+        verdict.unbalanced,
+        {"released_share_of_work": verdict.released, "growth_when_time_doubles": verdict.growth}
+        if failed and verdict.block is None
+        else None,
+        share,
+        describe(sim, before) if failed else {},
+        sim.largest_displacement(),
+        sim.steps,
+        job.clock.seconds(),
+        closure(sim),
+    )
+    track.keep("collapse" if failed else "loading")
+    frame = sim.frame("collapse" if failed else "loading")
+    return StaticRun(run, job.case, job.model, job, sim, frame, track.kept)
+
+
+def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, tuple, float]:
+    """The verdict, the state before the last load was put on, and the share of the load that is on."""
+    before = sim.save()
+    verdict = stand(sim, job.budget)
+    track.keep("gravity")
+    load = job.case.analysis.constant_load / sim.live_scale
+    if verdict.state != "equilibrium" or load == 0.0:
+        return verdict, before, 0.0
+    elastic = compliance(sim)[1] * load or sim.dead_scale()
+    near = _next_to_failure(job, sim, load, elastic)
+    if near is not None:
+        track.keep("loading")
+        return *near, 1.0
+    shares, at = list(SHARES), 0.0
+    while shares:
+        share, before = shares[0], sim.save()
+        verdict = settle_or_fail(sim, share * load, job.budget, elastic * share)
+        if verdict.state == "equilibrium":
+            at = shares.pop(0)
+            track.keep("loading")
+        elif share >= NEAR and share - at > GENTLE and not hopeless:
+            sim.restore(before)
+            shares.insert(0, 0.5 * (at + share))
+        else:
+            return verdict, before, share
+    return verdict, before, at
+
+
+def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, tuple] | None:
+    """Verdict and state before the load, from a state next to failure where the structure is large (warm_start.py).
+
+    None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
+    """
+    held, steps = sim.save(), sim.steps
+    start, _ = find_start(job, sim)
+    if start is None:
+        return None
+    place(sim, start)
+    before = sim.save()
+    verdict = settle_or_fail(sim, load, job.budget, elastic, plateau=start.plateau)
+    if verdict.state == "failure" and load * sim.live_scale <= start.load:
+        job.skipped.append(f"a start next to failure: it did not hold, {sim.steps - steps:,} steps")
+        sim.restore(held)
+        return None
+    if start.kind == LIMIT:
+        job.warnings.append(
+            "runs started from the forces of limit analysis without friction in head joints: what the structure "
+            "reaches from gravity may be some per cent lower"
+        )
+    return verdict, before
+
+
+def _proof(verdict: Verdict, share: float, load: float) -> str:
+    """In words."""
+    where = "" if share in (0.0, 1.0) else f" at {share:g} of the load"
+    if verdict.state == "equilibrium":
+        return f"at rest: forces balance to {verdict.unbalanced:.1g} of each block's weight"
+    if verdict.block is not None:
+        return f"'{verdict.block}' came to rest elsewhere{where}"
+    under = " under its dead loads alone" if load > 0.0 and share == 0.0 else where
+    return f"moves on and releases energy{under}: {100.0 * verdict.released:.2g} % of the work of the loads"
+
+
+def fall(told: StaticRun, observer: Observer, until: float, frames: int) -> str | None:
+    """Follows the collapse of a structure that failed, with geometry that moves, until a block moved by `until` [m].
+
+    Frames and rows go to the observer; returns why it did not go that far, if so.
+    """
+    job = Job.start(told.case, told.model, observer)
+    sim = job.simulation("large")
+    sim.steps = told.sim.steps
+    soften_falls(sim, until)
+    load = told.case.analysis.constant_load / sim.live_scale
+    try:
+        if not fall_under(sim, job.track(sim), load, until, frames, job.budget):
+            return "with geometry that moves it comes to rest"
+    except SolverError as error:
+        return str(error)
+    return None

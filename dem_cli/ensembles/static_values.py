@@ -1,0 +1,91 @@
+"""The structures of a safety analysis: the case with weaker joints, or with another value of a key."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from pydantic import ValidationError
+
+from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.validate import problems
+from dem_cli.case.vary import impossible, value_at, with_value
+from dem_cli.ensembles.bisection import Scale
+from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.laws.strength import reduced, strengths
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.tables.safety import SafetyAnalysis
+
+UNLIMITED = ("elastic",)  # laws without any strength
+
+
+def scale_of(case: Case) -> Scale:
+    """The values that a case asks for. Raises CaseError where they are impossible."""
+    analysis: SafetyAnalysis = case.analysis
+    low, high = analysis.ends
+    if analysis.of_strength:
+        _check_strengths(case)
+        return Scale(low, high, ratio=True)
+    now = value_at(case, analysis.vary)
+    whole = isinstance(now, int)
+    if whole and not (low.is_integer() and high.is_integer()):
+        message = f"[{low:g}, {high:g}] is not allowed; {analysis.vary} = {now} is a whole number"
+        raise CaseError([CaseProblem(("analysis", "between"), message)])
+    for end in (low, high):
+        checked_model(changed(case, analysis.vary, end), end)
+    return Scale(low, high, ratio=False, whole=whole)
+
+
+def expected(case: Case) -> tuple[int, int]:
+    """Fewest and most runs that are likely: two next to the guess of limit analysis, or a bisection of the range."""
+    analysis, scale = case.analysis, scale_of(case)
+    largest = max(abs(scale.low), abs(scale.high))
+    width = math.log(scale.high / scale.low) if scale.ratio else (scale.high - scale.low) / largest
+    finest = 1.0 / largest if scale.whole else analysis.resolution
+    return 2 + analysis.scan, 2 + analysis.scan + math.ceil(math.log2(max(width / finest, 1.0)))
+
+
+def changed(case: Case, key: str, value: float) -> Case:
+    """The case with another value of a key, a whole number where it is one."""
+    return with_value(case, key, int(value) if isinstance(value_at(case, key), int) else value)
+
+
+def checked_model(case: Case, value: float) -> Model:
+    """The model of a changed case. Raises CaseError, at analysis.between, where it is no structure."""
+    try:
+        made = assembly(case)
+        found = problems(case, made.model, made.blocks)
+    except CaseError as error:
+        found = list(error.problems)
+    if found:
+        raise impossible(f"{case.analysis.vary} = {value:.6g}", found)
+    return made.model
+
+
+def weaker(case: Case, factor: float) -> Case:
+    """The case with strengths divided by a factor. Raises CaseError where a law does not allow what comes out."""
+    joints = {}
+    for name, joint in case.joints.items():
+        try:
+            joints[name] = reduced(joint, factor, case.analysis.reduce)
+        except ValidationError as error:
+            said = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
+            raise impossible(f"F = {factor:.5g}", [CaseProblem(("joints", name), said)]) from None
+    return case.model_copy(update={"joints": joints})
+
+
+def _check_strengths(case: Case) -> None:
+    """Raises CaseError where a factor would change nothing, or cannot be put into a joint."""
+    which = case.analysis.reduce
+    for name, joint in case.joints.items():
+        if joint.law not in UNLIMITED and not strengths(joint):
+            message = f"'{joint.law}' has no friction, cohesion or tension that a factor divides; vary one of its keys"
+            raise CaseError([CaseProblem(("joints", name, "law"), message)])
+    if not any(strengths(joint).get(key) for joint in case.joints.values() for key in which):
+        listed = " or ".join(which)
+        raise CaseError([CaseProblem(("analysis", "reduce"), f"no joint has any {listed} that could be reduced")])
+    for factor in case.analysis.ends:
+        weaker(case, factor)

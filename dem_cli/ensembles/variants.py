@@ -1,0 +1,92 @@
+"""Slightly different structures: how much of an answer is chance? Small errors, drawn from the seed of the case.
+
+Joints stay closed as drawn: gaps would change the structure, not perturb it ([[imperfection]] makes those). An error of
+size ε of a block changes its mass, and moves its centre of mass against its joints, by that share; both are done to
+the masses alone. That a structure stands out of plumb is done to the direction of gravity.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.laws.friction import FrictionJoint
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.tables.analysis import Perturbation
+
+STREAM = 0xD1FF  # so that no other draws from the same seed are met
+LARGEST = 3.0  # standard deviations that a draw is limited to
+
+
+class Variant:
+    """One structure of a set: number 0 is the one of the case, the others differ from it.
+
+    case, model  with its own joints and masses
+    motion       factor on the ground motion
+    """
+
+    def __init__(self, case: Case, model: Model, number: int):
+        self.number, self.case, self.model, self.motion = number, case, model, 1.0
+        if number == 0:
+            return
+        perturb: Perturbation = case.analysis.perturb
+        friction, geometry, motion = (np.random.default_rng([case.seed, STREAM, number, topic]) for topic in range(3))
+        self.case = _other_friction(case, perturb.friction, friction)
+        self.model = other_sizes(model, case.gravity, perturb.geometry, geometry)
+        self.motion = 1.0 + float(_draw(motion, perturb.motion, 1)[0])
+
+
+def _draw(generator: np.random.Generator, deviation: float, *shape: int) -> np.ndarray:
+    """Normal, limited."""
+    return deviation * np.clip(generator.standard_normal(shape), -LARGEST, LARGEST)
+
+
+def _other_friction(case: Case, deviation: float, generator: np.random.Generator) -> Case:
+    """A factor on the friction coefficient of each named joint that has one."""
+    joints = {}
+    for (name, joint), error in zip(case.joints.items(), _draw(generator, deviation, len(case.joints)), strict=True):
+        if isinstance(joint, FrictionJoint):
+            factor = 1.0 + float(error)
+            joint = joint.model_copy(update={"friction": factor * joint.coefficient, "friction_angle_deg": None})
+        joints[name] = joint
+    return case.model_copy(update={"joints": joints})
+
+
+def other_sizes(model: Model, gravity: float, deviation: float, generator: np.random.Generator) -> Model:
+    """Masses, centres of mass and direction of gravity with errors; the places of all corners stay.
+
+    deviation: relative, of masses, of the distances of the corners along each axis, and of the lean [rad].
+    """
+    d, n = model.dimension, model.n_blocks
+    errors = np.where(model.fixed[:, None], 0.0, _draw(generator, deviation, n, 1 + d))
+    lean = _draw(generator, deviation, d - 1)
+    factors = 1.0 + errors[:, 0]
+    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
+    first = np.searchsorted(owner, np.arange(n))
+    sizes = np.maximum.reduceat(model.vertices, first) - np.minimum.reduceat(model.vertices, first)
+    shifts = 0.5 * errors[:, 1:] * sizes
+    weights = np.zeros((n, d))
+    weights[:, -1] = -gravity * model.masses
+    dead = model.dead_loads.copy()
+    dead[:, :d] -= weights  # what is left are point loads, which act where they did
+    dead[:, d:] -= _moments(shifts, dead[:, :d])
+    dead[:, d - 1] += factors * weights[:, -1]
+    dead[:, : d - 1] += factors[:, None] * weights[:, -1:] * lean
+    return model._replace(
+        masses=factors * model.masses,
+        inertias=factors[:, None] * model.inertias,
+        centroids=model.centroids + shifts,
+        vertices=model.vertices - shifts[owner],
+        dead_loads=dead,
+    )
+
+
+def _moments(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Moments of forces about the origin of their arms, (n, r)."""
+    if arms.shape[1] == 2:
+        return (arms[:, 0] * forces[:, 1] - arms[:, 1] * forces[:, 0])[:, None]
+    return np.cross(arms, forces)

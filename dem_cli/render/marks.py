@@ -1,0 +1,131 @@
+"""What is drawn on the blocks of a scene: joints by their state, and the forces that go through them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.record import STATES, ContactRecord, Frame
+from dem_cli.post import measures
+from dem_cli.render.solids import lifted
+
+_HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
+_UNSEEN = 1e-3  # or by less than this share of the size of the structure
+_THIN = 0.45  # of the width: their stripes
+_NECK = 0.62  # of the length of an arrow: where its head begins
+_HEAD = 2.6  # radius of the head over that of the shaft
+_THICKEST = 0.085  # of the longest arrow: radius of the thickest bar
+_LEAST, _FINEST = 0.01, 0.06  # of the largest force: what is drawn at all; what is drawn thinner than it is
+_STOUTEST = 0.3  # radius of the thickest bar over half its length
+_LONGEST_BAR = 0.85  # of the smaller side of the smaller block, to either side of the joint
+
+
+class Stripes(NamedTuple):
+    """Joints as flat boxes that stand out of the stones a little; each contact point has its half of the joint."""
+
+    points: np.ndarray  # corners [m], (8 n, 3)
+    faces: np.ndarray  # as VTK has them
+    states: np.ndarray  # index into STATES of each face, (6 n,)
+    faint: np.ndarray  # a hairline, of each face, (6 n,) bool
+
+
+class Strokes(NamedTuple):
+    """Forces as tubes along lines."""
+
+    points: np.ndarray  # [m], (n, 3)
+    radii: np.ndarray  # [m], (n,)
+    lines: np.ndarray  # as VTK has them: number of points, then the points, line after line
+    largest: float  # force of the thickest one [N]
+
+
+_BOX = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
+
+
+def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
+    """Joints of a 2D frame that is drawn `scale` times; stripes are `width` wide [m]."""
+    contacts = frame.contacts
+    hairline = max(_HAIRLINE * measures.largest_displacement(model, frame), _UNSEEN * measures.size(model)) / scale
+    ends = contacts.points
+    centres = middles(contacts)
+    along = centres - ends
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    single = lengths[:, 0] < 0.25 * width  # one point, or points that are one: a short stripe
+    tangents = np.stack((contacts.normals[:, 1], -contacts.normals[:, 0]), axis=1)
+    along = np.where(single[:, np.newaxis], tangents, along / np.where(lengths > 0.0, lengths, 1.0))
+    starts = np.where(single[:, np.newaxis], ends - width * along, ends)
+    stops = np.where(single[:, np.newaxis], ends + width * along, centres)
+    faint = (contacts.state == STATES.index("open")) & (contacts.gap < hairline)
+    widths = np.where(faint, _THIN * width, width)[:, np.newaxis]
+    across = 0.5 * widths * np.stack((-along[:, 1], along[:, 0]), axis=1)
+    outline = np.stack((starts - across, stops - across, stops + across, starts + across), axis=1)
+    depth = 0.5 * model.thickness[contacts.blocks].max(axis=1) + 0.5 * width
+    n = len(ends)
+    points = np.zeros((n, 8, 3))
+    points[:, :4, :2] = points[:, 4:, :2] = outline
+    points[:, :4, 2], points[:, 4:, 2] = -depth[:, np.newaxis], depth[:, np.newaxis]
+    corners = _BOX[np.newaxis] + 8 * np.arange(n)[:, np.newaxis, np.newaxis]
+    faces = np.concatenate((np.full((n, 6, 1), 4), corners), axis=2)
+    return Stripes(points.reshape(-1, 3), faces.ravel(), np.repeat(contacts.state, 6), np.repeat(faint, 6))
+
+
+def middles(contacts: ContactRecord) -> np.ndarray:
+    """Middle of all points of its joint, for each point [m], (n, 2)."""
+    _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
+    sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]
+    return (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
+
+
+def forces(model: Model, frame: Frame, look: str, reach: float) -> Strokes | None:
+    """Resultant force of each joint in front of the blocks; None where nothing is pressed.
+
+    look     "bars": along the force, as thick as it is large; where every block has at most two pressed joints the
+             bars join to the thrust line. "arrows": on the lower of two blocks, as long as the force is large
+    reach    length of the longest arrow [m]; bars are as thick as becomes a picture of that scale
+    """
+    found = measures.resultants(frame.contacts)
+    sizes = np.linalg.norm(found.forces, axis=1)
+    if not len(sizes) or sizes.max() <= 0.0:
+        return None
+    kept = sizes > _LEAST * sizes.max()
+    found, sizes = measures.Resultants(*(column[kept] for column in vars(found).values())), sizes[kept]
+    share = sizes / sizes.max()
+    front = 0.5 * model.thickness[found.blocks].max(axis=1)
+    if look == "arrows":
+        return _arrows(found, share, front, reach, float(sizes.max()))
+    radii = _THICKEST * reach * np.maximum(share, _FINEST)
+    heights = front + _THICKEST * reach
+    chains = measures.chains(model, found)
+    if chains:
+        order = np.concatenate(chains)
+        lines = _lines([len(chain) for chain in chains])
+        return Strokes(lifted(found.points[order], heights[order]), radii[order], lines, float(sizes.max()))
+    lengths = _LONGEST_BAR * measures.block_reach(model, found.blocks)
+    radii = np.minimum(radii, _STOUTEST * np.median(lengths) * np.maximum(share, _FINEST))
+    arms = (lengths / sizes)[:, np.newaxis] * found.forces
+    ends = np.stack((found.points - arms, found.points + arms), axis=1).reshape(-1, 2)
+    n = len(sizes)
+    return Strokes(lifted(ends, np.repeat(heights, 2)), np.repeat(radii, 2), _lines([2] * n), float(sizes.max()))
+
+
+def _arrows(found: measures.Resultants, share: np.ndarray, front: np.ndarray, reach: float, largest: float) -> Strokes:
+    """Tip at the joint, pointing downwards: what lies above pushes."""
+    downwards = np.where(found.forces[:, 1] > 0.0, -1.0, 1.0)[:, np.newaxis]
+    units = downwards * found.forces / np.linalg.norm(found.forces, axis=1, keepdims=True)
+    lengths = reach * share
+    radius = 0.022 * reach
+    kept = lengths > 1.5 * radius
+    units, lengths, tips, front = units[kept], lengths[kept], found.points[kept], front[kept]
+    heads = np.minimum(1.0, (1.0 - _NECK) * reach * 0.4 / lengths)  # of the length: heads are alike
+    at = np.stack((np.ones_like(heads), heads + 1e-3, heads, np.zeros_like(heads)), axis=1)
+    points = tips[:, np.newaxis] - (lengths[:, np.newaxis] * at)[:, :, np.newaxis] * units[:, np.newaxis]
+    radii = np.tile((radius, radius, _HEAD * radius, 0.02 * radius), len(lengths))
+    heights = np.repeat(front + _HEAD * radius, 4)
+    return Strokes(lifted(points.reshape(-1, 2), heights), radii, _lines([4] * len(lengths)), largest)
+
+
+def _lines(counts: list[int]) -> np.ndarray:
+    """Polylines through consecutive points."""
+    starts = np.concatenate(([0], np.cumsum(counts)))
+    return np.concatenate([np.concatenate(([n], np.arange(a, a + n))) for a, n in zip(starts, counts)])

@@ -1,0 +1,218 @@
+"""render.png, render.gif, render.mp4: the structure in a stone look, in a process of its own.
+
+A graphics driver that fails takes its process along: `render_apart` survives that and says what happened.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import re
+import signal
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from dem_cli.errors import DemError, OutputError, UsageError
+from dem_cli.model.model import Model
+from dem_cli.output.reader import Frames, Results, read
+from dem_cli.output.record import Frame
+from dem_cli.output.shapes import vertex_blocks
+from dem_cli.output.store import IN_SECONDS
+from dem_cli.post import collapse, measures, style, view
+from dem_cli.render import movie, paint
+from dem_cli.render.solids import lifted
+
+STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
+_AROUND = 0.015  # of the size of what is seen: empty space on all sides
+_STANDALONE = ("limit", "modes")  # kinds whose frames do not follow each other
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is drawn, and how."""
+
+    frame: str = "last"  # of a still: "last", "failure", a number, or a time such as "2.5s"
+    view: str = "front"
+    scale: float | None = None  # of displacements; None: as they are where they can be seen
+    colour: str = "stone"
+    joints: bool = True  # coloured by state
+    forces: str | None = None  # "bars", "arrows"
+    size: tuple[int, int | None] | None = None  # of the whole picture [pixels]
+    fps: float = movie.FPS
+
+
+def render_apart(folder: Path, path: Path, look: Look) -> None:
+    """Render the results in `folder` into a file: a still (.png) or a movie (.gif, .mp4).
+
+    Raises UsageError where packages, graphics libraries or frames are missing, OutputError where the renderer died.
+    """
+    for name in ("pyvista", "matplotlib", "PIL"):
+        if find_spec(name) is None:
+            raise UsageError("rendering needs pyvista: pip install 'dem-cli[viz]'")
+    movie.check(path.suffix[1:])
+    try:
+        in_own_process(render, folder, path, look)
+    finally:
+        movie.unfinished(path).unlink(missing_ok=True)
+
+
+def in_own_process(work: Callable[..., object], *arguments: object) -> None:
+    """Do `work` where it can die alone. Raises its DemError or OSError, and OutputError where it dies."""
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    with tempfile.NamedTemporaryFile() as log, receiver:
+        child = context.Process(target=_work_alone, args=(sender, log.name, work, arguments), daemon=True)
+        child.start()
+        sender.close()
+        try:
+            error = receiver.recv()
+        except EOFError:
+            child.join()
+            said = Path(log.name).read_text(encoding="utf-8", errors="replace")
+            raise OutputError(_death(said)) from None
+        finally:  # also where the user does not want to wait
+            child.kill()
+            child.join()
+    if error is not None:
+        raise error
+
+
+def _work_alone(sender: Connection, log: str, work: Callable[..., object], arguments: tuple[object, ...]) -> None:
+    """What VTK and drivers say on stderr goes to a file; the parent is told what went wrong, or None."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends this process
+    os.dup2(os.open(log, os.O_WRONLY | os.O_APPEND), 2)
+    error: Exception | None = None
+    try:
+        work(*arguments)
+    except (DemError, OSError) as found:
+        error = found
+    sender.send(error)
+
+
+def _death(said: str) -> str:
+    """One message out of what the renderer said before it died."""
+    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line).split("| ")[-1].strip() for line in said.splitlines()]
+    reason = next((line for line in reversed(lines) if line), "it said nothing")
+    return f"the renderer died ({reason}); drivers may be to blame: `dem plot` draws without them"
+
+
+def render(folder: Path, path: Path, look: Look) -> None:
+    """As `render_apart`, in this process."""
+    from dem_cli.render import gl
+
+    results = read(folder)
+    frames = chosen(results, look.frame) if path.suffix == ".png" else all_frames(results)
+    gl.choose_window()
+    pages = draw(results, frames, look, MOVIE_WIDTH if len(frames) > 1 else STILL_WIDTH)
+    if path.suffix == ".png":
+        _write_png(pages[0], path)
+    else:
+        movie.write(pages, path, look.fps)
+
+
+def _write_png(page: np.ndarray, path: Path) -> None:
+    from PIL import Image
+
+    part = movie.unfinished(path)
+    Image.fromarray(page).save(part, "PNG", optimize=True)
+    os.replace(part, path)
+
+
+def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[np.ndarray]:
+    """All pages, as (height, width, 3) bytes."""
+    from dem_cli.render.scene import Scene, camera
+    from dem_cli.render.sheet import Sheet, layout
+
+    model = results.model
+    scale = look.scale or min(measures.visible_scale(model, frame) for frame in frames)
+    moves = [_moved(results, frame, scale) for frame in frames]
+    eye = camera(look.view, _seen(model, [view.corners(model, f, scale, m) for f, m in zip(frames, moves)]))
+    colours, bar = paint.colours(results, frames, look.colour)
+    handles = paint.legend(results, frames, look.joints, look.forces)
+    plan = layout(look.size or (width, None), eye.height / eye.width, bool(handles), bar is not None)
+    with style.canvas() as make:
+        sheet = Sheet(make, plan, results.summary, handles, bar)
+        scene = Scene(model, eye, plan.width, plan.picture, plan.points, deep=look.view != "front")
+        try:
+            pages = []
+            for i, (frame, moved) in enumerate(zip(frames, moves)):
+                shown = measures.scaled(model, frame, scale)
+                picture = scene.picture(shown, scale, moved, look, None if colours is None else colours[i])
+                pages.append(sheet.page(picture, caption(results, frame, scale)))
+        finally:
+            scene.close()
+    return pages
+
+
+def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
+    """Corners of the blocks in space, as far as they are in the picture [m], (n, 3)."""
+    low, high = view.window(model, places, _AROUND)
+    half = 0.5 * model.thickness[vertex_blocks(model)]
+    inside = [np.clip(corners, low, high) for corners in places]
+    return np.concatenate([lifted(corners, side * half) for corners in inside for side in (-1.0, 1.0)])
+
+
+def _moved(results: Results, frame: Frame, scale: float) -> np.ndarray:
+    """How far the ground carries everything in this frame [m], (d,)."""
+    if view.carried(results, scale):
+        return view.ground(results.series, frame)
+    return np.zeros(results.model.dimension)
+
+
+def all_frames(results: Results) -> list[Frame]:
+    """Of a movie. Raises UsageError where there is none to be made."""
+    if results.kind in _STANDALONE:
+        raise UsageError(f"the frames of {results.kind!r} do not follow each other: no movie, but --frame N draws each")
+    if len(results.frames) < 2:
+        raise UsageError("a movie needs frames, and the run kept fewer than two (output.frames)")
+    return list(results.frames)
+
+
+def chosen(results: Results, text: str) -> list[Frame]:
+    """The one frame that `--frame` asks for."""
+    frames = results.frames
+    if not len(frames):
+        raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to render")
+    return [frames[_number(frames, results, text)]]
+
+
+def _number(frames: Frames, results: Results, text: str) -> int:
+    if text == "last":
+        return len(frames) - 1
+    if text == "failure":
+        found = collapse.failure_frame(results)
+        if found is None:
+            raise UsageError("--frame failure: the results have no failure load")
+        return found
+    if re.fullmatch(r"-?\d+", text):
+        number = int(text)
+        if not -len(frames) <= number < len(frames):
+            raise UsageError(f"--frame {text}: the run kept {len(frames)} frames, 0 to {len(frames) - 1}")
+        return number % len(frames)
+    if match := re.fullmatch(r"(\d*\.?\d+(?:[eE][-+]?\d+)?) ?s", text):
+        times = np.array([frame.time for frame in frames])
+        if not times.any():
+            raise UsageError(f"--frame {text}: only time histories have a time")
+        return int(np.abs(times - float(match[1])).argmin())
+    last = len(frames) - 1
+    raise UsageError(f"--frame {text}: give last, failure, a number from 0 to {last}, or a time such as 2.5s")
+
+
+def caption(results: Results, frame: Frame, scale: float) -> str:
+    """What one sees, and how many times larger than it is."""
+    if results.kind == "modes" and frame.stage == "mode":
+        frequency = results.summary["frequencies"][frame.step - 1]
+        return f"mode {frame.step}: {frequency:.4g} Hz · of any size"
+    if results.kind == "limit":
+        return f"{frame.stage} mechanism: λ = {frame.load:.4g} · of any size: rigid blocks do not move before failure"
+    factor, unit = style.length_unit(frame.displacement)
+    instant = f"{frame.time:.2f} s" if results.kind in IN_SECONDS else f"{frame.stage}: λ = {frame.load:.4g}"
+    drawn = "true scale" if scale == 1.0 else f"displacements drawn {scale:,.4g} times larger"
+    instant = instant.replace("-", "−")
+    return f"{instant} · moved up to {factor * frame.displacement:.3g} {unit} · {drawn}"

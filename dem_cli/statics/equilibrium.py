@@ -1,0 +1,221 @@
+"""Equilibrium or failure at a constant load: each claim with its proof.
+
+An equilibrium is proven by the largest unbalanced force, a failure by power: under constant load the
+motion accelerates while the loads release more energy than friction and joints take (statics/failure_test.py).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.measures import free_falls
+from dem_cli.errors import SolverError
+from dem_cli.kernels import records as slot
+from dem_cli.statics.failure_test import FailureTest, displaced
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.track import Track
+
+FALLS = "does not stand under its dead loads"
+CHUNK = 100  # steps between two looks
+TOLERANCE = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
+GRAVITY_TOLERANCE = 1e-5
+COMBINED = 0.3  # combined damping: as much against the velocity as against the change of force
+# Mass scaling for FIRE, for local damping (numerics, section 3) and for combined damping, which makes a
+# reversal of force 1 + 2·COMBINED times as strong and is stable below 1/√(1 + 2·COMBINED) = 0.79.
+RELAX_SAFETY, CREEP_SAFETY, COMBINED_SAFETY = 0.6, 0.85, 0.75
+GENTLE = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
+FALL = 2e-3  # of the narrowest block: what a block that falls may move in a step, where geometry moves
+SHORTEST, LONGEST, STAIR = 500, 20_000, 20  # steps: of a ramp (a shorter one is none), and between its loads
+# The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what it
+# would not by itself. Steps per course, and between loads.
+REMEMBERED, FINE_STAIR = 100, 5
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What happened at a constant load."""
+
+    state: str  # "equilibrium" | "failure" | "unknown"
+    unbalanced: float  # largest unbalanced force at the end, in weights of its own block
+    released: float = 0.0  # failure: share of the work of the loads that became motion or was damped
+    growth: float = 0.0  # failure: growth of the displacement in the last doubling of time
+    block: str | None = None  # failure: that came to rest elsewhere
+
+
+def check_finite(sim: Simulation) -> None:
+    """Raises SolverError that names the block where a number is no number."""
+    bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
+    if bad.any():
+        name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
+        raise SolverError(f"the motion of block '{name}' is not a number after {sim.steps} steps")
+
+
+def relax(
+    sim: Simulation,
+    load: float,
+    tolerance: float,
+    max_steps: int = 40_000,
+    scale: float = 0.0,
+    since: np.ndarray | None = None,
+) -> Verdict:
+    """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
+
+    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.save_places; default: where
+    they are now); scale: displacement that is elastic [m].
+    """
+    since = sim.save_places() if since is None else since
+    sim.use(RELAX_SAFETY, damping=0.0)
+    sim.set_load(load)
+    _limit_falls(sim)
+    sim.control[slot.FIRE_MIX], sim.control[slot.SINCE_UPHILL] = 0.1, 0.0
+    calm = 0
+    for _ in range(max(1, max_steps // CHUNK)):
+        sim.advance(CHUNK, slot.FIRE)
+        check_finite(sim)
+        calm = calm + 1 if sim.unbalanced < tolerance else 0
+        if calm == 2:
+            if _rests(sim, tolerance, slot.FIRE):
+                break
+            calm = 0
+    sim.rest()
+    sim.use(CREEP_SAFETY)
+    if calm < 2:
+        return Verdict("unknown", sim.unbalanced)
+    return _at_rest(sim, since, scale)
+
+
+def stand(sim: Simulation, budget: Budget) -> Verdict:
+    """Equilibrium under dead loads alone, or proof that there is none."""
+    start, scale = sim.save_places(), sim.dead_scale()
+    _weigh_down(sim, budget)
+    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE, scale=scale, since=start)
+    if verdict.state != "unknown":
+        return verdict
+    return settle_or_fail(sim, 0.0, budget, scale, GRAVITY_TOLERANCE, start)
+
+
+def settle_or_fail(
+    sim: Simulation,
+    load: float,
+    budget: Budget,
+    scale: float,
+    tolerance: float = TOLERANCE,
+    since: np.ndarray | None = None,
+    plateau: bool = False,
+) -> Verdict:
+    """Constant load with combined damping until equilibrium or failure is proven.
+
+    scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
+    since: places of the structure that must not have moved grossly when it comes to rest (Simulation.save_places);
+    default: where it is now. plateau: see FailureTest.
+    """
+    since = sim.save_places() if since is None else since
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    _limit_falls(sim)
+    doing = f"at load multiplier {load * sim.live_scale:.5g}"
+    motion = FailureTest(sim, scale, plateau)
+    _ramp(sim, load, scale, budget, doing)
+    done, calm = 0, 0
+    for look in count(2):
+        while done < CHUNK * round(math.sqrt(2.0) ** look):
+            sim.advance(CHUNK, slot.HOLD_LOAD)
+            budget.spend(CHUNK, doing)
+            done += CHUNK
+            calm = calm + 1 if sim.unbalanced < tolerance else 0
+            if calm == 2 and not _rests(sim, tolerance, slot.HOLD_LOAD):
+                calm = 0
+            if calm == 2:
+                return _at_rest(sim, since, scale)
+        check_finite(sim)
+        failing = motion.look()
+        if failing is not None:
+            return Verdict("failure", sim.unbalanced, *failing)
+    raise AssertionError("a count has no end")
+
+
+def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
+    """Stops all blocks, and whether forces balance where they stand: they may only have passed by an equilibrium."""
+    sim.rest()
+    sim.advance(1, mode)
+    sim.rest()
+    return sim.unbalanced < tolerance
+
+
+def _limit_falls(sim: Simulation) -> None:
+    """Blocks in flight would be detected at every step; what a joint holds is slower by far."""
+    if sim.kinematics == "large" and len(sim.free):
+        sim.limit_speed(FALL * float(sim.widths[sim.free].min()))
+
+
+def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str) -> None:
+    """To the load, at once where every block follows its neighbours, else so slowly that none is thrown.
+
+    What moves by `scale` in a ramp of n steps is accelerated by about 4·scale/n².
+    """
+    before = sim.load
+    sim.set_load(load)
+    fall = free_falls(sim)[sim.free]
+    slowest = fall[fall > 0.0].min(initial=math.inf)
+    steps = int(min(math.sqrt(4.0 * scale / (GENTLE * slowest)), LONGEST))
+    steps = max(steps if steps >= SHORTEST else 0, _steps_of_memory(sim))
+    if load != before:
+        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps)
+        budget.spend(steps, doing)
+
+
+def _weigh_down(sim: Simulation, budget: Budget) -> None:
+    """Dead loads little by little, where joints remember."""
+    steps = _steps_of_memory(sim)
+    if not steps:
+        return
+
+    def put(share: float) -> None:
+        sim.control[slot.DEAD_FACTOR] = share
+
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.set_load(0.0)
+    _limit_falls(sim)
+    _climb(sim, put, steps)
+    sim.rest()
+    budget.spend(steps, "putting on the dead loads")
+
+
+def _steps_of_memory(sim: Simulation) -> int:
+    """Length of the ramp of a load on joints that remember; 0 for others."""
+    return max(SHORTEST, REMEMBERED * sim.depth) if sim.law.n_memory(sim.model.dimension) else 0
+
+
+def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:
+    """Steps with loads put on by their share, which grows smoothly to 1."""
+    stair = FINE_STAIR if sim.law.n_memory(sim.model.dimension) else STAIR
+    stairs = steps // stair
+    for number in range(1, stairs + 1):
+        share = number / stairs
+        put(share * share * (3.0 - 2.0 * share))
+        sim.advance(stair, slot.HOLD_LOAD)
+
+
+def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
+    """The verdict on a structure in which all forces balance."""
+    block = displaced(sim, since, scale)
+    if block is None:
+        return Verdict("equilibrium", sim.unbalanced)
+    return Verdict("failure", sim.unbalanced, block=sim.model.block_ids[block])
+
+
+def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
+    """Dead loads; the row is kept in the track, the frame handed over."""
+    track.observer.progress("gravity", 0.0, 0.0, 0.02)
+    verdict = stand(sim, budget)
+    track.keep("gravity")
+    track.frame("gravity")
+    return verdict

@@ -1,0 +1,96 @@
+"""Motion at a constant load: when it can be nothing but failure, and when coming to rest is no equilibrium.
+
+A failure is shown by power: the motion accelerates while the loads release more energy than friction and
+joints take, both since the start and in the last doubling of time. The blocks that show it must have been
+carried there by their own loads: pseudo-time lets a light block on stiff joints fall slowly, so that a knock
+of its neighbours sends it flying for longer than any look.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.engine.clearances import beyond
+from dem_cli.engine.measures import free_falls
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+
+# Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
+ACCELERATED, STEADY = 2.5, 1.55
+FAR = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
+FAR_PER_DEPTH = 0.125  # times the square of the courses: walls of 22 find equilibrium after 40, of 70 after 300
+STEADILY = 3.3  # times as far, where the motion does not accelerate
+GROSS, TURNED = 0.1, 0.05  # of the width of a block; of its rotation [rad]: no elastic motion
+NOT_ELASTIC = 10.0  # elastic displacements that gross motion is beyond, where joints are soft
+
+
+class FailureProof(NamedTuple):
+    """The proof of a failure."""
+
+    released: float  # share of the work of the loads that became motion or was damped
+    growth: float  # of the displacement in the last doubling of time
+
+
+class FailureTest:
+    """How the blocks move from the moment at which a load became constant.
+
+    scale    displacement that is elastic [m]
+    plateau  the load is known to grow no more with displacement: high structures need not go further than low ones
+    """
+
+    def __init__(self, sim: Simulation, scale: float, plateau: bool = False) -> None:
+        self.sim, self.start, self.begun = sim, sim.save_places(), sim.steps
+        self.far = (FAR if plateau else max(FAR, FAR_PER_DEPTH * sim.depth**2)) * scale
+        if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
+            self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
+        self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
+        self.away = np.abs(self.start - sim.first_places).max(axis=1)
+        self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
+        self.energies = [sim.energy_sums()]
+
+    def look(self) -> FailureProof | None:
+        """To be called whenever the time grew by √2; the proof of failure where there is one."""
+        moved = np.abs(self.sim.save_places() - self.start).max(axis=1)
+        self.moved.append(moved)
+        self.energies.append(self.sim.energy_sums())
+        if len(self.moved) < 9:
+            return None
+        own = moved <= 0.5 * free_falls(self.sim) * (self.sim.steps - self.begun) ** 2
+        unexplained = moved
+        if self.play.any():
+            away = np.abs(self.sim.save_places() - self.sim.first_places).max(axis=1)
+            unexplained = beyond(self.play, moved, self.away, away)
+        block = int(np.where(own, unexplained, -np.inf).argmax())
+        last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
+        if unexplained[block] <= self.far or not own[block] or min(last) <= 0.0:
+            return None
+        accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > ACCELERATED
+        steady = last[-1] > STEADY**4 * last[0] and unexplained[block] > STEADILY * self.far
+        if not (accelerated or steady):
+            return None
+        for since in (self.energies[-3], self.energies[0]):
+            given, taken = (now - then for now, then in zip(self.energies[-1], since))
+            if given <= max(taken, 0.0):
+                return None
+        return FailureProof(1.0 - taken / given, last[-1] / last[-2])
+
+
+def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
+    """The block that moved furthest since `since` (Simulation.save_places), where that was no elastic motion.
+
+    A structure that comes to rest after it is another structure: something toppled or slid down.
+    """
+    motion = np.abs(sim.save_places() - since)
+    d = sim.model.dimension
+    moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
+    if sim.play.moved.any():
+        before, now = np.abs(since - sim.first_places), np.abs(sim.save_places() - sim.first_places)
+        moved = beyond(sim.play.moved, moved, before[:, :d].max(axis=1), now[:, :d].max(axis=1))
+        turning = sim.play.turned * sim.shape.radii
+        turned = beyond(turning, turned, before[:, d:].max(axis=1), now[:, d:].max(axis=1))
+    gross = (moved > GROSS * sim.widths) | (turned > TURNED * sim.shape.radii)
+    gross &= (np.maximum(moved, turned) > NOT_ELASTIC * scale) & ~sim.model.fixed
+    return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None

@@ -1,0 +1,67 @@
+"""Who takes part in a failure, and how: from the motion between the last equilibrium and proven failure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dem_cli.engine.simulation import Simulation
+from dem_cli.kernels import records as slot
+
+ROCKING = 0.02  # share of friction in the released work, below which nothing slides
+TURNS = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
+TAKES_PART = 0.1  # of the largest motion
+LISTED = 20  # names in a summary
+
+
+def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
+    """failure_mode, share of friction work, and the blocks and joints that take part.
+
+    sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
+    """
+    bodies, contacts, joints, _, ledger = held[:5]
+    d = sim.model.dimension
+    shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
+    angle = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1)
+    motion = np.maximum(shift, angle * sim.shape.radii)
+    weights = -sim.loads.dead[sim.free, d - 1]
+    lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
+    external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
+    released = max(external, 0.0) + max(-lifted, 0.0)
+    same = joints.edges.shape == sim.joints.edges.shape and bool((joints.edges == sim.joints.edges).all())
+    friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
+    if sim.law.bonded:  # the ledger holds what bonds lost as well
+        slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
+        friction = float((slipped * np.sqrt((sim.contacts.shear**2).sum(axis=1))).sum())
+    share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
+    # Whether anything turns, not the share: friction takes nearly all that hinges and one slipping joint release, and
+    # little of what lifts blocks up a slope.
+    turned = float(angle.max(initial=0.0)) * _size(sim)
+    translates = turned < TURNS * motion.max(initial=0.0)
+    mode = "sliding" if translates else "rocking" if share < ROCKING else "mixed"
+    moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
+    found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
+    if same and len(joints.edges):
+        slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
+        opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
+        for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
+            found["mechanism"][key] = _pairs(sim, np.flatnonzero(values > TAKES_PART * motion.max(initial=0.0)))
+    return found
+
+
+def _size(sim: Simulation) -> float:
+    """Largest extent of the free blocks [m]."""
+    places, radii = sim.bodies.positions[sim.free], sim.shape.radii[sim.free, None]
+    return float(((places + radii).max(axis=0) - (places - radii).min(axis=0)).max())
+
+
+def _names(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+    names = [sim.model.block_ids[i] for i in blocks[:LISTED]]
+    return {"count": len(blocks), "first": names}
+
+
+def _pairs(sim: Simulation, joints: np.ndarray) -> dict[str, Any]:
+    ids = sim.model.block_ids
+    pairs = [[ids[a], ids[b]] for a, b in sim.joints.blocks[joints[:LISTED]]]
+    return {"count": len(joints), "first": pairs}

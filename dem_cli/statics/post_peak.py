@@ -1,0 +1,147 @@
+"""After failure: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
+
+Where the live load keeps prescribing the rate of its own displacement, the multiplier is found along the whole
+way, down to nothing where a wall overturns by itself. Where the load stays, blocks that slide leave the others
+behind, as on a tilting table.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.properties import FIXED_RATIO
+from dem_cli.engine.track import Track
+from dem_cli.kernels import records as slot
+from dem_cli.statics.equilibrium import (
+    CHUNK,
+    COMBINED,
+    COMBINED_SAFETY,
+    GRAVITY_TOLERANCE,
+    TOLERANCE,
+    check_finite,
+    relax,
+    settle_or_fail,
+)
+from dem_cli.statics.failure_load import PROBE
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.simulation import Simulation
+
+ELASTIC = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
+STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one, at least
+FEWEST, MOST = 40_000, 60_000  # steps of the whole way, about: fewer would throw the blocks about
+GROWTH = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
+ROWS = 250  # history rows
+SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
+FALL = 1e-3  # speed limit of blocks that fall, in smallest edges per step: they land softly
+STEPS_UP = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the load of failure, held before the collapse
+HARDER = 1.005  # growth of a load that holds after all
+NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
+
+
+def softness(case: Case, elastic: float, load: float, edge: float, until: float) -> tuple[float, float]:
+    """kn·h/W for "auto" joints in a collapse, and how much softer that is than in the failure search.
+
+    As stiff as ELASTIC asks, unless the way would then take more than MOST steps.
+    elastic: largest elastic displacement per unit of multiplier in the search [m]; edge: smallest edge [m];
+    until: displacement to be followed [m].
+    """
+    softer = max(ELASTIC * edge / (elastic * max(load, PROBE)), STEPS * until / (elastic * MOST))
+    ratio = min(max(FIXED_RATIO / softer, SOFTEST), STIFFEST)
+    automatic = any(joint.kn == "auto" for joint in case.joints.values())
+    return ratio, (FIXED_RATIO / ratio if automatic else 1.0)
+
+
+def follow(
+    sim: Simulation, track: Track, rate: float, failure: float, until: float, frames: int, budget: Budget
+) -> dict[str, float]:
+    """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
+
+    failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is
+    {"load": the highest multiplier, "displacement": where the curve first came within 1 % of it}.
+    """
+    relax(sim, 0.0, GRAVITY_TOLERANCE)
+    track.write("gravity")
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    soften_falls(sim, until)
+    sim.control[slot.RATE] = rate / GROWTH**50
+    stage, next_frame, chunk = "loading", 0.0, 50
+    curve: list[tuple[float, float]] = []
+    highest = 0.0
+    while True:
+        before = sim.largest_displacement()
+        sim.advance(chunk, sim.creep_mode)
+        budget.spend(chunk, "following the collapse")
+        check_finite(sim)
+        moved = sim.largest_displacement()
+        load = sim.control[slot.MEAN_LOAD] / sim.control[slot.DEAD_FACTOR]
+        curve.append((load, moved))
+        done = moved >= until
+        highest = max(highest, load)
+        if load >= NEAR_PEAK * failure or (highest > 0.8 * failure and load < NEAR_PEAK * highest):
+            stage = "collapse"
+        track.write(stage)
+        if done or (stage == "collapse" and moved >= next_frame):
+            track.frame("collapse")
+            next_frame = moved + until / max(frames - 3, 1)
+        track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
+        if done:
+            reached = next((moved for load, moved in curve if load >= 0.99 * highest), moved)
+            return {"load": highest, "displacement": reached}
+        sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)
+        pace = abs(moved - before) / chunk
+        longest = 100 if stage == "loading" else 20_000
+        chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
+
+
+def soften_falls(sim: Simulation, until: float) -> None:
+    """Limits the speed of blocks that fall, over a way of `until` [m]."""
+    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+
+
+def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
+    """The collapse under a constant load until a block moved by `until` [m]; where it holds after all, a little more.
+
+    failure: internal multiplier that was proved impossible. Rows and frames of the way up are those of the search.
+    """
+    relax(sim, 0.0, GRAVITY_TOLERANCE)
+    soften_falls(sim, until)
+    for share in STEPS_UP:
+        if settle_or_fail(sim, share * failure, budget, sim.dead_scale()).state != "equilibrium":
+            break
+    fall_under(sim, track, failure, until, frames, budget, HARDER)
+
+
+def fall_under(
+    sim: Simulation, track: Track, load: float, until: float, frames: int, budget: Budget, harder: float | None = None
+) -> bool:
+    """On from the present state under a constant load until a block moved by `until` [m]; rows and frames of that.
+
+    load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
+    """
+    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    calm, next_row, next_frame = 0, 0.0, 0.0
+    sim.set_load(load)
+    while sim.largest_displacement() < until:
+        sim.advance(CHUNK, slot.HOLD_LOAD)
+        budget.spend(CHUNK, "following the collapse")
+        check_finite(sim)
+        calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+        if calm == 2:
+            if harder is None:
+                return False
+            load, calm = harder * load, 0
+            sim.set_load(load)
+        moved = sim.largest_displacement()
+        if moved >= next_row:
+            track.write("collapse")
+            next_row = moved + until / ROWS
+        if moved >= next_frame:
+            track.frame("collapse")
+            next_frame = moved + until / max(frames - 3, 1)
+        track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
+    track.write("collapse")
+    track.frame("collapse")
+    return True

@@ -1,0 +1,154 @@
+"""`estimate.describe`: what `dem check` says about joints, stiffness, time step and cost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dem_cli import api
+from dem_cli.analyses.estimate import describe
+from dem_cli.engine import simulation
+from dem_cli.errors import CaseError
+
+CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
+
+
+def rows(name: str, *overrides: str) -> dict[str, str]:
+    loaded = api.load_case(CASES / f"{name}.toml", overrides)
+    return dict(describe(loaded.case, api.build_model(loaded)))
+
+
+def test_wall_of_21_blocks(monkeypatch):
+    monkeypatch.setattr(simulation, "make_advance", None)  # the stepping loop is not even made
+    simulation.compiled_advance.cache_clear()
+    found = rows("wall_21")
+    # 3 + 4 blocks in turn: 4 bed joints below, 5 × 6 between courses; 3 + 2 head joints three times.
+    assert found["joints"] == "49, 98 contact points"
+    assert found["joint dry"] == "34 bed joints, 15 others"
+    # 18 whole blocks' worth of 0.04 × 0.0175 × 0.08 m, 2143 kg/m3, 9.81 m/s2
+    assert float(found["weight"].split()[0]) == pytest.approx(18 * 5.6e-5 * 2143 * 9.81, rel=1e-5)
+    assert found["smallest block"] == "'wall-1-1', 0.06 kg"
+    assert found["largest block"] == "'wall-1-2', 0.12 kg"
+    assert "kn·h/W 1e+06, kn and ks chosen (auto)" in found["stiffness dry"]
+    assert found["kinematics"].startswith("fixed (auto): all joints are closed")
+    assert "10,000 to 200,000 steps × 98 points × 10 ns" in found["cost"]
+    assert found["load"].startswith("mass: λ × weight of each block along [1.0, 0.0]; [21.19, 0] N")
+    assert found["monitors"] == "displacement of 'top-right'"
+
+
+def test_wall_of_231_blocks():
+    found = rows("wall_3")
+    # 11 + 21 × 20 bed joints; 10 and 9 head joints in 11 courses each.
+    assert found["joints"] == "640, 1,280 contact points"
+    assert found["joint dry"] == "431 bed joints, 209 others"
+
+
+def test_the_step_that_real_masses_would_allow():
+    # A free block on two springs K/2: the bound of the highest frequency is the one of Gershgorin.
+    found = rows("sliding_block", "joints.dry.kn=1e9", "joints.dry.ks=1e9", "analysis.kinematics='fixed'")
+    assert "'" in found["time step"]
+    soft = rows("sliding_block", "joints.dry.kn=1e7", "joints.dry.ks=1e7", "analysis.kinematics='fixed'")
+    step, longer = (float(text["time step"].split()[-2]) for text in (found, soft))
+    assert longer == pytest.approx(10 * step, rel=0.05)
+    assert "kn 1e+09 Pa/m, ks 1e+09 Pa/m" in found["stiffness dry"]
+    assert "auto" not in found["stiffness dry"]
+    assert found["kinematics"] == "fixed (as the case says)"
+
+
+def test_a_named_block_limits_the_step():
+    found = rows("wall_21", "joints.dry.kn=1e9", "joints.dry.ks=1e9")
+    assert "with real masses 'wall-" in found["time step"]
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_case_is_described(path):
+    assert {"joints", "time step", "cost", "load"} <= set(rows(path.stem))
+
+
+SHAKEN = """
+[materials.stone]
+density = 2000.0
+[joints.dry]
+friction = 0.6
+kn = 1e9
+ks = 1e9
+[[structure]]
+kind = "column"
+block = [1.0, 2.0]
+courses = 1
+base_extension = 1.0
+[motion]
+kind = "pulse"
+shape = "sine"
+amplitude = 3.0
+frequency = 0.5
+[analysis]
+kind = "time-history"
+duration = 5.0
+"""
+
+
+def shaken(tmp_path, *overrides: str) -> dict[str, str]:
+    path = tmp_path / "case.toml"
+    path.write_text(SHAKEN)
+    loaded = api.load_case(path, overrides)
+    return dict(describe(loaded.case, api.build_model(loaded)))
+
+
+def test_time_history(tmp_path, monkeypatch):
+    monkeypatch.setattr(simulation, "make_advance", None)
+    simulation.compiled_advance.cache_clear()
+    found = shaken(tmp_path, "analysis.margin=0.5")
+    # Sliding and rocking of one block (numerics.md): ω² of K/M are 2 ± √3.4, K/M = 1e9/4000.
+    highest, lowest = ((1e9 / 4000 * (2 + sign * 3.4**0.5)) ** 0.5 for sign in (1, -1))
+    assert found["highest frequency"] == f"'column-1' on 'column-base' vibrates at {highest / 6.283185307:.4g} Hz"
+    assert found["time step"].startswith(f"{1 / highest:.3g} s, 0.5 of the largest stable one, {2 / highest:.3g} s")
+    assert float(found["first frequency"].split()[0]) == pytest.approx(lowest / 6.283185307, rel=1e-3)
+    assert found["steps"] == f"{int(5.0 * highest) + 1:,}"
+    assert found["cost"].endswith(f"({found['steps']} steps × (2 points × 55 ns + 0.4 µs))")
+    assert found["load"] == "5 s of motion, peak 3 m/s²"
+    assert "runs" not in found
+    repeated = shaken(tmp_path, "analysis.margin=0.5", "analysis.repeats=9")
+    assert repeated["runs"] == "10 with repeats"
+    assert f"(10 runs × {found['steps']} steps" in repeated["cost"]
+    half = shaken(tmp_path, "analysis.margin=0.25")
+    assert half["time step"].startswith(f"{0.5 / highest:.3g} s, 0.25 of")
+
+
+def test_a_step_above_the_limit_is_refused_before_the_run(tmp_path):
+    with pytest.raises(CaseError, match=r"analysis\.time_step: 0\.01 s is above .* 'column-1' on 'column-base'"):
+        shaken(tmp_path, "analysis.time_step=0.01")
+
+
+def test_time_history_that_says_no_duration(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(SHAKEN.replace("duration = 5.0", "").replace('kind = "pulse"', 'kind = "none"'))
+    text = path.read_text()
+    for key in ("shape", "amplitude", "frequency"):
+        text = "\n".join(line for line in text.splitlines() if not line.startswith(key))
+    path.write_text(text)
+    loaded = api.load_case(path)
+    found = dict(describe(loaded.case, api.build_model(loaded)))
+    assert "analysis.duration is missing" in found["load"]
+    assert "cost" not in found
+
+
+@pytest.mark.parametrize(
+    ("levels", "runs"),
+    [
+        ("intensities = [1.0, 2.0, 3.0]", "4 records × 3 intensities: 12"),
+        ("lowest = 1.0\nhighest = 5.0\nresolution = 0.5", "4 records × 5 steps of bisection: at most 20"),
+    ],
+)
+def test_fragility(tmp_path, levels, runs):
+    text = SHAKEN.replace("time-history", "fragility").replace("duration = 5.0", levels)
+    start, end = text.index("[motion]"), text.index("[analysis]")
+    motion = '[motion]\nkind = "artificial"\nspectrum = "EC8-1"\nsoil = "B"\nag = 2.0\nduration = 20.0\ncount = 4\n'
+    path = tmp_path / "case.toml"
+    path.write_text(text[:start] + motion + text[end:])
+    loaded = api.load_case(path)
+    found = dict(describe(loaded.case, api.build_model(loaded)))
+    assert found["runs"] == runs
+    assert found["load"] == "20 s of motion"
+    assert f"({int(runs.split()[-1])} runs × " in found["cost"]

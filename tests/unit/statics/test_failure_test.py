@@ -1,0 +1,111 @@
+"""What motion at a constant load proves: failure, nothing yet, or that a structure at rest is another one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from engine import block, rectangle, running_wall, simulation, tables
+
+from dem_cli.contact.detect import world_corners
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.measures import free_falls
+from dem_cli.kernels import records as slot
+from dem_cli.model.scales import depth, widths
+from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
+from dem_cli.statics.failure_load import compliance
+from dem_cli.statics.failure_test import FailureTest, displaced
+
+GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
+NEEDLE = block("needle", rectangle(0, 0, 0.25, 1))
+FREE = block("free", rectangle(0, 5, 1, 6))
+
+
+def test_depth_counts_courses():
+    sim = simulation(tables(*running_wall(5, 3)))
+    assert sim.depth == 5
+
+
+def test_depth_of_blocks_that_no_joint_reaches():
+    assert depth(np.empty((0, 2), int), np.array([True, False])) == 0
+
+
+CHAMFERED = [[0, 0], [0.25 - 1e-6, 0], [0.25, 1e-6], [0.25, 1], [0, 1]]
+
+
+@pytest.mark.parametrize("corners", [rectangle(0, 0, 0.25, 1), CHAMFERED])
+def test_width_is_no_edge(corners):
+    """A tiny edge at a corner makes no block narrow."""
+    sim = simulation(tables(GROUND, block("b", corners)))
+    assert widths(sim.model)[1] == pytest.approx(0.25, rel=0.05)
+
+
+def watch(sim, looks: int, scale: float):
+    """The first proof of failure in so many looks, each √2 of the time of the last."""
+    motion, done = FailureTest(sim, scale), 0
+    for look in range(2, looks):
+        sim.advance(100 * round(2 ** (look / 2)) - done, slot.HOLD_LOAD)
+        done = 100 * round(2 ** (look / 2))
+        if failing := motion.look():
+            return failing
+    return None
+
+
+def test_a_block_that_falls_freely_fails():
+    failing = watch(simulation(tables(GROUND, FREE)), 16, 1e-9)
+    assert failing is not None
+    assert failing.growth > 3.5
+
+
+@pytest.mark.parametrize(("up", "fails"), [(1.0, False), (0.0, True)])
+def test_a_thrown_block_does_not_fail_in_its_flight(up, fails):
+    """Faster than its own weight could make it: a knock, and no failure before it would have landed."""
+    sim = simulation(tables(GROUND, FREE))
+    steps = 20_000
+    sim.bodies.velocities[1, 1] = up * 0.5 * free_falls(sim)[1] * steps
+    assert (watch(sim, 14, 1e-9) is not None) is fails
+
+
+def test_coming_to_rest_elsewhere_is_no_equilibrium():
+    """A block that leans too far falls on its side and lies there."""
+    turned = np.array(rectangle(0, 0, 0.25, 1)) @ np.array([[np.cos(0.3), -np.sin(0.3)], [np.sin(0.3), np.cos(0.3)]])
+    leaning = block("leaning", turned - turned.min(axis=0))
+    case = tables(GROUND, leaning, joints={"dry": {"friction": 1.0, "kn": 1e7}})
+    sim = simulation(case, "large")
+    verdict = stand(sim, Budget(1_000_000))
+    assert verdict.state == "failure"
+
+
+def test_rest_after_toppling_names_the_block():
+    """At rest on its side, after it stood."""
+    sim = simulation(tables(GROUND, NEEDLE, joints={"dry": {"friction": 1.0, "kn": 1e8}}), "large")
+    assert stand(sim, Budget(100_000)).state == "equilibrium"
+    scale, since = sim.dead_scale(), sim.save_places()
+    sim.bodies.positions[1], sim.bodies.orientations[1] = (0.75, 0.125), -np.pi / 2
+    sim.bodies.corners[:] = world_corners(sim.shape, sim.bodies.positions, sim.bodies.orientations)
+    sim.detect()
+    verdict = settle_or_fail(sim, 0.0, Budget(200_000), scale, since=since)
+    assert (verdict.state, verdict.block) == ("failure", "needle")
+    assert displaced(sim, sim.save_places(), scale) is None
+
+
+def test_a_small_fall_onto_the_ground_is_no_failure():
+    """A gap of a thousandth of a block closes."""
+    sim = simulation(tables(GROUND, block("b", rectangle(0, 1e-3, 1, 1.001))), "large")
+    assert stand(sim, Budget(1_000_000)).state == "equilibrium"
+
+
+def test_relax_says_when_blocks_moved_away():
+    above = block("b", rectangle(0, 0.5, 1, 1.5))
+    sim = simulation(tables(GROUND, above, joints={"dry": {"friction": 1.0, "kn": 1e7}}), "large")
+    assert relax(sim, 0.0, 1e-5, 400_000).state == "failure"
+
+
+def test_a_needle_is_held_by_its_width():
+    """1.5 % above the load that turns it over, moments over its length seem to balance."""
+    sim = simulation(tables(GROUND, block("needle", rectangle(0, 0, 1e-3, 1)), friction=1.0))
+    assert stand(sim, Budget(10**5)).state == "equilibrium"
+    exact, (_, elastic) = 1e-3, compliance(sim)
+    held = sim.save()
+    assert settle_or_fail(sim, 0.995 * exact, Budget(10**6), elastic * exact).state == "equilibrium"
+    sim.restore(held)
+    assert settle_or_fail(sim, 1.015 * exact, Budget(10**6), elastic * exact).state == "failure"
