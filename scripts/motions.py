@@ -47,7 +47,11 @@ def suites(count: int) -> str:
     plan = [(kind, soil, 0.05) for kind in SOILS for soil in SOILS[kind]] + [("EC8-1", "B", 0.02), ("EC8-1", "B", 0.1)]
     for kind, soil, damping in plan:
         table = ArtificialTable(
-            spectrum=kind, soil=soil, ag=2.0, damping=damping, count=OF_SEVEN * count  # type: ignore[arg-type]
+            spectrum=kind,
+            soil=soil,
+            ag=2.0,
+            damping=damping,
+            count=OF_SEVEN * count,  # type: ignore[arg-type]
         )
         started = time.process_time()
         motions = [Motion(record) for record in suite(table, 1)]

@@ -48,9 +48,7 @@ AXES: dict[str, Callable[[bool], Iterator[Record]]] = {
 }
 
 
-def collect(
-    names: Sequence[str], short: bool, say: Callable[[str], None]
-) -> tuple[list[Record], dict[str, str]]:
+def collect(names: Sequence[str], short: bool, say: Callable[[str], None]) -> tuple[list[Record], dict[str, str]]:
     """All records of some axes, told as they come, and what each axis is."""
     records, about = [], {}
     for name in names:

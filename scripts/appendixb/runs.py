@@ -15,9 +15,9 @@ import numpy as np
 import tomli_w
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.output.reader import read
 from dem_cli.output.shapes import placed_vertices, rest_vertices
-from dem_cli.solve import run as solver
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = ROOT / "cases" / "validation" / "appendix_b.toml"
@@ -96,7 +96,7 @@ def changed(bricks: str, condition: str, changes: dict[str, Any]) -> dict[str, A
         file = Path(folder) / "case.toml"
         file.write_text(tomli_w.dumps(case), encoding="utf-8")
         loaded = api.load_case(file, [])
-    summary = solver.run(loaded.case, api.build_model(loaded), Silent()).summary
+    summary = solver.solve(loaded.case, api.build_model(loaded), Silent()).summary
     limit = summary.get("limit_analysis") or {}
     return {
         "command": f"{bricks}, {condition}: {', '.join(changes)}", "status": summary["status"],

@@ -12,10 +12,10 @@ import tomli_w
 
 from churches.statics import BODIES, body_of
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 from dem_cli.output.shapes import placed_vertices, rest_vertices
-from dem_cli.solve import run as solver
 
 SEATS = {
     "left beam on side wall": ("a-8", "roof-a"), "left beam on bracket": ("b-4", "roof-a"),
@@ -49,7 +49,7 @@ def solve(name: str, case: dict[str, Any], *overrides: str) -> dict[str, Any]:
         file.write_text(tomli_w.dumps({key: value for key, value in case.items() if key != "reference"}))
         loaded = api.load_case(file, list(overrides))
     model = api.build_model(loaded)
-    summary = solver.run(loaded.case, model, seen).summary
+    summary = solver.solve(loaded.case, model, seen).summary
     limit = summary.get("limit_analysis") or {}
     bracket = summary["failure_load_bracket"]
     return {

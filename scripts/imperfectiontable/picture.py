@@ -66,8 +66,8 @@ ERRORS = {
 def walls(path: Path) -> None:
     """Walls with errors large enough to be seen."""
     from dem_cli.api import make_case_model
+    from dem_cli.assembly.assemble import assembly
     from dem_cli.case.reader import Source, validate
-    from dem_cli.model.assemble import assembly
 
     with style.figure(path, figsize=(11.0, 3.6)) as figure:
         for axis, (title, errors) in zip(figure.subplots(1, len(ERRORS)), ERRORS.items()):

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.case.schema import Case
+from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit import path as paths
 from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.associated import OK, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
-from dem_cli.solve import run as solver
-from dem_cli.solve.joints import joint_properties, law_of
 
 # Increments of the fine path: the first displacement and its growth, and the growth of the load that counts as none.
 # Shares of the growth (and folds to go round) where an increment fails are small as well.
@@ -111,7 +111,7 @@ def loaded(file: Path, overrides: Sequence[str]) -> tuple[Case, Model]:
 
 def explicit(row: Row, case: Case, model: Model) -> Way:
     """DEM; what it warns of goes to the row."""
-    summary, seconds = timed(lambda: solver.run(case, model, Nobody()).summary)
+    summary, seconds = timed(lambda: solver.solve(case, model, Nobody()).summary)
     row.warnings += [text for text in summary["warnings"] if text not in row.warnings]
     start = summary.get("start", {}).get("kind", "")
     low, high = summary.get("failure_load_bracket") or (None, None)

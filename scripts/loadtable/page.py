@@ -46,8 +46,18 @@ def render(table: Mapping[str, Any]) -> str:
     rows = rows_of(table)
     head = HEAD.format(growth=FINE_WAYS[0][1], agrees=100 * AGREES, above=100 * ABOVE)
     loads = lines_of(
-        ("case", "blocks", "associated", "path", "fine path", "DEM from gravity", "bracket", "error", "dem run",
-         "error"),
+        (
+            "case",
+            "blocks",
+            "associated",
+            "path",
+            "fine path",
+            "DEM from gravity",
+            "bracket",
+            "error",
+            "dem run",
+            "error",
+        ),
         [loads_of(row) for row in rows],
     )
     times = lines_of(

@@ -61,9 +61,9 @@ class Shaker:
         import tomli_w
 
         from dem_cli.api import build_model, load_case
+        from dem_cli.ensembles.shaken_run import RestedStructure
+        from dem_cli.ensembles.variants import Variant
         from dem_cli.motion.build import suites_of
-        from dem_cli.solve.perturb import Variant
-        from dem_cli.solve.trial import Rested
 
         analysis = {"kind": "fragility", "intensities": [1.0], "coda": lasts, "margin": margin}
         made = changed(case, damping=dict(damping), monitor=monitor) | {"analysis": analysis}
@@ -72,7 +72,7 @@ class Shaker:
             path.write_text(tomli_w.dumps(made), encoding="utf-8")
             loaded = load_case(path)
             model = build_model(loaded)
-        self.rested = Rested(Variant(loaded.case, model, 0), suites_of(loaded.case)[0], Observer())
+        self.rested = RestedStructure(Variant(loaded.case, model, 0), suites_of(loaded.case)[0], Observer())
         self.runs, self.seconds = 0, 0.0
 
     def falls(self, amplitude: float, tp: float) -> bool:
@@ -83,7 +83,7 @@ class Shaker:
         return bool(self.run([Motion(impulse(amplitude * G, tp, REBOUND))]).collapsed)
 
     def run(self, motions: Sequence[Any]) -> Any:
-        """What became of it under the sum of motions (solve/trial.py: Run)."""
+        """What became of it under the sum of motions (ensembles/shaken_run.py: Run)."""
         run = self.rested.shaken(motions)
         assert run.collapsed is not None, run.how
         self.runs, self.seconds = self.runs + 1, self.seconds + run.seconds

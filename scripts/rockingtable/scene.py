@@ -90,11 +90,11 @@ def solve(case: dict[str, Any], *overrides: str) -> History:
 
 def solve_file(path: Path, *overrides: str) -> History:
     """Runs a case file; nothing is written."""
+    from dem_cli.analyses.solve import solve
     from dem_cli.api import build_model, load_case
-    from dem_cli.solve import run
 
     loaded, seen = load_case(path, overrides), Observer()
-    summary = run.run(loaded.case, build_model(loaded), seen).summary
+    summary = solve(loaded.case, build_model(loaded), seen).summary
     if not seen.samples_seen:
         return History(np.zeros(0), np.zeros((0, 0)), summary)
     times, values = (np.concatenate([getattr(s, name) for s in seen.samples_seen]) for name in ("times", "monitors"))

@@ -61,9 +61,7 @@ def symmetry(short: bool) -> Iterator[Record]:
     """Mirror image; structure, weight and push turned together."""
     yield from compared("mirror image", "mirrored", changes.mirrored, short)
     for degrees in (90.0,) if short else (90.0, 180.0, 1e-3, 30.0, 137.0):
-        yield from compared(
-            "rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: changes.rotated(s, d), short
-        )
+        yield from compared("rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: changes.rotated(s, d), short)
 
 
 UNITS = {"lengths": "length", "densities": "density", "gravity": "gravity"}

@@ -61,16 +61,16 @@ class Keeper:
 
 def push(scene: Scene) -> Answer:
     """Solve a scene; nothing is raised, everything is kept."""
+    from dem_cli.analyses.solve import solve
+    from dem_cli.assembly.validate import warnings as oddities
     from dem_cli.errors import CaseError, DemError
-    from dem_cli.model.validate import warnings as oddities
-    from dem_cli.solve.run import run
 
     keeper = Keeper()
     with warnings.catch_warnings(record=True) as spoken:
         warnings.simplefilter("always")
         try:
             case, model, said = scene.build()
-            summary = run(case, model, keeper).summary
+            summary = solve(case, model, keeper).summary
         except CaseError as error:
             return Answer("refused", refusal=error.problems[0].message)
         except DemError as error:

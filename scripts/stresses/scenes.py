@@ -87,7 +87,7 @@ def from_file(name: str, stem: str, exact: float | tuple[float, float]) -> Scene
 
 def explicit(scene: Scene) -> Scene:
     """The same structure with every block drawn by hand, so that corners can be changed."""
-    from dem_cli.model.assemble import case_blocks
+    from dem_cli.assembly.assemble import case_blocks
 
     if "structure" not in scene.tables:
         return scene

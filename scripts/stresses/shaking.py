@@ -37,11 +37,11 @@ class History:
 
 def shake(scene: Scene) -> tuple[dict[str, Any], History, Any]:
     """Summary, what was observed, and the model."""
-    from dem_cli.solve.run import run
+    from dem_cli.analyses.solve import solve
 
     case, model, _ = scene.build()
     history = History()
-    return run(case, model, history).summary, history, model
+    return solve(case, model, history).summary, history, model
 
 
 def scene(name: str, blocks: list[dict], duration: float, **tables: Any) -> Scene:

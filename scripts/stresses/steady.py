@@ -17,9 +17,9 @@ COMBINED_SAFETY, COMBINED = 0.75, 0.3
 
 def simulation(scene: Scene, kinematics: str, **options: Any) -> Any:
     """As an analysis makes it."""
-    from dem_cli.solve.joints import joint_properties, law_of
-    from dem_cli.solve.run import live_scale
-    from dem_cli.solve.simulation import Simulation
+    from dem_cli.engine.kinematics import live_scale
+    from dem_cli.engine.properties import joint_properties, law_of
+    from dem_cli.engine.simulation import Simulation
 
     case, model, _ = scene.build()
     properties = joint_properties(case, model)
@@ -81,7 +81,7 @@ def settle(sim: Any, load: float) -> bool:
 
 def stretched(factor: float) -> Any:
     """All fictitious masses as for a time step `factor` times as long."""
-    from dem_cli.solve import simulation as engine
+    from dem_cli.engine import simulation as engine
 
     real = engine.fictitious_masses
 
@@ -109,7 +109,7 @@ def time_step(short: bool) -> Iterator[Record]:
 def past_the_limit(short: bool) -> Iterator[Record]:
     """Relaxation with safety 0.5 to 1.6 (the solver's: 0.6): what is called an equilibrium is one, measured again."""
     from dem_cli.errors import SolverError
-    from dem_cli.solve.equilibrium import relax
+    from dem_cli.statics.equilibrium import relax
 
     for scene, load in ((crate(), 0.5), (drums(), 0.05)):
         for kinematics in ("fixed", "large"):
@@ -198,9 +198,9 @@ def closure(kinematics: str, fraction: float, slide: float) -> float:
     fraction  time step over the largest stable one
     slide     speed of the throw in elastic penetrations × frequency
     """
+    from dem_cli.engine.fictitious_masses import fictitious_masses
+    from dem_cli.engine.simulation import compiled_advance
     from dem_cli.kernels import records as slot
-    from dem_cli.solve.masses import fictitious_masses
-    from dem_cli.solve.simulation import compiled_advance
 
     scene = drawn("", [ground(2.0), *(block(f"b{i}", rectangle(0, i, 1, i + 1)) for i in range(3))], 0.6, 0.6)
     sim = simulation(scene.joint(kn=1e9), kinematics)

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.errors import SolverError
 from dem_cli.output import shapes
 from dem_cli.output.record import Frame, Observer, Samples
-from dem_cli.solve import run as solver
 
 ROOT = Path(__file__).resolve().parents[2]
 PLACES = 6  # digits kept
@@ -58,7 +58,7 @@ def run(case: str, *overrides: str) -> Run:
     loaded = api.load_case(ROOT / "cases" / "validation" / f"{case}.toml", overrides)
     model = api.build_model(loaded)
     try:
-        summary = solver.run(loaded.case, model, seen).summary
+        summary = solver.solve(loaded.case, model, seen).summary
     except SolverError as error:
         summary = {"status": str(error)}
     words = [f"dem run cases/validation/{case}.toml", *(f"--set {shlex.quote(text)}" for text in overrides)]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.bench.table import lines_of
 from dem_cli.post import style
-from dem_cli.solve import run as solver
 from thesis7.runs import ROOT, commands
 from thesis7.walls import FACE, Pictures, corners_of
 
@@ -49,7 +49,7 @@ def fall(*overrides: str) -> dict[str, Any]:
     words = [*overrides, *FALL]
     loaded = api.load_case(ROOT / f"cases/{CASE}.toml", words)
     observer, model = Pictures(), api.build_model(loaded)
-    summary = solver.run(loaded.case, model, observer).summary
+    summary = solver.solve(loaded.case, model, observer).summary
     start = corners_of(model, observer.frames[0])
     name = max((i for i, name in enumerate(model.block_ids) if "base" not in name), key=lambda i: np.sum(start[i]))
     far = int(np.argmax(np.sum(start[name], axis=1)))

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.output.record import HistoryRow
-from dem_cli.solve import run as solver
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "tests" / "reference"
@@ -39,7 +39,7 @@ def run(case: str, *overrides: str) -> dict[str, Any]:
     """
     observer = Rows()
     loaded = api.load_case(ROOT / "cases" / f"{case}.toml", [*overrides, "output.frames=0"])
-    summary = solver.run(loaded.case, api.build_model(loaded), observer).summary
+    summary = solver.solve(loaded.case, api.build_model(loaded), observer).summary
     followed = loaded.case.analysis.kind == "pushover" and loaded.case.analysis.follow > 0.0
     stages = ("gravity", "loading", "collapse") if followed else ("gravity", "loading")
     bracket = summary.get("failure_load_bracket")

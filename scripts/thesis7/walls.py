@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
+from dem_cli.analyses import solve as solver
 from dem_cli.bench.table import lines_of, percent
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 from dem_cli.output.shapes import placed_vertices
 from dem_cli.post import style
-from dem_cli.solve import run as solver
 from thesis7.runs import ROOT, Rows, book, commands, run
 
 WALLS = {"21": "thesis_21_block_wall", "110": "thesis_110_block", "231": "thesis_231_block"}
@@ -86,7 +86,7 @@ def stages() -> dict[str, Any]:
     path = f"analysis={{ kind = 'cycle', path = {list(STAGES)}, step = 0.01 }}"
     loaded = api.load_case(ROOT / "cases/validation/wall_21_profile.toml", [path, FACE])
     observer, model = Pictures(), api.build_model(loaded)
-    solver.run(loaded.case, model, observer)
+    solver.solve(loaded.case, model, observer)
     return {
         f"{frame.load:.2f}": corners_of(model, frame)
         for frame in observer.frames if frame.stage == "loading"

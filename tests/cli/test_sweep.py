@@ -140,16 +140,16 @@ def test_a_run_that_fails_is_recorded_with_its_reason(case, tmp_path):
 
 
 def test_a_fault_of_the_program_in_one_run_stops_nobody(case, tmp_path, monkeypatch):
-    import dem_cli.engine.job
+    import dem_cli.analyses.solve
 
-    solve = dem_cli.engine.job.run
+    solve = dem_cli.analyses.solve.solve
 
     def sometimes(case, *rest, **more):
         if case.joints["dry"].friction == 0.4:
             raise ZeroDivisionError("of one run")
         return solve(case, *rest, **more)
 
-    monkeypatch.setattr(dem_cli.engine.job, "run", sometimes)
+    monkeypatch.setattr(dem_cli.analyses.solve, "solve", sometimes)
     assert dem("sweep", case, "-o", tmp_path / "out", "-j", 1)[0] == 1
     rows = table(tmp_path / "out")
     assert [row["status"] for row in rows] == ["ok"] * 3 + ["failed"] * 3

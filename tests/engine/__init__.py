@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
+from dem_cli.analyses import solve as solver
 from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
 from dem_cli.case.schema import Case
-from dem_cli.engine import job as solver
+from dem_cli.engine.kinematics import live_scale
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
@@ -116,7 +117,7 @@ def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6)
         law_of(made.case),
         joint_properties(made.case, made.model, ratio),
         kinematics,
-        live_scale=1.0 if tilting else solver.live_scale(made.model),
+        live_scale=1.0 if tilting else live_scale(made.model),
         tilting=tilting,
     )
 

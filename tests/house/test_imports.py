@@ -36,7 +36,7 @@ ALLOWED: dict[str, set[str] | None] = {
     },
     "verify": {"case", "output.reference", "output.scalars"},
     "sweep": {"api", "case", "kernels.jit", "output"},
-    "report": {"model", "output", "post", "render.solids"},
+    "report": {"model", "output", "post", "render.marks", "render.solids"},
     "render": {"model", "output", "post"},
     "post": {"model", "motion", "output"},
     "analyses": {

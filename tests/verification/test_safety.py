@@ -11,7 +11,7 @@ from engine import Records, block, rectangle, scene, solve, tables
 from oracle.limit_lp import limit_load
 from reference import result
 
-from dem_cli.engine import job as solver
+from dem_cli.analyses import solve as solver
 
 FILES = sorted((CASES / "verification").glob("safety_*.toml")) + sorted(
     (CASES / "verification").glob("least_thickness_*.toml")
