@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import tomli_w
@@ -10,6 +11,7 @@ from pydantic import ValidationError
 
 from dem_cli import __version__
 from dem_cli.case.base import CaseModel
+from dem_cli.case.overrides import plain_value
 from dem_cli.case.schema import Case
 
 HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
@@ -39,6 +41,11 @@ def case_text(case: Case) -> str:
         else:
             data[key] = value
     return HEADER + on_one_line(tomli_w.dumps(data))
+
+
+def text_of_tables(tables: Mapping[str, Any]) -> str:
+    """TOML text of a case given as tables, as a case file would have them. Raises UsageError."""
+    return on_one_line(tomli_w.dumps(plain_value(tables, "case")))
 
 
 def on_one_line(text: str) -> str:
