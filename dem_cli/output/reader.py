@@ -37,7 +37,7 @@ class Results:
     status: str
     kind: str
     series: Series | None  # of a time history
-    file: h5py.File | None = None  # that frames are read from when they are asked for; None: they are in memory
+    source: ExitStack | None = None  # holds open the file that frames are read from; None: they are in memory
 
 
 class Frames(Sequence[Frame]):
@@ -84,7 +84,7 @@ class Frames(Sequence[Frame]):
 def read(folder: Path | str, *, lazy: bool = False) -> Results:
     """The results in `folder`; UsageError where there are none.
 
-    lazy: frames are read when they are asked for, from `Results.file`, which the caller closes.
+    lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -93,12 +93,12 @@ def read(folder: Path | str, *, lazy: bool = False) -> Results:
         raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS})")
     try:
         with ExitStack() as stack:
-            file = stack.enter_context(h5py.File(folder / RESULTS, "r", locking=False))
-            found = _read(file["dem"], read_summary(folder), lazy)
-            if lazy:
-                stack.pop_all()
-                found = replace(found, file=file)
-            return found
+            if not lazy:
+                file = stack.enter_context(h5py.File(folder / RESULTS, "r", locking=False))
+                return _read(file["dem"], read_summary(folder), lazy)
+            stream = stack.enter_context((folder / RESULTS).open("rb"))  # others may open the path as they like
+            file = stack.enter_context(h5py.File(stream, "r"))
+            return replace(_read(file["dem"], read_summary(folder), lazy), source=stack.pop_all())
     except (OSError, KeyError) as error:
         raise UsageError(f"{folder / RESULTS}: not a readable result of dem run ({error})") from None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import weakref
 from collections.abc import Mapping
+from contextlib import ExitStack
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType, TracebackType
@@ -36,9 +37,7 @@ class Result:
         self._results = read(folder, lazy=True)
         self._path = folder.resolve()
         self._closed = False
-        file = self._results.file
-        assert file is not None
-        self._release = weakref.finalize(self, release, file, temporary)
+        self._release = weakref.finalize(self, release, self._results.source or ExitStack(), temporary)
 
     @property
     def path(self) -> Path:
@@ -185,8 +184,8 @@ def monitor_history(results: Results, name: str, told: dict[str, Any]) -> Monito
     return MonitorHistory(results.monitors[name], unit, quantity, absolute, None, results.history["load"])
 
 
-def release(file: Any, folder: Path | None) -> None:
-    """Close a file; remove a folder."""
-    file.close()
+def release(source: ExitStack, folder: Path | None) -> None:
+    """Close what results are read from; remove the folder of those that are not kept."""
+    source.close()
     if folder is not None:
         shutil.rmtree(folder, ignore_errors=True)
