@@ -18,7 +18,7 @@ from dem_cli.pipeline.listener import RunListener
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.model.model import Model
-    from dem_cli.pipeline.execution import Executed, Solve
+    from dem_cli.pipeline.execution import RunOutcome, Solve
 
 
 class TerminalListener(RunListener):
@@ -114,7 +114,7 @@ def execute(
     plot: bool = False,
     solve: Solve | None = None,
     options: BatchOptions | None = None,
-) -> Executed:
+) -> RunOutcome:
     """As pipeline.execution.execute, with words for the terminal and pictures."""
     from dem_cli.pipeline import execution
 

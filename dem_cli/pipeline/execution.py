@@ -34,7 +34,7 @@ class SolverOutcome(Protocol):
 
 ONE_OF_MANY = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
 Solve = Callable[["Case", "Model", "Observer"], SolverOutcome]
-Executed = tuple[dict[str, Any], Path]  # the summary, and the folder with the results
+RunOutcome = tuple[dict[str, Any], Path]  # the summary, and the folder with the results
 
 
 def run_case(
@@ -47,7 +47,7 @@ def run_case(
     recover: bool = True,
     listener: RunListener | None = None,
     interrupts: Interrupts | None = None,
-) -> Executed:
+) -> RunOutcome:
     """Build a case that was read, solve it and write its results, as `execute`. Raises DemError."""
     from dem_cli import api
 
@@ -76,7 +76,7 @@ def execute(
     recover: bool = True,
     listener: RunListener | None = None,
     interrupts: Interrupts | None = None,
-) -> Executed:
+) -> RunOutcome:
     """Solve a built case and write its results; nothing is left in `output` where it fails.
 
     started: time.perf_counter() when the work began. force, recover: as OutputFolder. solve: another solver.

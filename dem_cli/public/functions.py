@@ -22,7 +22,7 @@ from dem_cli.pipeline.listener import RunListener
 from dem_cli.public.result import Result
 
 CaseSource = str | os.PathLike[str] | LoadedCase | Mapping[str, Any]
-Progress = Callable[[str, float, float, float | None], None]
+ProgressFunction = Callable[[str, float, float, float | None], None]
 NO_FILE = Path("case")  # what messages call a case that is given as tables; its records are sought from here
 
 
@@ -50,7 +50,7 @@ def run(
     threads: int | None = None,
     resume: bool = False,
     force: bool = False,
-    progress: Progress | None = None,
+    progress: ProgressFunction | None = None,
 ) -> Result:
     """Solve a case, as `dem run` does, and give its results.
 
@@ -105,7 +105,7 @@ def open(folder: str | os.PathLike[str]) -> Result:
 class ProgressListener(RunListener):
     """Hands progress on to a function."""
 
-    def __init__(self, function: Progress | None):
+    def __init__(self, function: ProgressFunction | None):
         self.function = function
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:

@@ -51,12 +51,12 @@ class Result:
 
     @property
     def status(self) -> str:
-        """ "ok", or why the answer is none: "not converged", "interrupted", "running" of a killed run, ..."""
+        """How the run ended: "ok", "not converged", "interrupted", "running" of one that was killed, ..."""
         return self._results.status
 
     @property
     def kind(self) -> str:
-        """Of the analysis: "pushover", "time-history", ..."""
+        """Kind of the analysis: "pushover", "time-history", ..."""
         return self._results.kind
 
     @property
@@ -103,7 +103,7 @@ class Result:
         """What each [[monitor]] of the case saw, by its name."""
         names, asked = list(self._results.monitors), parse_toml(self._path, self.case).get("monitor", ())
         tables = asked if len(asked) == len(names) else [{}] * len(names)
-        return Monitored({name: monitor_history(self._results, name, t) for name, t in zip(names, tables)})
+        return MonitorTable({name: monitor_history(self._results, name, t) for name, t in zip(names, tables)})
 
     @property
     def frames(self) -> Frames:
@@ -163,7 +163,7 @@ class Result:
         return f"<Result of {self.summary.get('title') or self._path.name!r}: {self.kind}, {self.status}{load}>"
 
 
-class Monitored(dict[str, MonitorHistory]):
+class MonitorTable(dict[str, MonitorHistory]):
     """Monitors by name; a name that is not there is answered with those that are."""
 
     def __missing__(self, name: str) -> MonitorHistory:
