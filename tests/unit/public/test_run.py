@@ -203,3 +203,29 @@ def test_interrupted(keep, tmp_path, temporary):
             dem_cli.run(COLUMN, {"analysis.follow": 0.5}, out, progress=told)
         assert dem_cli.open(tmp_path / "out").status == "ok"
         assert dem_cli.open(tmp_path / "out.interrupted").status == "interrupted"
+
+
+SHAKEN = COLUMN | {
+    "motion": {"kind": "pulse", "amplitude": 2.0, "frequency": 2.0},
+    "damping": {"restitution": "housner"},
+    "analysis": {"kind": "time-history", "duration": 0.3, "repeats": 4},
+}
+
+
+def impatient(stage, load, displacement, fraction):
+    """Ctrl-C, once two runs of four are done."""
+    if stage.startswith(("repeats 2", "repeats 3")):
+        os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_many_runs_go_on_where_they_were_stopped(tmp_path):
+    with dem_cli.run(SHAKEN, threads=2) as result:
+        straight = result.summary["repeats"]
+        assert (result.path / "repeats.csv").is_file()
+    assert straight["runs"] == 4
+    with pytest.raises(KeyboardInterrupt):
+        dem_cli.run(SHAKEN, out=tmp_path / "out", threads=1, progress=impatient)
+    assert list(tmp_path.glob(".out.dem-runs"))
+    with dem_cli.run(SHAKEN, out=tmp_path / "out", threads=1, resume=True) as result:
+        assert result.summary["repeats"] | {"seconds": 0.0} == straight | {"seconds": 0.0}
+    assert not list(tmp_path.glob(".out.dem-runs"))
