@@ -168,9 +168,7 @@ def syntax_message(message: str) -> str:
     for start, words in SYNTAX.items():
         if message.startswith(start):
             return words
-    message = re.sub(
-        r"\((?:'[^']*',? ?)+\)", lambda keys: ".".join(re.findall("'([^']*)'", keys[0])), message
-    )
+    message = re.sub(r"\((?:'[^']*',? ?)+\)", lambda keys: ".".join(re.findall("'([^']*)'", keys[0])), message)
     return message[:1].lower() + message[1:]
 
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli import __version__
-from dem_cli.calibrate.answer import OK, Found
-from dem_cli.cli import console
+from dem_cli.calibrate.answer import OK, TrialAnswer
 from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
 from dem_cli.pipeline.batches import usable_cores
@@ -20,7 +20,7 @@ from dem_cli.pipeline.interrupts import Interrupts
 
 if TYPE_CHECKING:
     from dem_cli.calibrate.table import NamedShape
-    from dem_cli.calibrate.trials import Trial
+    from dem_cli.calibrate.trials import CalibrationTrial
     from dem_cli.case.reader import LoadedCase
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.record import Frame, HistoryRow
@@ -87,7 +87,7 @@ def check(loaded: LoadedCase) -> None:
         raise CaseError([problem], loaded.render)
 
 
-def check_trials(loaded: LoadedCase, plan: Sequence[Trial]) -> None:
+def check_trials(loaded: LoadedCase, plan: Sequence[CalibrationTrial]) -> None:
     """Builds all models: mistakes in them, and in the place that was watched, are said before anything is solved."""
     from dem_cli import api
     from dem_cli.case.reader import LoadedCase as Loaded
@@ -102,7 +102,7 @@ def check_trials(loaded: LoadedCase, plan: Sequence[Trial]) -> None:
         loaded.warnings += [line for line in built.warnings if line not in loaded.warnings]
 
 
-def blamed(problem: CaseProblem, loaded: LoadedCase, trial: Trial) -> CaseProblem:
+def blamed(problem: CaseProblem, loaded: LoadedCase, trial: CalibrationTrial) -> CaseProblem:
     """A problem of a trial where it stands in the file."""
     path, calibration = problem.path, loaded.case.calibration
     if path[:2] == ("monitor", len(loaded.case.monitor)):
@@ -113,11 +113,11 @@ def blamed(problem: CaseProblem, loaded: LoadedCase, trial: Trial) -> CaseProble
     return problem
 
 
-def solve_all(plan: Sequence[Trial], jobs: int, quiet: bool) -> list[Found]:
+def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[TrialAnswer]:
     """All trials."""
     from dem_cli.case.writer import case_text
 
-    found: dict[int, Found] = {}
+    found: dict[int, TrialAnswer] = {}
     texts = [case_text(trial.case) for trial in plan]
     with console.Progress(quiet) as bar:
         bar.update(f"{len(plan)} runs, {jobs} side by side", 0.0, 0.0, 0.0)
@@ -143,11 +143,11 @@ class Last:
         pass
 
 
-def solved(text: str) -> Found:
+def solved(text: str) -> TrialAnswer:
     """One trial, up to failure: its case as text, so that it can go to another process."""
     from dem_cli import api
+    from dem_cli.analyses.solve import solve
     from dem_cli.case.reader import LoadedCase, Source, parse_toml, validate
-    from dem_cli.solve.run import run
 
     source = Source(Path(CASE), text)
     loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
@@ -156,10 +156,10 @@ def solved(text: str) -> Found:
     observer = Last()
     try:
         model = api.build_model(loaded)
-        summary = run(case.model_copy(update={"analysis": only_failure}), model, observer).summary
+        summary = solve(case.model_copy(update={"analysis": only_failure}), model, observer).summary
     except DemError as error:  # as text: it may not survive the way between processes
-        return Found(f"not converged: {error}")
-    return Found(
+        return TrialAnswer(f"not converged: {error}")
+    return TrialAnswer(
         summary["status"],
         summary.get("failure_load"),
         tuple(summary.get("failure_load_bracket") or (None, None)),
@@ -181,7 +181,7 @@ def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resoluti
     return min(held, default=None)
 
 
-def summarised(loaded: LoadedCase, plan: Sequence[Trial], found: Sequence[Found]) -> dict[str, Any]:
+def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]) -> dict[str, Any]:
     """What summary.json holds. Raises SolverError where no profile has a failure load."""
     from dem_cli.calibrate.answer import closest, rows
     from dem_cli.output.summary import ordered
@@ -216,15 +216,15 @@ def summarised(loaded: LoadedCase, plan: Sequence[Trial], found: Sequence[Found]
 
 def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
     """Vertices of a shape, or of one that is drawn: places as shares of the joint, rises as shares of the aperture."""
-    from dem_cli.contact.layout import Layout, draw
+    from dem_cli.contact.layout import PointLayout, draw
     from dem_cli.laws.profile import Profile
 
     profile = Profile(**shape.model_dump(exclude={"name"}), aperture=1.0)
-    places, rises, _ = draw(Layout(seed=seed, **profile.ranges)._replace(keep="aperture"), (0,), 1.0)
+    places, rises, _ = draw(PointLayout(seed=seed, **profile.ranges)._replace(keep="aperture"), (0,), 1.0)
     return {"places": places.tolist(), "rises": rises.tolist()}
 
 
-def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Trial], quiet: bool) -> None:
+def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[CalibrationTrial], quiet: bool) -> None:
     """Summary, table, the case with the closest profile, and the picture."""
     from dem_cli.calibrate.answer import as_csv
     from dem_cli.case.writer import case_text

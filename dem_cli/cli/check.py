@@ -34,9 +34,9 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
 
         plan = planned(loaded)
         found.append(("sweep", f"{len(plan.runs):,} runs of `dem sweep` over {', '.join(plan.keys)}"))
-    if find_spec("dem_cli.solve.estimate"):
+    if find_spec("dem_cli.analyses.estimate"):
         with loaded.located():
-            found += import_module("dem_cli.solve.estimate").describe(loaded.case, model)
+            found += import_module("dem_cli.analyses.estimate").describe(loaded.case, model)
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli import console
 from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.words import console
 from dem_cli.errors import DemError
 from dem_cli.pipeline.batches import BatchOptions, check
 from dem_cli.pipeline.listener import RunListener

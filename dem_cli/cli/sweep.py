@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli import __version__
-from dem_cli.cli import console
-from dem_cli.cli.count import Count
 from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.words import console
+from dem_cli.cli.words.count import Count
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.pipeline.interrupts import Interrupts
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.sweep.plan import Plan
-    from dem_cli.sweep.run import Job, Spread, Summary, Sweep
+    from dem_cli.sweep.run import PlannedSweep, Spread, Summary, SweepJob
 
 TABLE_EVERY = 15.0  # s between two states of sweep.csv while runs go on
 LISTED = 8  # failed runs that are shown
@@ -95,7 +95,7 @@ def planned(loaded: LoadedCase) -> Plan:
     from dem_cli.sweep.plan import plan_of
 
     if loaded.case.sweep is None:
-        message = f"{loaded.path}: has no [sweep], such as \"joints.dry.friction\" = [0.5, 0.6, 0.7]"
+        message = f'{loaded.path}: has no [sweep], such as "joints.dry.friction" = [0.5, 0.6, 0.7]'
         raise CaseError([CaseProblem((), message)])
     with loaded.located():
         return plan_of(loaded.case.sweep, loaded.case.seed)
@@ -111,7 +111,7 @@ def sharded(text: str | None) -> tuple[int, int]:
     return int(match[1]) - 1, int(match[2])
 
 
-def print_plan(sweep: Sweep) -> None:
+def print_plan(sweep: PlannedSweep) -> None:
     """The table without answers."""
     import csv
     import sys
@@ -127,7 +127,7 @@ def print_plan(sweep: Sweep) -> None:
 
 
 def spread(
-    scheduler: str | None, processes: int | None, folder: Path, jobs: Sequence[Job]
+    scheduler: str | None, processes: int | None, folder: Path, jobs: Sequence[SweepJob]
 ) -> Iterator[tuple[int, Any]]:
     """Do jobs on a cluster, or in processes of this machine."""
     from dem_cli.pipeline.jobs import do_job
@@ -148,7 +148,7 @@ def spread(
 class Running:
     """A sweep under way: what is known of its runs, and what the user is told meanwhile."""
 
-    def __init__(self, loaded: LoadedCase, sweep: Sweep, folder: Path, part: tuple[int, int], quiet: bool):
+    def __init__(self, loaded: LoadedCase, sweep: PlannedSweep, folder: Path, part: tuple[int, int], quiet: bool):
         self.loaded, self.sweep, self.folder, self.quiet = loaded, sweep, folder, quiet
         self.part = part
         self.known: dict[str, Summary] = {}
@@ -187,7 +187,7 @@ class Running:
         """Different runs of the whole sweep."""
         return len({job.id for job in self.sweep.jobs if job is not None})
 
-    def work(self, mine: Sweep, do: Spread, wanted: set[str]) -> None:
+    def work(self, mine: PlannedSweep, do: Spread, wanted: set[str]) -> None:
         """Do what is left, with a word on progress and a table of what is done so far."""
         from dem_cli.sweep.run import carried_out, solved
         from dem_cli.sweep.table import columns, rows, write_csv

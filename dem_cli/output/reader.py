@@ -16,7 +16,7 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
 from dem_cli.output.record import FRAME_UNITS, STAGES, ContactRecord, Energy, Frame
-from dem_cli.output.series import Series, read_series
+from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FORMAT, FRAME_ARRAYS, FRAME_SCALARS, RESULTS, ROW_SCALARS
 
 Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
@@ -36,7 +36,7 @@ class Results:
     provenance: dict[str, str]
     status: str
     kind: str
-    series: Series | None  # of a time history
+    series: HistorySeries | None  # of a time history
     source: ExitStack | None = None  # holds open the file that frames are read from; None: they are in memory
 
 
@@ -47,9 +47,7 @@ class Frames(Sequence[Frame]):
 
     def __init__(self, columns: dict[str, Stored], contacts: dict[str, Stored]):
         self._columns, self._contacts = columns, contacts
-        self._starts = np.concatenate(
-            ([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64))))
-        )
+        self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
 
     def __len__(self) -> int:
         return len(self._starts) - 1
@@ -117,9 +115,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
     if dem.attrs["format"] != FORMAT:
-        raise UsageError(
-            f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}"
-        )
+        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}")
     history = dem["history"]
     n_rows = len(history["stage"]) if "stage" in history else 0
     columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}

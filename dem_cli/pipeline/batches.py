@@ -11,10 +11,10 @@ from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.journal import Journal
     from dem_cli.pipeline.listener import RunListener
-    from dem_cli.solve.batch import Batch
 
 
 class BatchOptions(NamedTuple):
@@ -51,8 +51,8 @@ def batch_of(
     if not many(case):
         yield None
         return
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.output.journal import Journal
-    from dem_cli.solve.batch import Batch
     from dem_cli.sweep.identity import facts
 
     with Journal(folder.path.parent, folder.final.name, facts(case, text), options.resume) as journal:

@@ -19,11 +19,11 @@ from dem_cli.pipeline.recorder import Recorder
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.case.schema import Case
+    from dem_cli.ensembles.batch import Batch
     from dem_cli.model.model import Model
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.record import Observer
     from dem_cli.output.store import ResultWriter
-    from dem_cli.solve.batch import Batch
 
 
 class SolverOutcome(Protocol):
@@ -125,9 +125,9 @@ def one_of_many(loaded: LoadedCase) -> None:
 
 def load_solver(batch: Batch | None) -> Solve:
     """The solver, imported only when a case is ready to be solved."""
-    from dem_cli.solve.run import run
+    from dem_cli.analyses.solve import solve
 
-    return run if batch is None else partial(run, batch=batch)
+    return solve if batch is None else partial(solve, batch=batch)
 
 
 def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from dem_cli.errors import DemError, OutputError
 
 if TYPE_CHECKING:
     from dem_cli.case.overrides import Override
-    from dem_cli.sweep.run import Job, Summary
+    from dem_cli.sweep.run import Summary, SweepJob
 
 
 def solve_one(
@@ -49,7 +49,7 @@ def _solved(
         return run_case(loaded, output, started, force=kept, options=options, recover=not kept)[0]
 
 
-def do_job(job: Job) -> Summary:
+def do_job(job: SweepJob) -> Summary:
     """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run.
 
     Raises OutputError: a full disk is no fault of the run, which is done when there is room again.

@@ -7,10 +7,10 @@ import json
 import time
 
 import pytest
+from dem_cli.cli.words import console
 from synthetic import wall_model, wall_summary
 from synthetic.runs import CASE, load, solver
 
-from dem_cli.cli import console
 from dem_cli.cli.run import execute
 from dem_cli.output.folder import OutputFolder
 from dem_cli.output.reader import read
@@ -141,7 +141,7 @@ def test_monitor_names_differ(tmp_path):
 
 def test_plain_progress_lines(monkeypatch):
     clock = iter((0.0, 1.0, 11.0, 12.0, 25.0))
-    monkeypatch.setattr("dem_cli.cli.console.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("dem_cli.cli.words.console.time.monotonic", lambda: next(clock))
     stream = io.StringIO()
     bar = console.Progress(stream=stream)
     for fraction in (0.1, 0.25, 0.3, None):
@@ -158,7 +158,7 @@ class Terminal(io.StringIO):
 
 
 def test_a_bar_on_a_terminal(monkeypatch):
-    monkeypatch.setattr("dem_cli.cli.console._FIRST_BAR", 0.0)
+    monkeypatch.setattr("dem_cli.cli.words.console._FIRST_BAR", 0.0)
     stream = Terminal()
     with console.Progress(stream=stream) as bar:
         bar.update("loading", 0.3125, 1.25e-5, 0.5)

@@ -9,12 +9,12 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from dem_cli.cli.words import console
 from synthetic import wall_model
 from synthetic.runs import load
 from synthetic.shaking import COLLAPSE, shaken, shaking_frames, shaking_rows, shaking_summary
 
 from dem_cli.api import load_case
-from dem_cli.cli import console
 from dem_cli.cli.main import main
 from dem_cli.cli.run import execute
 from dem_cli.errors import SolverError

@@ -24,8 +24,17 @@ ALLOWED: dict[str, set[str] | None] = {
     "output": {"model"},
     "motion": {"case.base", "case.schema"},
     "solve": {
-        "motion", "limit", "contact", "model", "geometry", "laws", "kernels", "output.record", "case.base",
-        "case.schema", "case.vary",
+        "motion",
+        "limit",
+        "contact",
+        "model",
+        "geometry",
+        "laws",
+        "kernels",
+        "output.record",
+        "case.base",
+        "case.schema",
+        "case.vary",
     },
     "calibrate": {"laws", "case.base", "case.schema"},
     "limit": {"contact", "model", "geometry", "laws", "kernels", "output.record", "case.schema"},
@@ -64,7 +73,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 
 def dotted(path: Path) -> str:
-    """dem_cli/solve/gravity.py -> solve.gravity; the package's own __init__ keeps that name."""
+    """dem_cli/analyses/gravity.py -> solve.gravity; the package's own __init__ keeps that name."""
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
     return name.removesuffix(".__init__")
 
