@@ -51,12 +51,12 @@ class Site(NamedTuple):
     level: np.ndarray  # blocks that stand upright, (n_blocks,) bool
 
 
-class Result(NamedTuple):
+class Imperfect(NamedTuple):
     blocks: list[Block]  # with errors, in the same order
     doubts: list[CaseProblem]  # what looks like a slip
 
 
-def imperfect(case: Case, model: Model, blocks: Sequence[Block], numbers: Mapping[str, int]) -> Result:
+def imperfect(case: Case, model: Model, blocks: Sequence[Block], numbers: Mapping[str, int]) -> Imperfect:
     """The blocks with all errors of the case. Raises CaseError: errors that leave nothing of a block, and the like.
 
     model    of the blocks as drawn: their order, corners and parts
@@ -80,7 +80,7 @@ def imperfect(case: Case, model: Model, blocks: Sequence[Block], numbers: Mappin
     if left:
         corners = _misshapen(site, corners, _sum(site, left))
     parts = iter(np.split(corners, model.part_starts[1:-1]))
-    return Result([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
+    return Imperfect([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
 
 
 def _site(case: Case, model: Model, blocks: Sequence[Block], numbers: Mapping[str, int]) -> Site:
