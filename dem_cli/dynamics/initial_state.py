@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.assembly.assemble import assembly
 from dem_cli.contact.detect import find_joints, world_corners
 from dem_cli.contact.start import TOUCH
 from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.geometry.rotation import turned_as_one
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -21,7 +21,7 @@ INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
 
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
-    names, rest = assembly(case).block_map, sim.largest_overlap()
+    names, rest = sim.model.numbers, sim.largest_overlap()
     for table in case.initial:
         chosen = np.array([names[name] for name in table.names])
         if table.tilt:
@@ -48,7 +48,7 @@ def _find_faces(sim: Simulation) -> None:
 
 def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
-    model, names = sim.model, assembly(case).block_map
+    model, names = sim.model, sim.model.numbers
     faces = find_joints(model, sim.bodies.corners, 0.0, sim.inner)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - INSIDE * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
@@ -78,7 +78,6 @@ def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
 
 def _turn(sim: Simulation, chosen: np.ndarray, angle: float, about: np.ndarray) -> None:
     """Turns the chosen blocks as one."""
-    cosine, sine = np.cos(angle), np.sin(angle)
     arms = sim.bodies.positions[chosen] - about
-    sim.bodies.positions[chosen] = about + arms @ np.array([[cosine, sine], [-sine, cosine]])
+    sim.bodies.positions[chosen] = about + turned_as_one(arms, angle)
     sim.bodies.orientations[chosen] += angle

@@ -30,7 +30,7 @@ from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Bodies, Contacts, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge, widths
+from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
@@ -95,7 +95,7 @@ class Simulation:
         live[model.fixed] = 0.0
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
-        self.widths = widths(model)
+        self.widths = model.shapes.widths
         arms = np.clip(self.widths, SLIVER * self.shape.radii, self.shape.radii)  # small moments turn a needle over
         force_scales[:, d:] /= arms[:, None]
         self.loads = Loads(
@@ -354,7 +354,7 @@ class Simulation:
     def contact_record(self) -> ContactRecord:
         """All contact points now."""
         joints, contacts = self.joints, self.measured()
-        owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+        owner = joints.owners
         friction = np.sqrt((contacts.shear**2).sum(axis=1))
         limit = self.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
         state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
