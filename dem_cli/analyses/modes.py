@@ -117,7 +117,7 @@ def touching_points(sim: Simulation) -> np.ndarray:
 def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
     """Whether a point that is not pressed carries tension when it is pulled a little, (n_points,) bool."""
     joints, contacts, memory = sim.joints, sim.measured(), sim.contacts.memory.copy()
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     still = (0.0,) * (sim.model.dimension - 1)
     holds = np.zeros(len(joints.kn), bool)
     for i in points:

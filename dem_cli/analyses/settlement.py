@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.assembly.assemble import assembly
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
@@ -56,7 +55,7 @@ def stiffness_ratio(model: Model) -> float:
 
 def _motions(case: Case, sim: Simulation) -> np.ndarray:
     """Whole movement of every block, zero but for the settling supports, (n_blocks, n_dof) [m, rad]."""
-    names = assembly(case).block_map
+    names = sim.model.numbers
     motion = np.zeros_like(sim.bodies.velocities)
     for table in case.settlement:
         motion[names[table.block]] += [*table.displacement, table.rotation]

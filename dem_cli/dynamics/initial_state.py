@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.assembly.assemble import assembly
 from dem_cli.contact.start import TOUCH
 from dem_cli.engine import measures
 from dem_cli.errors import CaseError, CaseProblem
@@ -21,7 +20,7 @@ INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
 
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
-    names, rest = assembly(case).block_map, measures.largest_overlap(sim)
+    names, rest = sim.model.numbers, measures.largest_overlap(sim)
     for table in case.initial:
         chosen = np.array([names[name] for name in table.names])
         if table.tilt:
@@ -40,7 +39,7 @@ def tilt(sim: Simulation, chosen: np.ndarray, angle: float) -> None:
 
 def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
-    model, names = sim.model, assembly(case).block_map
+    model, names = sim.model, sim.model.numbers
     faces = sim.tracking.faces_within(sim.bodies, 0.0)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - INSIDE * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()

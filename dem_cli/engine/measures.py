@@ -101,7 +101,7 @@ def closure(sim: Simulation) -> float:
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
     joints, contacts = sim.joints, sim.measured()
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
     state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))

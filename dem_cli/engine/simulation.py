@@ -17,6 +17,7 @@ from dem_cli.contact.start import TOUCH, bodies_at_rest
 from dem_cli.engine.clearances import WIDEST, Play, gap_play, open_gaps, play
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.tracking import JointTracking
+from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
@@ -26,7 +27,7 @@ from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge, widths
+from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
@@ -104,7 +105,7 @@ class Simulation:
         live[model.fixed] = 0.0
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
-        self.widths = widths(model)
+        self.widths = model.shapes.widths
         arms = np.clip(self.widths, SLIVER * self.shape.radii, self.shape.radii)  # small moments turn a needle over
         force_scales[:, d:] /= arms[:, None]
         self.loads = Loads(
@@ -295,9 +296,8 @@ class Simulation:
 
     def turn(self, blocks: np.ndarray, angle: float, about: np.ndarray) -> None:
         """Turns blocks as one about a point (d,), counter-clockwise [rad]; 2D."""
-        cosine, sine = np.cos(angle), np.sin(angle)
         arms = self.bodies.positions[blocks] - about
-        self.bodies.positions[blocks] = about + arms @ np.array([[cosine, sine], [-sine, cosine]])
+        self.bodies.positions[blocks] = about + turned_as_one(arms, angle)
         self.bodies.orientations[blocks] += angle
 
     def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:

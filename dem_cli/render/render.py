@@ -22,7 +22,6 @@ from dem_cli.errors import DemError, OutputError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
-from dem_cli.output.shapes import vertex_blocks
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import collapse, measures, style, view
 from dem_cli.render import movie, paint
@@ -153,7 +152,7 @@ def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[
 def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
     """Corners of the blocks in space, as far as they are in the picture [m], (n, 3)."""
     low, high = view.window(model, places, _AROUND)
-    half = 0.5 * model.thickness[vertex_blocks(model)]
+    half = 0.5 * model.thickness[model.vertex_blocks]
     inside = [np.clip(corners, low, high) for corners in places]
     return np.concatenate([lifted(corners, side * half) for corners in inside for side in (-1.0, 1.0)])
 
