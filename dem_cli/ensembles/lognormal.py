@@ -1,4 +1,6 @@
 """A lognormal distribution of capacities that are known within bounds only, by maximum likelihood.
+from dem_cli.engine.settings import DEFAULT, StatisticsSettings
+from dem_cli.engine.settings import DEFAULT, StatisticsSettings
 
 A capacity lies between two intensities: the structure stood at the one and fell at the other. Below the first
 intensity (0, x] and above the last (x, ∞) it is censored. The same estimate as scipy.stats.lognorm.fit with
@@ -14,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import log_ndtr
 
-NARROWEST = 1e-4  # least dispersion: all bounds overlap
+from dem_cli.engine.settings import DEFAULT, StatisticsSettings
 
 
 class Lognormal(NamedTuple):
@@ -38,7 +40,7 @@ class Band(NamedTuple):
     resamples: int
 
 
-def fit(lower: np.ndarray, upper: np.ndarray) -> Lognormal | None:
+def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statistics.narrowest) -> Lognormal | None:
     """The most likely distribution of capacities between lower (≥ 0) and upper (≤ ∞) bounds, (n,).
 
     None where the bounds leave it open: nothing fell, or all fell at once.
@@ -50,7 +52,7 @@ def fit(lower: np.ndarray, upper: np.ndarray) -> Lognormal | None:
         return None
     known = np.where(np.isfinite(a), a, b)
     middles = np.where(inside, 0.5 * (known + np.where(inside, b, 0.0)), known)
-    least, most = math.log(NARROWEST), math.log(10.0)
+    least, most = math.log(narrowest), math.log(10.0)
     start = [float(middles.mean()), float(np.clip(np.log(middles.std() + 1e-3), least, most))]
 
     def badness(at: np.ndarray) -> float:
@@ -72,7 +74,7 @@ def _log_shares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def bootstrap(
-    lower: np.ndarray, upper: np.ndarray, at: np.ndarray, confidence: float, seed: int, resamples: int
+    lower: np.ndarray, upper: np.ndarray, at: np.ndarray, confidence: float, seed: int, statistics: StatisticsSettings
 ) -> Band | None:
     """Confidence of `fit` by resampling records: lower, upper (n_records, n_variants), at (m,) intensities.
 
@@ -81,12 +83,12 @@ def bootstrap(
     n = len(lower)
     generator = np.random.default_rng(seed)
     fits = []
-    for _ in range(resamples):
+    for _ in range(statistics.resamples):
         pick = generator.integers(0, n, n)
-        found = fit(lower[pick].ravel(), upper[pick].ravel())
+        found = fit(lower[pick].ravel(), upper[pick].ravel(), statistics.narrowest)
         if found is not None:
             fits.append(found)
-    if len(fits) <= 0.5 * resamples:
+    if len(fits) <= 0.5 * statistics.resamples:
         return None
     tails = [50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence)]
     low, high = np.percentile([found.share(at) for found in fits], tails, axis=0)
