@@ -1,6 +1,4 @@
 """A lognormal distribution of capacities that are known within bounds only, by maximum likelihood.
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
 
 A capacity lies between two intensities: the structure stood at the one and fell at the other. Below the first
 intensity (0, x] and above the last (x, ∞) it is censored. The same estimate as scipy.stats.lognorm.fit with

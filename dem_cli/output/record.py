@@ -116,7 +116,7 @@ def distinct(names: Iterable[str]) -> list[str]:
 
 
 class Observer:
-    """Observer of a run: who a solver reports to; all return at once and never change the state. This one does nothing."""
+    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state."""
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""
