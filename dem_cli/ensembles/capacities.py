@@ -61,7 +61,11 @@ def distribution(
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
     at = _range(found, levels, statistics.points)
-    band = bootstrap(lower, upper, at, confidence, seed, statistics) if len(lower) > 1 else None
+    band = (
+        bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
+        if len(lower) > 1
+        else None
+    )
     curve = {"intensity": at, "share": found.share(at)}
     sure = None
     if band is not None:

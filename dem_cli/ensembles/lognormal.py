@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import log_ndtr
 
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
+from dem_cli.engine.settings import DEFAULT
 
 
 class Lognormal(NamedTuple):
@@ -72,7 +72,13 @@ def _log_shares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def bootstrap(
-    lower: np.ndarray, upper: np.ndarray, at: np.ndarray, confidence: float, seed: int, statistics: StatisticsSettings
+    lower: np.ndarray,
+    upper: np.ndarray,
+    at: np.ndarray,
+    confidence: float,
+    seed: int,
+    resamples: int,
+    narrowest: float = DEFAULT.statistics.narrowest,
 ) -> Band | None:
     """Confidence of `fit` by resampling records: lower, upper (n_records, n_variants), at (m,) intensities.
 
@@ -81,12 +87,12 @@ def bootstrap(
     n = len(lower)
     generator = np.random.default_rng(seed)
     fits = []
-    for _ in range(statistics.resamples):
+    for _ in range(resamples):
         pick = generator.integers(0, n, n)
-        found = fit(lower[pick].ravel(), upper[pick].ravel(), statistics.narrowest)
+        found = fit(lower[pick].ravel(), upper[pick].ravel(), narrowest)
         if found is not None:
             fits.append(found)
-    if len(fits) <= 0.5 * statistics.resamples:
+    if len(fits) <= 0.5 * resamples:
         return None
     tails = [50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence)]
     low, high = np.percentile([found.share(at) for found in fits], tails, axis=0)

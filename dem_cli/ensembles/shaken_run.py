@@ -17,6 +17,7 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Watch
+from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.ensembles.variants import Variant
     from dem_cli.motion.motion import Motion
-    from dem_cli.output.record import Observer
 
 
 class ShakenRunResult(NamedTuple):

@@ -13,16 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.clearances import (
-
-CLEARANCE = DEFAULT.clearance
     beyond,
     gap_play,
     joint_angles,
     open_gaps,
     play,
 )
+from dem_cli.engine.settings import DEFAULT
+
+CLEARANCE = DEFAULT.clearance
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
 statics = importlib.import_module("thesis7.statics")
