@@ -1,0 +1,45 @@
+"""Study of pulses: a column, an arch on buttresses and an arch of voussoirs under pulses of the base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from studies.pulses import buttresses, column, earthquakes, pictures, tables, voussoirs
+from studies.study import Draw, Study
+
+
+class PulseStudy(Study):
+    """One section per structure and question."""
+
+    machine = True
+
+    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
+        return tables.values(table)
+
+    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
+        return {
+            "column": ("", pictures.overturning),
+            "arch": ("vault", pictures.histories),
+            "points": ("vault", pictures.points),
+        }
+
+
+STUDY = PulseStudy(
+    "pulses",
+    "Published pulse tests of a column, an arch on buttresses and an arch of voussoirs",
+    {
+        "column_static": column.static,
+        "rigid": column.rigid,
+        "column": column.main_domain,
+        "others": column.others,
+        "fine": column.fine,
+        "vault": voussoirs.study,
+        "stiff_static": lambda: column.static(voussoirs.CASE, kn=1e12, ks=1e12),
+        "free": voussoirs.free,
+        "edges": voussoirs.edges,
+        "steps": voussoirs.steps,
+        "buttresses": buttresses.study,
+        "spread": earthquakes.study,
+    },
+)

@@ -1,0 +1,40 @@
+"""Study of rocking: blocks that rock, slide and bounce, compared with exact motions (tests/oracle)."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from typing import Any
+
+from studies.rocking import parts, pictures, tables
+from studies.study import Draw, Study
+
+
+class RockingStudy(Study):
+    """One section per comparison."""
+
+    machine = True
+
+    def measure(self, section: str, options: argparse.Namespace) -> list[Any]:
+        rows = []
+        for row in self.sections[section]():
+            rows.append(row)
+            if section != "pairs":
+                print(f"{section}: {row}", flush=True)
+        return rows
+
+    def said(self, section: str, found: Any) -> str:
+        return f"{section}: {len(found)} rows"
+
+    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
+        return tables.values(table)
+
+    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
+        return {
+            "free": ("free", pictures.free_rocking),
+            "pulses": ("bounds", pictures.overturning),
+            "pairs": ("pairs", pictures.ensembles),
+        }
+
+
+STUDY = RockingStudy("rocking", "Blocks that rock, slide and bounce, against exact motions", parts.PARTS)
