@@ -1,4 +1,4 @@
-"""What is kept of a verified case, and of all of them: data/verification.json."""
+"""What is kept of a verified case, and of all of them: verification.json."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ def fake_python(project: Path, name: str, *, new_enough: bool) -> None:
     script.write_text(
         "#!/usr/bin/env bash\n"
         'case "$*" in\n'
-        f'  *version_info*) exit {answer} ;;\n'
-        '  *ensurepip*) exit 1 ;;\n'
+        f"  *version_info*) exit {answer} ;;\n"
+        "  *ensurepip*) exit 1 ;;\n"
         '  --version) echo "Python 3.9.2" ;;\n'
         "esac\n"
     )
@@ -72,7 +72,7 @@ def test_no_python_at_all(project):
     assert "needs Python 3.11 or newer" in done.stderr
 
 
-@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/loads", ".ci/run"])
+@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", ".ci/run"])
 def test_executable(script):
     assert os.access(ROOT / script, os.X_OK)
 

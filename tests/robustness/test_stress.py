@@ -1,33 +1,28 @@
-"""The short form of scripts/stress, and its harness: a wrong answer is seen, and nothing else is called wrong."""
+"""The short form of scripts/study stress, and its harness: a wrong answer is seen, and nothing else is called wrong."""
 
 from __future__ import annotations
 
-import importlib
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from oracle.limit_lp import frictionless_heads, limit_load
+from studies import storage, study
+from studies.stress import changes, proportions, records, scenes, tables
+from studies.stress.records import PushoverAnswer as Answer
+from studies.stress.records import judge
+from studies.stress.study import AXES, STUDY, StressStudy
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-stress, records, scenes, changes, proportions, steady, table = (
-    importlib.import_module(name)
-    for name in (
-        "stress", "stresses.records", "stresses.scenes", "stresses.changes", "stresses.proportions",
-        "stresses.steady", "stresses.table",
-    )
-)  # fmt: skip
-Answer, judge = records.Answer, records.judge
 
-@pytest.mark.parametrize("axis", stress.AXES)
+
+@pytest.mark.parametrize("axis", AXES)
 def test_short_form(axis):
     """Nothing wrong without a word, and most of it held."""
-    found = list(stress.AXES[axis](True))
-    assert [table.line(r) for r in found if r.verdict == records.WRONG] == []
+    found = list(AXES[axis](True))
+    assert [tables.line(r) for r in found if r.verdict == records.WRONG] == []
     assert sum(r.verdict == records.HELD for r in found) >= 0.3 * len(found)
 
 
@@ -54,12 +49,13 @@ def test_exit_code(monkeypatch, capsys, tmp_path):
         """All is well."""
         yield records.figure("well", "one", "1", 0.0, 1.0)
 
-    monkeypatch.setattr(stress, "AXES", {"made": axis, "well": harmless})
+    monkeypatch.setattr(storage, "DATA", tmp_path)
+    monkeypatch.setattr(study, "DOCS", tmp_path)
+    stress = StressStudy("stress", "made up", {"made": axis, "well": harmless})
     assert stress.main(["well", "--json", str(tmp_path / "r.json")]) == 0
     assert json.loads((tmp_path / "r.json").read_text())[0]["how"] == "exactly zero"
     assert stress.main([]) == 1
     assert "WRONG    made up 1, two" in capsys.readouterr().out
-    monkeypatch.setattr(stress, "DOCUMENT", tmp_path / "stress.md")
     assert stress.main(["--write"]) == 1
     text = (tmp_path / "stress.md").read_text()
     assert "**WRONG** +2e+02 %" in text
@@ -69,7 +65,7 @@ def test_exit_code(monkeypatch, capsys, tmp_path):
 @pytest.mark.parametrize("words", [["nonsense"], ["mass", "--write"], ["--short", "--write"]])
 def test_wrong_arguments(words, capsys):
     with pytest.raises(SystemExit) as stopped:
-        stress.main(words)
+        STUDY.main(words)
     assert stopped.value.code == 2
     assert "error" in capsys.readouterr().err
 
@@ -150,9 +146,7 @@ def oracle(scene: object, heads: bool = True) -> float:
     owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
     polygons = np.split(model.vertices + model.centroids[owner], model.part_starts[1:-1])
     mu = next(iter(case.joints.values())).friction
-    return limit_load(
-        polygons, model.fixed, mu if heads else frictionless_heads(mu), weights=model.masses
-    ).multiplier
+    return limit_load(polygons, model.fixed, mu if heads else frictionless_heads(mu), weights=model.masses).multiplier
 
 
 @pytest.mark.parametrize("name", [n for n in CLOSED if n != "wall 1.0"])
@@ -204,5 +198,5 @@ def test_rotation_turns_structure_and_loads():
 def test_document_is_written():
     """docs/stress.md has a section for every axis and is not the one of another day's axes."""
     text = (ROOT / "docs" / "stress.md").read_text(encoding="utf-8")
-    for axis, check in stress.AXES.items():
+    for axis, check in AXES.items():
         assert (check.__doc__ or "").strip() in text, axis

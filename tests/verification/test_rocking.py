@@ -5,23 +5,14 @@ Joints give by about 1e-6 of the height under the weight of a block.
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-from pathlib import Path
-
 import numpy as np
 import pytest
 from casefiles import CASES
 from oracle.housner import Block, rock
 from oracle.two_blocks import Rectangle
 from oracle.two_blocks import rock as rock_two
+from studies.rocking import ensembles, free, pulses, scene, sliding
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-
-scene, free, pulses, ensembles, others = (
-    import_module(f"rockingtable.{name}") for name in ("scene", "free", "pulses", "ensembles", "others")
-)
 CASE_FILES = CASES / "verification"
 
 
@@ -98,10 +89,10 @@ def test_ensemble():
     assert all(row["dem"] == pytest.approx(row["exact"], rel=0.1) for row in calm)
 
 
-@pytest.mark.parametrize("name", others.STACKS)
+@pytest.mark.parametrize("name", sliding.STACKS)
 def test_two_blocks_until_the_first_closure(name):
     """Angles within 0.1 % of the largest, the time within 0.2 % and one sample."""
-    found = others.stack(name, output={"rate": 5000.0})
+    found = sliding.stack(name, output={"rate": 5000.0})
     assert found["angles"] < 1e-3
     assert abs(found["closure"]) < 2e-3 + 1.0 / (5000.0 * found["time"])
 

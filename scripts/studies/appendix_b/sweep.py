@@ -97,5 +97,3 @@ def top_block(left: float, right: float, top: float, name: str) -> dict[str, Any
     """A load on the wall, of 0.08 m depth."""
     return {"id": name, "material": "load", "thickness": 0.08,
             "vertices": [[left, 0.595], [right, 0.595], [right, top], [left, top]]}  # fmt: skip
-
-

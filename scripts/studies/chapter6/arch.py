@@ -24,8 +24,14 @@ def sizes(ring: float, radius: float) -> tuple[str, str]:
     return f"structure.0.ring={ring:g}", f"structure.0.inner_radius={radius:g}"
 
 
-SAME_LOAD = {(0.06, 0.20): "", (0.08, 0.20): "", (0.10, 0.183): "", (0.11, 0.16): "", (0.12, 0.129): "",
-             (0.13, 0.089): ""}  # ring and inner radius [m] of arches that fail at 0.325
+SAME_LOAD = {
+    (0.06, 0.20): "",
+    (0.08, 0.20): "",
+    (0.10, 0.183): "",
+    (0.11, 0.16): "",
+    (0.12, 0.129): "",
+    (0.13, 0.089): "",
+}  # ring and inner radius [m] of arches that fail at 0.325
 VARIANTS: dict[str, dict[str, tuple[str, ...]]] = {
     "what the thesis does not say of the motion": {
         "cosine: phase 90°": ("motion.phase_deg=90",),

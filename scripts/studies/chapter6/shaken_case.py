@@ -67,5 +67,3 @@ def extremes(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndar
     ends = np.flatnonzero(values[:-1] * values[1:] < 0.0) + 1
     at = [int(first + np.abs(values[first:last]).argmax()) for first, last in zip(ends[:-1], ends[1:])]
     return times[at], np.abs(values[at])
-
-

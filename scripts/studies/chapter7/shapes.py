@@ -53,7 +53,10 @@ class ShapeRow(NamedTuple):
 
 def measure() -> dict[str, Any]:
     """Table 7-2, the planar column, and shape E in detail."""
-    runs = {name: without_curve(run("validation/column_14_profile", *overrides(row)), 1) for name, row in rows_of_book().items()}
+    runs = {
+        name: without_curve(run("validation/column_14_profile", *overrides(row)), 1)
+        for name, row in rows_of_book().items()
+    }
     return {
         "runs": runs,
         "plane": without_curve(run("verification/column_14", "analysis.follow=0.0")),

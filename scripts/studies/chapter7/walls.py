@@ -49,9 +49,7 @@ def stages() -> dict[str, Any]:
     """Corners of all blocks of the small wall at the loads of STAGES [m], {load: [[[x, y], ...] of every block]}."""
     path = f"analysis={{ kind = 'cycle', path = {list(STAGES)}, step = 0.01 }}"
     model, _, seen = solve(from_file(CASES / "validation" / "wall_21_profile.toml", path, FACE))
-    return {
-        f"{frame.load:.2f}": corners_of(model, frame, DRAWN) for frame in seen.frames if frame.stage == "loading"
-    }
+    return {f"{frame.load:.2f}": corners_of(model, frame, DRAWN) for frame in seen.frames if frame.stage == "loading"}
 
 
 def values(found: dict[str, Any]) -> dict[str, Any]:
@@ -63,7 +61,8 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
         plane = values["planar" if "planar" in values else "lambda_dem_mu0.60"]
         thesis = float(np.mean(values["nc" if "nc" in values else "nc_failure"]))
         onset = values["nc_onset"] if "nc_onset" in values else values["nc_onset_ratio"] * np.max(values["nc"])
-        rows.append((f"{name} blocks", f"{values['lambda_exp']:g}", f"{plane:g}", bracket(ours["plane"]["bracket"]), f"{thesis:g}",
+        rows.append((f"{name} blocks", f"{values['lambda_exp']:g}", f"{plane:g}",
+                     bracket(ours["plane"]["bracket"]), f"{thesis:g}",
                      *_compared(ours["joint"], thesis), *_compared(ours["face"], thesis)))  # fmt: skip
         onsets.append((f"{name} blocks", f"{onset:.2f}", _first(ours["joint"]), _first(ours["face"])))
     face, deep = found["walls"]["21"]["face"], found["deep"]["face"]

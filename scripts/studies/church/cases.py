@@ -19,7 +19,7 @@ SOURCE = "PhD thesis (MIT, about 2000), Appendix A"
 
 HEAD = """\
 # {what}
-# Written by `scripts/study church --cases`; docs/church.md compares and says how far the answer depends on what is inferred.
+# Written by `scripts/study church --cases`; docs/church.md compares and says how far it depends on what is inferred.
 # Source: {source}, data book thesis_church. Its figures, with all lengths, are lost.
 """
 INFERRED = """\

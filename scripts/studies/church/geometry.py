@@ -94,9 +94,7 @@ def mirrored(part: Polygon, about: float) -> Polygon:
 
 def area(parts: list[Polygon]) -> float:
     """Of all parts [m2]."""
-    return sum(
-        0.5 * abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(p, [*p[1:], p[0]], strict=True))) for p in parts
-    )
+    return sum(0.5 * abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(p, [*p[1:], p[0]], strict=True))) for p in parts)
 
 
 class Pile:

@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.laws.registry import LAWS
 from dem_cli.laws.softening import FRICTION_SOFTENING
-from studies.laws.driven_point import LawPage, Panel, PlotLine, pulled, slid, three_paths, through
+from studies.laws.driven_point import LawPage, Panel, Graph, pulled, slid, three_paths, through
 from studies.laws.peperino import (
     KG_PER_CM2,
     LOWEST,
@@ -30,12 +30,12 @@ def coulomb(page: LawPage) -> list[Panel]:
     gap, normal, _ = pulled(page, -20e-6, 15e-6, -20e-6)
     corner = page.along(through((0, 0, 0), (-10e-6, 0, 0), (-10e-6, 80e-6, 0), (-10e-6, 80e-6, 80e-6)))
     return [
-        Panel("Pressed and opened", GAP, NORMAL, [PlotLine(gap * 1e6, normal * 1e-3)]),
+        Panel("Pressed and opened", GAP, NORMAL, [Graph(gap * 1e6, normal * 1e-3)]),
         three_paths(page, 1e5, 80e-6, "Slid under 100 kPa"),
         Panel("Slid round a corner", "slide [µm]", "shear stress [kPa]", [
-            PlotLine(corner.path[400:, 1:].sum(axis=1) * 1e6, -corner.shear[400:, 0] * 1e-3, "along the first way"),
-            PlotLine(corner.path[400:, 1:].sum(axis=1) * 1e6, -corner.shear[400:, 1] * 1e-3, "along the second", "red"),
-            PlotLine(corner.path[400:, 1:].sum(axis=1) * 1e6, np.linalg.norm(corner.shear[400:], axis=1) * 1e-3, "size",
+            Graph(corner.path[400:, 1:].sum(axis=1) * 1e6, -corner.shear[400:, 0] * 1e-3, "along the first way"),
+            Graph(corner.path[400:, 1:].sum(axis=1) * 1e6, -corner.shear[400:, 1] * 1e-3, "along the second", "red"),
+            Graph(corner.path[400:, 1:].sum(axis=1) * 1e6, np.linalg.norm(corner.shear[400:], axis=1) * 1e-3, "size",
                  "grey", "--"),
         ]),
     ]  # fmt: skip
@@ -44,13 +44,13 @@ def coulomb(page: LawPage) -> list[Panel]:
 def softening(page: LawPage) -> list[Panel]:
     one, force, _ = slid(page, 1e5, 1.5e-3)
     both, back, done = slid(page, 1e5, 0.4e-3, -0.4e-3, 0.4e-3, n=2000)
-    thesis = PlotLine([0, 0.9, 1.0, 1.5], [0.6, 0.6, 0.48, 0.48], "μ of the slip", "grey", "-", 5.0)
+    thesis = Graph([0, 0.9, 1.0, 1.5], [0.6, 0.6, 0.48, 0.48], "μ of the slip", "grey", "-", 5.0)
     return [
         Panel("Slid under 100 kPa", "slide [mm]", RATIO_AXIS,
-              [thesis, PlotLine(one * 1e3, force * 1e-5, "answer", "blue")], legend="lower left"),
-        Panel("To and fro", "slide [mm]", RATIO_AXIS, [PlotLine(both * 1e3, back * 1e-5, arrows=(0.1, 0.5, 0.9))]),
+              [thesis, Graph(one * 1e3, force * 1e-5, "answer", "blue")], legend="lower left"),
+        Panel("To and fro", "slide [mm]", RATIO_AXIS, [Graph(both * 1e3, back * 1e-5, arrows=(0.1, 0.5, 0.9))]),
         Panel("The same over the slip", "path of the slip [mm]", RATIO_AXIS,
-              [thesis, PlotLine(done.slip[1999:] * 1e3, np.abs(back) * 1e-5, "answer, its size")], legend="lower left"),
+              [thesis, Graph(done.slip[1999:] * 1e3, np.abs(back) * 1e-5, "answer, its size")], legend="lower left"),
     ]  # fmt: skip
 
 
@@ -59,15 +59,15 @@ def mohr_coulomb(page: LawPage) -> list[Panel]:
     lines = []
     for stress, colour in ((3e5, "ink"), (1e5, "blue"), (0.0, "red")):
         slide, shear, _ = slid(page, stress, 200e-6, -50e-6, keys={"dilation_deg": 0.0})
-        lines.append(PlotLine(slide * 1e6, shear * 1e-3, f"{stress * 1e-3:g} kPa", colour))
+        lines.append(Graph(slide * 1e6, shear * 1e-3, f"{stress * 1e-3:g} kPa", colour))
     slide, _, done = slid(page, 1e5, 0.6e-3, -0.6e-3, n=2000)
     tangent = math.tan(math.radians(page.keys["dilation_deg"]))
     opening = tangent * np.minimum(np.abs(done.memory[1999:, 2]), page.keys["dilation_slip"])
     return [
-        Panel("Pulled, then pressed and pulled", GAP, NORMAL, [PlotLine(gap * 1e6, normal * 1e-3, arrows=(0.06, 0.45))]),
+        Panel("Pulled, then pressed and pulled", GAP, NORMAL, [Graph(gap * 1e6, normal * 1e-3, arrows=(0.06, 0.45))]),
         Panel("Slid and reversed, ψ = 0", "slide [µm]", "shear stress [kPa]", lines),
         Panel("Opening by dilation", "slide [mm]", "opening [µm]",
-              [PlotLine(slide * 1e3, opening * 1e6, arrows=(0.15, 0.4, 0.6, 0.8))]),
+              [Graph(slide * 1e3, opening * 1e6, arrows=(0.15, 0.4, 0.6, 0.8))]),
     ]  # fmt: skip
 
 
@@ -77,16 +77,16 @@ def barton_panels(page: LawPage) -> list[Panel]:
     lines = []
     for at, colour in ((4e4, "ink"), (2e4, "blue"), (5e3, "red")):
         slide, shear, _ = slid(page, at, 20e-6, -20e-6)
-        lines.append(PlotLine(slide * 1e6, shear / at, f"{at * 1e-3:g} kPa", colour))
+        lines.append(Graph(slide * 1e6, shear / at, f"{at * 1e-3:g} kPa", colour))
     wide = np.geomspace(1.0, 1e9, 300)
     return [
         Panel("Friction and stress", "normal stress [kPa]", "tan φ [-]", [
-            PlotLine(stresses * 1e-3, [barton(s) for s in stresses], "law"),
-            PlotLine(stress * KG_PER_CM2 * 1e-3, mean, "thesis Table 5-1", "red", points=True, scatter=scatter),
+            Graph(stresses * 1e-3, [barton(s) for s in stresses], "law"),
+            Graph(stress * KG_PER_CM2 * 1e-3, mean, "thesis Table 5-1", "red", points=True, scatter=scatter),
         ], log=True),
         Panel("Slid and reversed", "slide [µm]", RATIO_AXIS, lines),
         Panel("JRC = 15, JCS = 100 MPa, φr = 30°", "normal stress [kPa]", "φ [deg]", [
-            PlotLine(wide * 1e-3, [math.degrees(math.atan(barton(s, **ROUGH))) for s in wide]),
+            Graph(wide * 1e-3, [math.degrees(math.atan(barton(s, **ROUGH))) for s in wide]),
         ], log=True),
     ]  # fmt: skip
 
@@ -96,7 +96,7 @@ def degrading(page: LawPage) -> list[Panel]:
     back, both, _ = slid(page, 1e4, 0.05, -0.05, 0.05, -0.05, n=1000)
     slips = np.linspace(0.0, 0.5, 300)
     curves = [
-        PlotLine(
+        Graph(
             100 * slips,
             r + (1 - r) * np.exp(-slips / scale_for(r)),
             f"r = {r:g}, S0 = {1e3 * scale_for(r):.0f} mm",
@@ -105,12 +105,12 @@ def degrading(page: LawPage) -> list[Panel]:
         for r, colour in ((0.0, "grey"), (LOWEST, "blue"), (0.67, "green"))
     ]
     return [
-        Panel("Slid one way", "slide [cm]", RATIO_AXIS, [PlotLine(one * 1e2, force * 1e-4)]),
-        Panel("To and fro", "slide [cm]", RATIO_AXIS, [PlotLine(back * 1e2, both * 1e-4, arrows=(0.1, 0.4, 0.6, 0.9))]),
+        Panel("Slid one way", "slide [cm]", RATIO_AXIS, [Graph(one * 1e2, force * 1e-4)]),
+        Panel("To and fro", "slide [cm]", RATIO_AXIS, [Graph(back * 1e2, both * 1e-4, arrows=(0.1, 0.4, 0.6, 0.9))]),
         Panel("Curves through the tests", "slip [cm]", "friction / first friction [-]", [
             *curves,
-            PlotLine([100 * SLID], [RATIO], "mean of 5 pairs", "red", points=True),
-            PlotLine([100 * SLID], [LOWEST], "lowest pair", "orange", points=True),
+            Graph([100 * SLID], [RATIO], "mean of 5 pairs", "red", points=True),
+            Graph([100 * SLID], [LOWEST], "lowest pair", "orange", points=True),
         ]),
     ]  # fmt: skip
 
@@ -124,19 +124,19 @@ def rate(page: LawPage) -> list[Panel]:
         found.append(shear[-1] * 1e-5)
         if speed / vc in (0.1, 1.0, 4.0):
             lines.append(
-                PlotLine(slide * 1e6, shear * 1e-5, f"{speed:g} m/s", {0.1: "ink", 1.0: "blue", 4.0: "red"}[speed / vc])
+                Graph(slide * 1e6, shear * 1e-5, f"{speed:g} m/s", {0.1: "ink", 1.0: "blue", 4.0: "red"}[speed / vc])
             )
     v = np.linspace(0.0, 4.2 * vc, 200)
     cycle = np.cumsum(step * vc * 3 * np.sin(np.linspace(0.0, 4 * np.pi, 2000)))
     swing = page.along(np.concatenate([[(-10e-6, 0.0)], np.column_stack([np.full(2000, -10e-6), cycle])]), step=step)
     return [
         Panel("Friction and speed", "speed [m/s]", "tan φ [-]", [
-            PlotLine(v, dynamic + (static - dynamic) * np.exp(-v / vc), "law"),
-            PlotLine(speeds, found, "steady slip, driven", "red", points=True),
+            Graph(v, dynamic + (static - dynamic) * np.exp(-v / vc), "law"),
+            Graph(speeds, found, "steady slip, driven", "red", points=True),
         ]),
         Panel("Slid at constant speed", "slide [µm]", RATIO_AXIS, lines, legend="lower right"),
         Panel("Swung, at most 0.03 m/s", "slide [mm]", RATIO_AXIS,
-              [PlotLine(swing.path[1:, 1] * 1e3, -swing.shear[1:, 0] * 1e-5, arrows=(0.2, 0.4, 0.7, 0.9))]),
+              [Graph(swing.path[1:, 1] * 1e3, -swing.shear[1:, 0] * 1e-5, arrows=(0.2, 0.4, 0.7, 0.9))]),
     ]  # fmt: skip
 
 
@@ -147,10 +147,10 @@ def crushing(page: LawPage) -> list[Panel]:
     fc, mu = page.keys["compression"] * 1e-6, page.keys["friction"]
     return [
         Panel("Pressed, unloaded, pressed further", "gap [mm]", "normal stress [MPa]",
-              [PlotLine(gap * 1e3, normal * 1e-6, arrows=(0.05, 0.18, 0.29, 0.42, 0.79, 0.92))]),
+              [Graph(gap * 1e3, normal * 1e-6, arrows=(0.05, 0.18, 0.29, 0.42, 0.79, 0.92))]),
         Panel("Slid while pressed harder", "normal stress [MPa]", "shear stress [MPa]", [
-            PlotLine([0, fc, fc], [0, mu * fc, 0], "limit", "grey", "-", 5.0),
-            PlotLine(done.normal * 1e-6, -done.shear[:, 0] * 1e-6, "answer", arrows=(0.15, 0.5, 0.75)),
+            Graph([0, fc, fc], [0, mu * fc, 0], "limit", "grey", "-", 5.0),
+            Graph(done.normal * 1e-6, -done.shear[:, 0] * 1e-6, "answer", arrows=(0.15, 0.5, 0.75)),
         ], legend="upper left"),
     ]  # fmt: skip
 
@@ -161,10 +161,10 @@ def elastic(page: LawPage) -> list[Panel]:
     slide, shear, _ = slid(page, 1e5, 80e-6, -80e-6)
     return [
         Panel("Pressed and pulled", GAP, NORMAL, [
-            PlotLine(later * 1e6, pressed * 1e-3, "points that meet later", "grey", "-", 5.0),
-            PlotLine(gap * 1e6, normal * 1e-3, "joined at the start"),
+            Graph(later * 1e6, pressed * 1e-3, "points that meet later", "grey", "-", 5.0),
+            Graph(gap * 1e6, normal * 1e-3, "joined at the start"),
         ]),
-        Panel("Slid and reversed", "slide [µm]", "shear stress [kPa]", [PlotLine(slide * 1e6, shear * 1e-3)]),
+        Panel("Slid and reversed", "slide [µm]", "shear stress [kPa]", [Graph(slide * 1e6, shear * 1e-3)]),
     ]  # fmt: skip
 
 
@@ -175,7 +175,7 @@ def fracture(page: LawPage) -> list[Panel]:
     lines = []
     for stress, colour in ((3e5, "ink"), (1e5, "blue"), (0.0, "red")):
         slide, shear, _ = slid(page, stress, 0.7 * far, -0.7 * far, n=3000)
-        lines.append(PlotLine(slide * 1e3, shear * 1e-3, f"{stress * 1e-3:g} kPa", colour, arrows=(0.3,)))
+        lines.append(Graph(slide * 1e3, shear * 1e-3, f"{stress * 1e-3:g} kPa", colour, arrows=(0.3,)))
     opened = np.linspace(0.0, 250e-6, 6)
     strengths = []
     for width in opened:
@@ -186,13 +186,13 @@ def fracture(page: LawPage) -> list[Panel]:
     w = np.linspace(0.0, 250e-6, 200)
     return [
         Panel("Pulled and unloaded", GAP, "tension [kPa]", [
-            PlotLine(gap * 1e6, -normal * 1e-3, "with unloading", "grey", "-", 4.0, (0.25, 0.5, 0.72)),
-            PlotLine(one * 1e6, -straight * 1e-3, "one way"),
+            Graph(gap * 1e6, -normal * 1e-3, "with unloading", "grey", "-", 4.0, (0.25, 0.5, 0.72)),
+            Graph(one * 1e6, -straight * 1e-3, "one way"),
         ]),
         Panel("Slid and reversed", "slide [mm]", "shear stress [kPa]", lines),
         Panel("Cohesion left after opening", "largest gap [µm]", "cohesion [kPa]", [
-            PlotLine(w * 1e6, c * np.exp(-ft / energy * w) * 1e-3, "c exp(−ft w / G_I)"),
-            PlotLine(opened * 1e6, strengths, "opened, closed, slid", "red", points=True),
+            Graph(w * 1e6, c * np.exp(-ft / energy * w) * 1e-3, "c exp(−ft w / G_I)"),
+            Graph(opened * 1e6, strengths, "opened, closed, slid", "red", points=True),
         ]),
     ]  # fmt: skip
 

@@ -12,7 +12,7 @@ from dem_cli.laws.law import Law
 from dem_cli.laws.registry import LAWS
 
 
-class PlotLine(NamedTuple):
+class Graph(NamedTuple):
     """A line, or points with their scatter."""
 
     x: Any
@@ -32,7 +32,7 @@ class Panel(NamedTuple):
     title: str
     x: str
     y: str
-    lines: Sequence[PlotLine]
+    lines: Sequence[Graph]
     log: bool = False
     legend: str = "best"
 
@@ -89,7 +89,7 @@ def three_paths(page: LawPage, stress: float, far: float, title: str, millimetre
         ((0.5 * far, 0.5 * far - 0.7 * back(page, stress), 0.7 * far), "unloaded", "red", "--", 1.8, ()),
     ):
         slide, shear, _ = slid(page, stress, *slides)
-        lines.append(PlotLine(slide * length, shear * 1e-3, label, colour, dash, width, arrows))
+        lines.append(Graph(slide * length, shear * 1e-3, label, colour, dash, width, arrows))
     return Panel(title, f"slide [{unit}]", "shear stress [kPa]", lines, legend="lower right")
 
 

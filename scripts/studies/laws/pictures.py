@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dem_cli.post import style
-from studies.laws.driven_point import LawPage, PlotLine
+from studies.laws.driven_point import LawPage, Graph
 
 COLOURS = {"blue": style.THRUST, "red": style.STAGE_COLOURS["collapse"], "green": style.LIMIT, "ink": style.INK,
            "orange": style.STATE_COLOURS["sliding"], "grey": style.GREY}  # fmt: skip
@@ -30,7 +30,7 @@ def draw(page: LawPage, file: Path) -> None:
                 ax.legend(fontsize=8, loc=panel.legend)
 
 
-def plot(ax, line: PlotLine) -> None:
+def plot(ax, line: Graph) -> None:
     """One line with arrows along it, or points with their scatter."""
     colour = COLOURS[line.colour]
     if line.points:

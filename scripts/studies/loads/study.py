@@ -55,5 +55,7 @@ class LoadStudy(Study):
 
 
 STUDY = LoadStudy(
-    "loads", "Failure loads by limit analysis and by DEM", {name_of(file): file for file in sorted(pushovers(), key=name_of)}
+    "loads",
+    "Failure loads by limit analysis and by DEM",
+    {name_of(file): file for file in sorted(pushovers(), key=name_of)},
 )

@@ -73,5 +73,3 @@ def number_or_status(way: MethodLoad | None) -> str:
     if way is None:
         return "–"
     return number(way.load) if way.status == "ok" else way.status.split(":")[0]
-
-

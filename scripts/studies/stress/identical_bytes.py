@@ -27,7 +27,16 @@ def differences(stem: str) -> list[str]:
 
 def run(stem: str, folder: Path, seed: str) -> dict[str, Any]:
     """Every dataset as bytes and every figure of the summary but its times."""
-    command = [sys.executable, "-m", "dem_cli", "run", str(CASES / "verification" / f"{stem}.toml"), "-q", "-o", str(folder)]
+    command = [
+        sys.executable,
+        "-m",
+        "dem_cli",
+        "run",
+        str(CASES / "verification" / f"{stem}.toml"),
+        "-q",
+        "-o",
+        str(folder),
+    ]
     environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
     subprocess.run(command, env=environment, check=True, capture_output=True)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))

@@ -62,9 +62,7 @@ def symmetry(short: bool) -> Iterator[StressRecord]:
     """Mirror image; structure, weight and push turned together."""
     yield from compared("mirror image", "mirrored", changes.mirrored, short)
     for degrees in (90.0,) if short else (90.0, 180.0, 1e-3, 30.0, 137.0):
-        yield from compared(
-            "rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: changes.rotated(s, d), short
-        )
+        yield from compared("rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: changes.rotated(s, d), short)
 
 
 UNITS = {"lengths": "length", "densities": "density", "gravity": "gravity"}
@@ -113,7 +111,9 @@ def far(short: bool) -> Iterator[StressRecord]:
                 yield far_record(alone, base, value, blocks, kinematics)
 
 
-def far_record(alone: StressScene, base: PushoverAnswer, value: str, blocks: list[dict], kinematics: str) -> StressRecord:
+def far_record(
+    alone: StressScene, base: PushoverAnswer, value: str, blocks: list[dict], kinematics: str
+) -> StressRecord:
     """Failure load and every frame of the structure itself, beside the far block."""
     material, joint = (dict(next(iter(alone.tables[key].values()))) for key in ("materials", "joints"))
     tables = {

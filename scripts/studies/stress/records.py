@@ -93,7 +93,13 @@ def judge(answer: PushoverAnswer, exact: tuple[float, float], within: float = WI
 
 
 def load_record(
-    axis: str, scene: StressScene, value: str, *, variant: str = "", base: PushoverAnswer | None = None, within: float = WITHIN
+    axis: str,
+    scene: StressScene,
+    value: str,
+    *,
+    variant: str = "",
+    base: PushoverAnswer | None = None,
+    within: float = WITHIN,
 ) -> StressRecord:
     """A stressed pushover against the exact load and, where `base` is given, against the unstressed answer."""
     answer = push(scene)

@@ -123,7 +123,9 @@ def rocking_block(width: float, height: float = 1.0, friction: float = 1.0) -> S
     return drawn("rocking block", blocks, width / height, friction)
 
 
-def stack(widths: Sequence[float], heights: Sequence[float], densities: Sequence[float], friction: float) -> StressScene:
+def stack(
+    widths: Sequence[float], heights: Sequence[float], densities: Sequence[float], friction: float
+) -> StressScene:
     """Blocks on top of each other, centred, each of its own density: slides at μ, or the part above a joint turns."""
     middle, level, blocks, rows = 0.5 * max(widths), 0.0, [ground(2.0 * max(widths))], []
     for i, (b, h, density) in enumerate(zip(widths, heights, densities, strict=True)):
