@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.laws.registry import LAWS
 from dem_cli.laws.softening import FRICTION_SOFTENING
-from studies.laws.driven_point import LawPage, Panel, Graph, pulled, slid, three_paths, through
+from studies.laws.driven_point import Graph, LawPage, Panel, pulled, slid, three_paths, through
 from studies.laws.peperino import (
     KG_PER_CM2,
     LOWEST,

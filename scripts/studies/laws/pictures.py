@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dem_cli.post import style
-from studies.laws.driven_point import LawPage, Graph
+from studies.laws.driven_point import Graph, LawPage
 
 COLOURS = {"blue": style.THRUST, "red": style.STAGE_COLOURS["collapse"], "green": style.LIMIT, "ink": style.INK,
            "orange": style.STATE_COLOURS["sliding"], "grey": style.GREY}  # fmt: skip
