@@ -15,7 +15,7 @@ from functools import cache
 from typing import Any
 
 from studies.places import DOCS, ROOT
-from studies.study import Study
+from studies.study import StudyRunner
 
 FOLDER = DOCS / "gallery"
 LARGEST = {".png": 200_000, ".gif": 600_000}  # bytes
@@ -40,7 +40,7 @@ def run(command: str) -> None:
     subprocess.run([sys.executable, "-m", "dem_cli", *words], cwd=ROOT, check=True)
 
 
-class GalleryStudy(Study):
+class GalleryStudy(StudyRunner):
     """One section per picture, which its commands write."""
 
     parts, solves = "PICTURE", False

@@ -18,7 +18,7 @@ from dem_cli.motion.synthetic import suite, target_of
 from dem_cli.motion.table import ArtificialTable
 from dem_cli.post.spectra import Suite, draw_motions, draw_spectra
 from studies.places import DOCS
-from studies.study import Study
+from studies.study import StudyRunner
 from studies.template import table as markdown
 
 PAGE = DOCS / "motion.md"
@@ -63,7 +63,7 @@ def spectrum_errors() -> str:
     return markdown(("points per period, at least", "SD", "SV", "SA"), rows) + "\n"
 
 
-class MotionStudy(Study):
+class MotionStudy(StudyRunner):
     """Two sections, each a table of docs/motion.md between its marks."""
 
     solves = False

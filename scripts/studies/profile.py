@@ -12,7 +12,7 @@ from dem_cli.contact.layout import Layout, draw
 from dem_cli.laws.profile import Profile
 from dem_cli.post import style
 from studies.places import DOCS
-from studies.study import Study
+from studies.study import StudyRunner
 
 LENGTH, APERTURE = 0.04, 1e-4  # m: the blocks of the thesis
 PRESSED = (1e-3, 1e-1)  # of the aperture, on one side: how far the weight presses stiff and soft joints together
@@ -77,7 +77,7 @@ def _draw_shape(axis: Any, places: np.ndarray, rises: np.ndarray) -> None:
     axis.grid(False)
 
 
-class ProfileStudy(Study):
+class ProfileStudy(StudyRunner):
     """A picture; nothing is kept."""
 
     solves = False

@@ -18,7 +18,7 @@ from studies.template import filled
 Draw = Callable[[Any, Path], None]
 
 
-class Study:
+class StudyRunner:
     """One study: sections that are measured, and a page and pictures that are made from what is kept of them alone."""
 
     parts = "SECTION"  # what sections are called in the help
@@ -114,7 +114,7 @@ class Study:
         return int(bool(problems))
 
 
-class SectionedStudy(Study):
+class SectionedStudy(StudyRunner):
     """A study whose sections are modules: measure() -> JSON, values(JSON) for SECTION.md.j2, PICTURES."""
 
     def __init__(self, name: str, about: str, sections: Sequence[ModuleType], final: Sequence[str] = ("ok",)) -> None:

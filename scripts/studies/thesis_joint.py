@@ -15,7 +15,7 @@ from oracle.microrotation import Rule
 from oracle.microrotation_walls import Load, Patience, structures, sweep
 
 from studies import storage
-from studies.study import Study
+from studies.study import StudyRunner
 
 VISIBLE = 1e-4  # m: a step of the load in which the watched block moves by more is told
 OF_STRUCTURE = ("aperture", "friction", "stiffness", "start", "step")
@@ -61,7 +61,7 @@ def keep(run: dict[str, Any]) -> None:
     storage.write("thesis_joint", table)
 
 
-class ThesisJointStudy(Study):
+class ThesisJointStudy(StudyRunner):
     """One run of one structure."""
 
     def arguments(self, parser: argparse.ArgumentParser) -> None:

@@ -7,7 +7,7 @@ import pytest
 from casefiles import CASES
 from oracle.base_motion import pulse
 from oracle.newmark_slider import Slope, slide
-from studies.rocking import scene, sliding
+from studies.rocking import single_block, sliding
 
 DAMPING = {"contact_fraction": 0.35}
 
@@ -23,7 +23,7 @@ def test_newmarks_slider(name):
 def test_case_of_sliding():
     exact = slide(Slope(0.2), pulse(9.0, 1.0), 2.0).final
     assert exact == pytest.approx(-0.38063, abs=1e-5)
-    found = scene.solve_file(CASES / "verification" / "sliding_pulse.toml")
+    found = single_block.solve_file(CASES / "verification" / "sliding_pulse.toml")
     assert found.values[-1, 0] == pytest.approx(exact, rel=0.005)
 
 
@@ -39,7 +39,7 @@ def test_bounce_without_dashpot():
 
 
 def test_case_of_the_bouncing_block():
-    found = scene.solve_file(CASES / "verification" / "bouncing_block.toml")
+    found = single_block.solve_file(CASES / "verification" / "bouncing_block.toml")
     times, sizes = found.extremes()
     up = np.array([found.at(t) > 0.0 for t in times])
     assert times[up][0] == pytest.approx(0.20292, rel=1e-3)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from studies.appendix_b import failure_loads, inferred
+from studies.appendix_b import failure_loads, sensitivity
 from studies.study import SectionedStudy
 
-STUDY = SectionedStudy("appendix_b", "Thesis Appendix B, walls with top load", (failure_loads, inferred))
+STUDY = SectionedStudy("appendix_b", "Thesis Appendix B, walls with top load", (failure_loads, sensitivity))

@@ -11,6 +11,7 @@ from typing import Any
 from dem_cli.output.reader import read
 from dem_cli.output.shapes import rest_vertices
 from studies.places import CASES, ROOT
+from studies.polygons import rectangle
 from studies.solution import bracket_of, corners_of, from_tables, solve
 
 CASE = CASES / "validation" / "appendix_b.toml"
@@ -96,4 +97,4 @@ def changed(bricks: str, condition: str, changes: dict[str, Any]) -> dict[str, A
 def top_block(left: float, right: float, top: float, name: str) -> dict[str, Any]:
     """A load on the wall, of 0.08 m depth."""
     return {"id": name, "material": "load", "thickness": 0.08,
-            "vertices": [[left, 0.595], [right, 0.595], [right, top], [left, top]]}  # fmt: skip
+            "vertices": rectangle(left, 0.595, right, top)}  # fmt: skip

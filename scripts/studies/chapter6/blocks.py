@@ -13,6 +13,7 @@ from dem_cli.bench.draw import COLOURS, MARKS
 from dem_cli.bench.table import percent
 from dem_cli.post import style
 from studies.chapter6.shaken_case import extremes, run
+from studies.polygons import rectangle
 from studies.storage import rounded
 from studies.template import commands, table
 
@@ -41,7 +42,7 @@ def _housner() -> dict[str, dict[str, Any]]:
 def _ratios(aspect: float, fraction: float, height: float = HEIGHT) -> dict[str, Any]:
     """Energy after over before each impact. aspect: h/b."""
     half, alpha = 0.5 * height / aspect, math.atan(1.0 / aspect)
-    corners = [[-half, 0.0], [half, 0.0], [half, height], [-half, height]]
+    corners = rectangle(-half, 0.0, half, height)
     stiffness = 0.01 * 55e9 / height
     found = run(
         "column_marble_rocking",

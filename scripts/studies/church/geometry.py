@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-Point = tuple[float, float]
-Polygon = list[Point]
+from studies.polygons import rectangle
+
+Polygon = list[list[float]]
 
 LEAN = 0.20  # of the left wall, over its height: A2
 DRUMS = {"b": 8, "c": 2}  # of the left and of the right column, the wider first one counted: A3
@@ -84,12 +85,8 @@ def before_1954(bay: Slice, **changes: Any) -> Slice:
                    **changes)  # fmt: skip
 
 
-def rectangle(x0: float, z0: float, x1: float, z1: float) -> Polygon:
-    return [(x0, z0), (x1, z0), (x1, z1), (x0, z1)]
-
-
 def mirrored(part: Polygon, about: float) -> Polygon:
-    return [(2.0 * about - x, z) for x, z in reversed(part)]
+    return [[2.0 * about - x, z] for x, z in reversed(part)]
 
 
 def area(parts: list[Polygon]) -> float:
@@ -121,7 +118,7 @@ def side_walls(bay: Slice, pile: Pile) -> None:
         low, high = i / COURSES, (i + 1) / COURSES
         a, b = -bay.lean * low, -bay.lean * high
         z0, z1 = bay.side * low, bay.side * high
-        pile.add(f"a-{i + 1}", "tuff", [(a, z0), (a + width, z0), (b + width, z1), (b, z1)])
+        pile.add(f"a-{i + 1}", "tuff", [[a, z0], [a + width, z0], [b + width, z1], [b, z1]])
         pile.add(f"d-{i + 1}", "tuff", rectangle(bay.right_face, z0, bay.right_face + bay.right_wall, z1))
 
 
@@ -155,7 +152,7 @@ def aisle_beam(bay: Slice, outer: float, inner: float, face: float) -> list[Poly
     low, seat, deep = bay.side, bay.seat, bay.beam
     start = face - bay.bracket
     stop, end = (face, bay.end) if bay.model == "A" else (face + bay.pocket, deep)
-    slope = [(inner, low), (start, seat), (start, seat + deep), (inner, low + deep)]
+    slope = [[inner, low], [start, seat], [start, seat + deep], [inner, low + deep]]
     return [rectangle(outer, low, inner, low + deep), slope, rectangle(start, seat, stop, seat + end)]
 
 
@@ -168,7 +165,7 @@ def roofs(bay: Slice, pile: Pile) -> dict[str, float]:
     right = [mirrored(part, 0.0) for part in mirror]
     tie = rectangle(b - half, bay.top, c + half, bay.top + bay.beam)
     span = c - b + bay.thick
-    gable = [tie[3], tie[2], ((b + c) / 2, bay.top + bay.beam + bay.pitch * span / 2)]
+    gable = [tie[3], tie[2], [(b + c) / 2, bay.top + bay.beam + bay.pitch * span / 2]]
     pile.add("roof-a", "roof-a", *left)
     pile.add("roof-d", "roof-d", *right)
     pile.add("tie", "chestnut", tie, depth=0.3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from studies.church import cases, displacement, inferred, models, walls
+from studies.church import cases, displacement, models, sensitivity, walls
 from studies.study import SectionedStudy
 
 
@@ -22,4 +22,4 @@ class ChurchStudy(SectionedStudy):
         return super().main(words)
 
 
-STUDY = ChurchStudy("church", "Thesis Appendix A, the slice of a church", (walls, models, displacement, inferred))
+STUDY = ChurchStudy("church", "Thesis Appendix A, the slice of a church", (walls, models, displacement, sensitivity))

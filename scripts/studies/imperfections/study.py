@@ -10,10 +10,10 @@ from typing import Any
 from studies.imperfections import low_blocks, tables
 from studies.imperfections.pictures import draw, walls
 from studies.places import DOCS
-from studies.study import Draw, Study
+from studies.study import Draw, StudyRunner
 
 
-class ImperfectionStudy(Study):
+class ImperfectionStudy(StudyRunner):
     """One section: a row per wall."""
 
     machine = True

@@ -10,12 +10,12 @@ from studies.laws.diagrams import PAGES
 from studies.laws.page import index, text
 from studies.laws.pictures import draw
 from studies.places import DOCS
-from studies.study import Study
+from studies.study import StudyRunner
 
 FOLDER = DOCS / "laws"
 
 
-class LawStudy(Study):
+class LawStudy(StudyRunner):
     """One section per law; nothing is kept but the pages."""
 
     parts, solves = "LAW", False

@@ -13,7 +13,7 @@ from studies.loads import tables
 from studies.loads.criteria import problems
 from studies.loads.methods import CaseLoads, measure
 from studies.places import CASES
-from studies.study import Study
+from studies.study import StudyRunner
 
 FOLDERS = (CASES / "verification", CASES / "gallery")
 
@@ -36,7 +36,7 @@ def name_of(file: Path) -> str:
     return f"{file.parent.name}/{file.stem}"
 
 
-class LoadStudy(Study):
+class LoadStudy(StudyRunner):
     """One section per case; DEM within 1 % of the zero-dilation path, none above the associated load by 0.5 %."""
 
     parts, machine = "CASE", True

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.bisection import bisect_ratio
 from studies.pulses import column, domain
 
 CASE, BOOK_CASE = "dimitri_arch", "arch_on_buttresses"
@@ -30,6 +31,6 @@ def _least(shaker: domain.Shaker, tp: float) -> float | None:
     low = LOWEST
     for high in (LOWEST * RATIO ** np.arange(1, int(np.log(HIGHEST / LOWEST) / np.log(RATIO)))).tolist():
         if shaker.falls(high, tp):
-            return domain.bisected(lambda a: shaker.falls(a, tp), low, high)
+            return bisect_ratio(low, high, domain.TOLERANCE, lambda a: shaker.falls(a, tp))[1]
         low = high
     return None

@@ -7,8 +7,9 @@ from typing import Any
 
 from oracle import tapered_column as monolith
 
+from studies.bisection import bisect_ratio
 from studies.pulses import domain
-from studies.rocking.scene import solve
+from studies.rocking.single_block import solve
 
 CASE = "dimitri_column"
 ALL = (0.1, 0.15, 0.2, 0.25, 0.3, 0.31, 0.32, 0.33, 0.34, 0.35, 0.36, 0.37, 0.38, 0.39, 0.4, 0.45, 0.5, 0.6, 0.8, 1.0)
@@ -69,7 +70,7 @@ def fine() -> list[dict[str, Any]]:
         first = domain.scanned(coarse.falls, tp, BELOW * least if least else SHORT, 1.0)["least"]
         low, high = first / domain.RATIO, first * domain.RATIO
         same = not made.falls(low, tp) and made.falls(high, tp)
-        second = domain.bisected(lambda a, tp=tp: made.falls(a, tp), low, high) if same else None
+        second = bisect_ratio(low, high, domain.TOLERANCE, lambda a, tp=tp: made.falls(a, tp))[1] if same else None
         rows.append({"tp": tp, "coarse": first, "fine": second})
         print(f"column: {rows[-1]}")
     return rows

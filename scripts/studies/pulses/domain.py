@@ -19,9 +19,10 @@ from dem_cli.motion.motion import Motion
 from dem_cli.motion.pulses import impulse
 from dem_cli.solve.perturb import Variant
 from dem_cli.solve.trial import Rested
+from studies.bisection import bisect_ratio
 from studies.observer import Silence
 from studies.places import CASES
-from studies.rocking.scene import solve
+from studies.rocking.single_block import solve
 from studies.solution import from_tables
 
 G = 9.81  # m/s2
@@ -94,18 +95,10 @@ def scanned(falls: Falls, tp: float, lowest: float = LOWEST, beyond: float = BEY
             break
         answers.append((amplitude, falls(amplitude, tp)))
         if least is None and answers[-1][1]:
-            least = bisected(lambda a: falls(a, tp), answers[-2][0], amplitude) if len(answers) > 1 else None
-            if least is None:
+            if len(answers) == 1:
                 raise ValueError(f"falls at the lowest amplitude tried already, {amplitude:g} g: begin lower")
+            _, least = bisect_ratio(answers[-2][0], amplitude, TOLERANCE, lambda a: falls(a, tp))
     return {"tp": tp, "least": least, "answers": answers}
-
-
-def bisected(falls: Callable[[float], bool], low: float, high: float) -> float:
-    """Between an amplitude that stands and one that falls."""
-    while high / low > 1.0 + TOLERANCE:
-        middle = (low * high) ** 0.5
-        low, high = (low, middle) if falls(middle) else (middle, high)
-    return high
 
 
 def way_of_falling(

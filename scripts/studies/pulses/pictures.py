@@ -22,7 +22,7 @@ NAMES = {"elastic_s5": "elastic joints, 5 % stiffness", "elastic_mx5": "elastic 
          "s5": "no tension, 5 % stiffness", "mx5": "no tension, Maxwell"}  # fmt: skip
 
 
-def overturning(table: Mapping[str, Any], path: Path) -> None:
+def draw_domain(table: Mapping[str, Any], path: Path) -> None:
     """Least amplitudes of all dampings with both published series; on the right where overturning changes its kind."""
     with style.figure(path, figsize=(11.0, 5.2)) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
@@ -79,7 +79,7 @@ def _answers(axis: Any, row: Row) -> None:
             axis.plot([row["tp"]] * 2, ends, color=style.COLLAPSE, alpha=0.25, lw=7, solid_capstyle="butt")
 
 
-def histories(vault: Mapping[str, Any], path: Path) -> None:
+def draw_histories(vault: Mapping[str, Any], path: Path) -> None:
     """Displacement of the crown in the four runs, with the published peaks."""
     with style.figure(path, figsize=(10.5, 6.0)) as figure:
         for axis, (name, title) in zip(figure.subplots(2, 2).flat, NAMES.items()):
@@ -93,7 +93,7 @@ def histories(vault: Mapping[str, Any], path: Path) -> None:
         figure.axes[0].legend(loc="upper right")
 
 
-def points(vault: Mapping[str, Any], path: Path) -> None:
+def draw_points(vault: Mapping[str, Any], path: Path) -> None:
     """Peaks against the first frequency, by the places of the contact points."""
     rows = [row for row in vault["variants"] if row["group"] in ("", "points across the ring")]
     with style.figure(path, figsize=(10.0, 4.2)) as figure:

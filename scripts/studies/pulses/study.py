@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from studies.pulses import buttresses, column, earthquakes, pictures, tables, voussoirs
-from studies.study import Draw, Study
+from studies.study import Draw, StudyRunner
 
 
-class PulseStudy(Study):
+class PulseStudy(StudyRunner):
     """One section per structure and question."""
 
     machine = True
@@ -19,9 +19,9 @@ class PulseStudy(Study):
 
     def pictures(self) -> Mapping[str, tuple[str, Draw]]:
         return {
-            "column": ("", pictures.overturning),
-            "arch": ("vault", pictures.histories),
-            "points": ("vault", pictures.points),
+            "column": ("", pictures.draw_domain),
+            "arch": ("vault", pictures.draw_histories),
+            "points": ("vault", pictures.draw_points),
         }
 
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from oracle import maxwell
 
+from studies.polygons import rectangle
 from studies.pulses import column
 from studies.pulses.domain import changed, table_of
-from studies.rocking.scene import Response, solve
+from studies.rocking.single_block import Response, solve
 
 CASE, ELASTIC = "lemos_arch_pulse", "lemos_arch_elastic"
 INNER, RING, VOUSSOIRS = 3.75, 0.5, 17  # m, m, -
@@ -49,8 +50,7 @@ def narrow(case: Mapping[str, Any]) -> dict[str, Any]:
     """The case on bases as wide as the ring."""
     blocks = [block for block in case["block"] if not block.get("fixed")]
     for name, left in (("left", -INNER - RING), ("right", INNER)):
-        corners = [[left, -0.5], [left + RING, -0.5], [left + RING, 0.0], [left, 0.0]]
-        blocks.append({"id": f"base-{name}", "vertices": corners, "fixed": True})
+        blocks.append({"id": f"base-{name}", "vertices": rectangle(left, -0.5, left + RING, 0.0), "fixed": True})
     return changed(case, block=blocks)
 
 

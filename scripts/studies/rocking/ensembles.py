@@ -16,7 +16,7 @@ from oracle.housner import rock
 from oracle.pairs import Pair, pair, scaled
 from scipy.stats import binomtest, ks_2samp
 
-from studies.rocking.scene import fallen_angle, one_block, record_file, solve
+from studies.rocking.single_block import fallen_angle, one_block, record_file, solve
 
 COUNT, CHANGE, AFTER = 60, 1.001, 5.0
 FALLS = 2.0  # stands for a peak of a block that overturned, in α

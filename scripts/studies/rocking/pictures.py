@@ -11,20 +11,20 @@ import numpy as np
 from oracle.housner import Block, rock
 
 from dem_cli.post import style
-from studies.rocking import free, pulses
+from studies.rocking import free_rocking, overturning
 from studies.rocking.ensembles import CHANGE, FALLS
 
 Row = Mapping[str, Any]
 FINER, HIGHER = 150, 240  # cells of the shaded picture across and up
 
 
-def free_rocking(rows: Sequence[Row], path: Path) -> None:
+def draw_swings(rows: Sequence[Row], path: Path) -> None:
     """Angles over time, one panel per slenderness: lines exact, dots where dem turns back."""
     with style.figure(path, figsize=(10.0, 6.2)) as figure:
         for axis, row in zip(figure.subplots(2, 2).flat, rows):
-            block = Block(free.HEIGHT / row["aspect"], free.HEIGHT)
+            block = Block(free_rocking.HEIGHT / row["aspect"], free_rocking.HEIGHT)
             times, peaks = row["turns"]
-            exact = rock(block, duration=times[-1] + 0.1, angle=free.START * block.alpha)
+            exact = rock(block, duration=times[-1] + 0.1, angle=free_rocking.START * block.alpha)
             axis.plot(exact.times, exact.angles / block.alpha, color=style.GREY, lw=1.2, label="exact")
             signs = -((-1.0) ** np.arange(len(peaks)))
             axis.plot(times, signs * np.array(peaks) / block.alpha, "o", ms=4, color=style.COLLAPSE, label="dem")
@@ -33,11 +33,11 @@ def free_rocking(rows: Sequence[Row], path: Path) -> None:
         figure.axes[0].legend(loc="upper right")
 
 
-def overturning(rows: Sequence[Row], path: Path) -> None:
+def draw_bounds(rows: Sequence[Row], path: Path) -> None:
     """Where the oracle overturns, and the bounds that dem has."""
-    ratios = np.linspace(min(pulses.RATIOS), max(pulses.RATIOS), FINER)
-    strengths = np.exp(np.linspace(0.0, math.log(pulses.HIGHEST), HIGHER))
-    falls = np.array([[pulses.exact(pulses.BLOCK, ratio, x) for ratio in ratios] for x in strengths])
+    ratios = np.linspace(min(overturning.RATIOS), max(overturning.RATIOS), FINER)
+    strengths = np.exp(np.linspace(0.0, math.log(overturning.HIGHEST), HIGHER))
+    falls = np.array([[overturning.exact(overturning.BLOCK, ratio, x) for ratio in ratios] for x in strengths])
     with style.figure(path, figsize=(7.5, 5.0)) as figure:
         axis = figure.subplots()
         axis.pcolormesh(
@@ -52,14 +52,14 @@ def overturning(rows: Sequence[Row], path: Path) -> None:
                 [r["ratio"] for r in missed], [r["bound"] for r in missed], "x", color=style.INK, label="not found"
             )
         axis.fill_between([], [], [], color="#fdd0a2", label="exact: overturns")
-        axis.set(xlabel="ω / p", ylabel="A / (g tan α)", yscale="log", ylim=(1.0, pulses.HIGHEST))
+        axis.set(xlabel="ω / p", ylabel="A / (g tan α)", yscale="log", ylim=(1.0, overturning.HIGHEST))
         axis.set_yticks([1, 2, 4, 8, 16], ["1", "2", "4", "8", "16"])
         axis.minorticks_off()
         axis.legend(loc="lower right")
         axis.set_title("One sine: h/b = 4")
 
 
-def ensembles(rows: Sequence[Row], path: Path) -> None:
+def draw_pairs(rows: Sequence[Row], path: Path) -> None:
     """Distributions of peaks, and dem and a slightly stronger record against the oracle, pair by pair."""
     exact = np.array([row["exact"] for row in rows])
     others = {"dem": style.COLLAPSE, "changed": style.THRUST}

@@ -13,7 +13,8 @@ from oracle.housner import Block
 from oracle.newmark_slider import Slope, slide
 from oracle.pairs import pair
 
-from studies.rocking import scene
+from studies.polygons import rectangle as corners_of
+from studies.rocking import single_block
 
 FLAT = Block(1.0, 0.3)  # slides rather than rocks
 SLIDES: dict[str, tuple[Motion, dict[str, Any], float, float]] = {  # exact motion, the same as a table, μ, β [°]
@@ -44,10 +45,10 @@ def sliding(name: str, **how: Any) -> dict[str, Any]:
     duration = motion.duration + 1.5
     exact = slide(Slope(friction, math.radians(degrees)), motion, duration)
     wanted = ({"quantity": "displacement", "component": "x"}, {"quantity": "displacement", "component": "y"})
-    case = scene.one_block(FLAT, table, duration, friction=friction, quantities=wanted, **how)
+    case = single_block.one_block(FLAT, table, duration, friction=friction, quantities=wanted, **how)
     _turn(case, math.radians(degrees))
     along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
-    slips = scene.solve(case).values @ along
+    slips = single_block.solve(case).values @ along
     return {"name": name, "exact": exact.final, "path": exact.path, "slip": float(slips[-1])}
 
 
@@ -64,16 +65,16 @@ def bounce(height: float = 0.05, count: int = 3, ratio: float = 0.0, **how: Any)
     ratio: of the dashpot of the joint, of critical; without one the largest overlap is compared too.
     """
     block = Block(1.0, 1.0)
-    joint = bouncing.Joint(scene.STIFFNESS * scene.DENSITY * 9.81, scene.DENSITY, ratio)
+    joint = bouncing.Joint(single_block.STIFFNESS * single_block.DENSITY * 9.81, single_block.DENSITY, ratio)
     exact = bouncing.heights(joint, height, count)
     speed = math.sqrt(2.0 * 9.81 * height)
     top = speed / 9.81 + bouncing.contact_time(joint, speed) + math.sqrt(2.0 * exact[0] / 9.81)
     damping = {"contact_fraction": ratio} if ratio else {"none": True}
-    case = scene.one_block(
+    case = single_block.one_block(
         block, None, 0.75, damping, quantities=({"quantity": "displacement", "component": "y"},), **how
     )
     case["initial"] = [{"block": "block", "displacement": [0.0, height + joint.static]}]
-    found = scene.solve(case)
+    found = single_block.solve(case)
     tops = [(t, y) for t, y in zip(*found.extremes()) if found.at(t) > 0.0]
     heights = np.array([y for _, y in tops[:count]])
     overlap = -float(found.values.min()) / bouncing.peak_overlap(joint, height) - 1.0
@@ -93,14 +94,14 @@ def stack(name: str, **how: Any) -> dict[str, Any]:
     """Two blocks that rock freely until a joint closes: largest error of both angles over the largest angle."""
     angles = STACKS[name]
     exact = two_blocks.rock(two_blocks.Rectangle(*LOWER), two_blocks.Rectangle(*UPPER), angles)
-    case = scene.one_block(Block(*LOWER), None, float(exact.times[-1]) + 0.1, **how)
+    case = single_block.one_block(Block(*LOWER), None, float(exact.times[-1]) + 0.1, **how)
     half = UPPER[0] / 2
-    case["block"].append({"id": "upper", "vertices": scene.rectangle(-half, LOWER[1], half, LOWER[1] + UPPER[1])})
+    case["block"].append({"id": "upper", "vertices": corners_of(-half, LOWER[1], half, LOWER[1] + UPPER[1])})
     case["initial"] = [{"block": "upper", "tilt": angles[1] - angles[0]}]
     if angles[0]:
         case["initial"].append({"blocks": ["block", "upper"], "tilt": angles[0]})
     case["monitor"].append({"block": "upper", "quantity": "rotation"})
-    found = scene.solve(case)
+    found = single_block.solve(case)
     until = found.times <= exact.times[-1]
     wanted = [np.interp(found.times[until], exact.times, exact.angles[:, k]) for k in (0, 1)]
     error = np.abs(found.values[until, :2] - np.column_stack(wanted)).max()
@@ -121,13 +122,13 @@ def column(folder: Path, margin: float, seed: int, **how: Any) -> float:
     width, height = COLUMN_BLOCK
     shaken = pair(seed).record
     strong = Record(shaken.dt, shaken.values * COLUMN_PEAK / np.abs(shaken.values).max())
-    case = scene.one_block(Block(width, height), scene.record_file(folder, "column", strong), 20.0, **how)
+    case = single_block.one_block(Block(width, height), single_block.record_file(folder, "column", strong), 20.0, **how)
     case["block"][1:] = [
-        {"id": f"b{i}", "vertices": scene.rectangle(-width / 2, i * height, width / 2, (i + 1) * height)}
+        {"id": f"b{i}", "vertices": corners_of(-width / 2, i * height, width / 2, (i + 1) * height)}
         for i in range(COLUMN_BLOCKS)
     ]
     case["monitor"] = []
     case["analysis"]["margin"] = margin
-    summary = scene.solve(case).summary
+    summary = single_block.solve(case).summary
     assert not summary["collapsed"], f"record {seed}: the column fell"
     return float(summary["energy_closure"])

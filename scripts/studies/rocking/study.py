@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Mapping
 from typing import Any
 
-from studies.rocking import parts, pictures, tables
-from studies.study import Draw, Study
+from studies.rocking import comparisons, pictures, tables
+from studies.study import Draw, StudyRunner
 
 
-class RockingStudy(Study):
+class RockingStudy(StudyRunner):
     """One section per comparison."""
 
     machine = True
@@ -31,10 +31,10 @@ class RockingStudy(Study):
 
     def pictures(self) -> Mapping[str, tuple[str, Draw]]:
         return {
-            "free": ("free", pictures.free_rocking),
-            "pulses": ("bounds", pictures.overturning),
-            "pairs": ("pairs", pictures.ensembles),
+            "free": ("free", pictures.draw_swings),
+            "pulses": ("bounds", pictures.draw_bounds),
+            "pairs": ("pairs", pictures.draw_pairs),
         }
 
 
-STUDY = RockingStudy("rocking", "Blocks that rock, slide and bounce, against exact motions", parts.PARTS)
+STUDY = RockingStudy("rocking", "Blocks that rock, slide and bounce, against exact motions", comparisons.PARTS)

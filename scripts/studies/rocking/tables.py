@@ -9,7 +9,7 @@ import numpy as np
 from oracle.housner import Block
 
 from dem_cli.bench.table import percent
-from studies.rocking import ensembles, free, pulses
+from studies.rocking import ensembles, free_rocking, overturning
 from studies.template import minus
 from studies.template import table as markdown
 
@@ -42,9 +42,9 @@ def _free(stiff: Sequence[Row], soft: Sequence[Row]) -> str:
 
 
 def _map(rows: Sequence[Row]) -> str:
-    head = ("contact_fraction", *(f"h/b = {aspect:g}" for aspect in free.ASPECTS),
-            *(f"h/b = {aspect:g}, kn h/W = 1e5" for aspect in free.ASPECTS))  # fmt: skip
-    exact = [f"{Block(1.0, aspect).restitution:.4f}" for aspect in free.ASPECTS]
+    head = ("contact_fraction", *(f"h/b = {aspect:g}" for aspect in free_rocking.ASPECTS),
+            *(f"h/b = {aspect:g}, kn h/W = 1e5" for aspect in free_rocking.ASPECTS))  # fmt: skip
+    exact = [f"{Block(1.0, aspect).restitution:.4f}" for aspect in free_rocking.ASPECTS]
     cells = [[f"{row['fraction']:g}", *(f"{r:.4f}" for r in (*row["ratios"], *row["soft"]))] for row in rows]
     return markdown(head, [*cells, ["Housner", *exact, *exact]])
 
@@ -55,7 +55,9 @@ def _bounds(rows: Sequence[Row]) -> str:
     for ratio in dict.fromkeys(row["ratio"] for row in rows):
         here = [row for row in rows if row["ratio"] == ratio]
         said = [f"{row['bound']:.4f} {names[row['overturns_above']]}: {_missed(row)}" for row in here]
-        cells.append([f"{ratio:g}", f"{pulses.frequency(pulses.BLOCK, ratio):.3f} Hz", *said, *[""] * (3 - len(here))])
+        cells.append(
+            [f"{ratio:g}", f"{overturning.frequency(overturning.BLOCK, ratio):.3f} Hz", *said, *[""] * (3 - len(here))]
+        )
     return markdown(("ω/p", "frequency", "first bound A/(g tan α)", "second", "third"), cells)
 
 

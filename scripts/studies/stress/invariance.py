@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from studies.stress import changes
+from studies.polygons import rectangle
+from studies.stress import transformations
 from studies.stress.identical_bytes import differences
-from studies.stress.records import HELD, WRONG, PushoverAnswer, StressRecord, likeness, load_record, push
-from studies.stress.scenes import StressScene, block, explicit, named, rectangle
+from studies.stress.structures import StressScene, block, explicit, named
+from studies.stress.verdicts import HELD, WRONG, PushoverAnswer, StressRecord, likeness, load_record, push
 
 Change = Callable[[StressScene], StressScene]
 STRUCTURES = ("slide", "rock", "column", "trilith", "wall 0.6", "wall 0.65", "wall 0.75", "arch", "portal", "groove")
@@ -28,11 +29,11 @@ def compared(axis: str, value: str, change: Change, short: bool, structures=STRU
 
 
 ORDERS: dict[str, Change] = {
-    "blocks in any order": changes.blocks_in_any_order,
-    "corners clockwise": changes.corners_clockwise,
-    "another first corner": changes.corners_from_another,
-    "corners in any order": changes.corners_in_any_order,
-    "model renumbered": changes.renumbered,
+    "blocks in any order": transformations.blocks_in_any_order,
+    "corners clockwise": transformations.corners_clockwise,
+    "another first corner": transformations.corners_from_another,
+    "corners in any order": transformations.corners_in_any_order,
+    "model renumbered": transformations.renumbered,
 }
 
 
@@ -42,9 +43,11 @@ def numbering(short: bool) -> Iterator[StressRecord]:
         yield from compared("numbering", value, change, short)
     scenes = named()
     for name in ("column",) if short else STRUCTURES:  # triangles instead of blocks, in two orders
-        scene = changes.cut_in_two(explicit(scenes[name]))
+        scene = transformations.cut_in_two(explicit(scenes[name]))
         yield load_record("numbering", scene, "each block in two pieces", base=push(explicit(scenes[name])))
-        yield load_record("numbering", changes.pieces_in_any_order(scene), "pieces in any order", base=push(scene))
+        yield load_record(
+            "numbering", transformations.pieces_in_any_order(scene), "pieces in any order", base=push(scene)
+        )
 
 
 def place(short: bool) -> Iterator[StressRecord]:
@@ -52,17 +55,19 @@ def place(short: bool) -> Iterator[StressRecord]:
     for decade in (3,) if short else (3, 6, 9):
 
         def far(scene: StressScene, decade: int = decade) -> StressScene:
-            edge = min(np.ptp(np.vstack(changes.pieces(b)), axis=0).min() for b in scene.tables["block"])
-            return changes.moved(scene, 0.77 * edge * 10.0**decade, -0.33 * edge * 10.0**decade)
+            edge = min(np.ptp(np.vstack(transformations.pieces(b)), axis=0).min() for b in scene.tables["block"])
+            return transformations.moved(scene, 0.77 * edge * 10.0**decade, -0.33 * edge * 10.0**decade)
 
         yield from compared("far from the origin", f"1e{decade} blocks", far, short)
 
 
 def symmetry(short: bool) -> Iterator[StressRecord]:
     """Mirror image; structure, weight and push turned together."""
-    yield from compared("mirror image", "mirrored", changes.mirrored, short)
+    yield from compared("mirror image", "mirrored", transformations.mirrored, short)
     for degrees in (90.0,) if short else (90.0, 180.0, 1e-3, 30.0, 137.0):
-        yield from compared("rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: changes.rotated(s, d), short)
+        yield from compared(
+            "rotation with gravity", f"{degrees:g}°", lambda s, d=degrees: transformations.rotated(s, d), short
+        )
 
 
 UNITS = {"lengths": "length", "densities": "density", "gravity": "gravity"}
@@ -73,12 +78,15 @@ def units(short: bool) -> Iterator[StressRecord]:
     for factor in (1e3,) if short else (1e3, 1e-3):
         for what, key in UNITS.items():
             yield from compared(
-                "units", f"{what} × {factor:g}", lambda s, k=key, f=factor: changes.scaled(s, **{k: f}), short
+                "units", f"{what} × {factor:g}", lambda s, k=key, f=factor: transformations.scaled(s, **{k: f}), short
             )
     for factor in (2.0**10,) if short else (2.0**10, 2.0**-10):
         everything = {"length": factor, "density": 1 / factor, "gravity": factor}
         yield from compared(
-            "units", f"powers of two, 2^{np.log2(factor):+.0f}", lambda s, e=everything: changes.scaled(s, **e), short
+            "units",
+            f"powers of two, 2^{np.log2(factor):+.0f}",
+            lambda s, e=everything: transformations.scaled(s, **e),
+            short,
         )
 
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from studies.stress.records import StressRecord, load_record
-from studies.stress.scenes import StressScene, block, drawn, explicit, ground, named, rocking_block, stack, trilith
+from studies.stress.structures import StressScene, block, drawn, explicit, ground, named, rocking_block, stack, trilith
+from studies.stress.verdicts import StressRecord, load_record
 
 
 def powers(short: bool, *decades: int) -> list[tuple[str, float]]:

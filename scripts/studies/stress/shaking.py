@@ -10,8 +10,9 @@ import numpy as np
 
 from dem_cli.solve.run import run
 from studies.observer import RunKeeper
-from studies.stress.records import HELD, WRONG, StressRecord, figure
-from studies.stress.scenes import StressScene, block, drawn, ground, rectangle
+from studies.polygons import rectangle
+from studies.stress.structures import StressScene, block, drawn, ground
+from studies.stress.verdicts import HELD, WRONG, StressRecord, figure
 
 AXIS = "time histories"
 GRAVITY, FRICTION = 9.81, 0.4

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from studies.stress.records import StressRecord, load_record, push
-from studies.stress.scenes import StressScene, explicit, named, stiffness_unit
+from studies.stress.structures import StressScene, explicit, named, stiffness_unit
+from studies.stress.verdicts import StressRecord, load_record, push
 
 KINEMATICS = ("auto", "fixed", "large")
 

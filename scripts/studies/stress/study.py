@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from studies import storage
-from studies.stress import invariance, proportions, shaking, steady, stiffness, tables
-from studies.stress.records import WRONG, StressRecord
-from studies.study import Study
+from studies.stress import invariance, proportions, shaking, steady_state, stiffness, tables
+from studies.stress.verdicts import WRONG, StressRecord
+from studies.study import StudyRunner
 
 AXES = {
     "stiffness": stiffness.joint_stiffness,
@@ -34,17 +34,17 @@ AXES = {
     "symmetry": invariance.symmetry,
     "units": invariance.units,
     "far": invariance.far,
-    "rest": steady.rest,
-    "time-step": steady.time_step,
-    "past-limit": steady.past_the_limit,
-    "work": steady.work_identity,
-    "state": steady.state_closure,
+    "rest": steady_state.rest,
+    "time-step": steady_state.time_step,
+    "past-limit": steady_state.past_the_limit,
+    "work": steady_state.work_identity,
+    "state": steady_state.state_closure,
     "bytes": invariance.same_bytes,
     "shaking": shaking.shaken,
 }
 
 
-class StressStudy(Study):
+class StressStudy(StudyRunner):
     """One section per axis: its records."""
 
     parts, solves = "AXIS", False

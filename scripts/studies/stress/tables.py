@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from studies.stress.records import HELD, REFUSED, WARNED, WRONG, StressRecord
+from studies.stress.verdicts import HELD, REFUSED, WARNED, WRONG, StressRecord
 from studies.template import table as markdown
 
 VERDICTS = (HELD, WARNED, REFUSED, WRONG)

@@ -13,6 +13,7 @@ from oracle.housner import Block
 
 from dem_cli.case.reader import LoadedCase
 from studies import solution
+from studies.polygons import rectangle
 from studies.solution import from_file, from_tables
 
 DENSITY, GRAVITY = 2000.0, 9.81
@@ -54,10 +55,6 @@ class Response(NamedTuple):
                 times.append(self.times[k] + part * dt)
                 sizes.append(abs(y[k] + 0.5 * slope * part))
         return np.array(times), np.array(sizes)
-
-
-def rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:
-    return [[left, bottom], [right, bottom], [right, top], [left, top]]
 
 
 def solve(case: dict[str, Any], *overrides: str) -> Response:

@@ -16,8 +16,9 @@ from dem_cli.solve.joints import joint_properties, law_of
 from dem_cli.solve.masses import fictitious_masses
 from dem_cli.solve.run import live_scale
 from dem_cli.solve.simulation import Simulation, compiled_advance
-from studies.stress.records import HELD, REFUSED, WRONG, StressRecord, figure, load_record
-from studies.stress.scenes import StressScene, block, drawn, ground, named, rectangle
+from studies.polygons import rectangle
+from studies.stress.structures import StressScene, block, drawn, ground, named
+from studies.stress.verdicts import HELD, REFUSED, WRONG, StressRecord, figure, load_record
 
 AXIS_REST, AXIS_RELAX = "a million steps at rest", "time step of a relaxation"
 COMBINED_SAFETY, COMBINED = 0.75, 0.3

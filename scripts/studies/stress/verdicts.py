@@ -10,7 +10,7 @@ from dem_cli.errors import CaseError, DemError
 from dem_cli.model.validate import warnings as oddities
 from dem_cli.solve.run import run
 from studies.observer import RunKeeper
-from studies.stress.scenes import StressScene
+from studies.stress.structures import StressScene
 
 HELD, WARNED, REFUSED, WRONG = "held", "warned", "refused", "WRONG"
 WITHIN = 0.005  # relative error of a failure load that is no error, where the bracket is narrower

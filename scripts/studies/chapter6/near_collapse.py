@@ -63,7 +63,7 @@ def _curve(found: ShakenCase) -> list[list[float]]:
 
 
 def values(found: dict[str, Any]) -> dict[str, Any]:
-    """What failure.md.j2 shows."""
+    """What near_collapse.md.j2 shows."""
     steady, record = np.array(found["steady"]["curve"]), found["record"]
     late = steady[steady[:, 0] > 4.0]
     rows = [

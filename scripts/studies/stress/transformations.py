@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.stress.scenes import StressScene, Tables, explicit
+from studies.stress.structures import StressScene, Tables, explicit
 
 
 def each_block(scene: StressScene, change: Callable[[Tables, np.random.Generator], Tables]) -> StressScene:

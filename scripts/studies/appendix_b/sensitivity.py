@@ -48,7 +48,7 @@ def measure() -> dict[str, Any]:
 
 
 def values(found: dict[str, Any]) -> dict[str, Any]:
-    """What inferred.md.j2 shows."""
+    """What sensitivity.md.j2 shows."""
     rows = {row["name"]: row for row in storage.read("appendix_b")["failure_loads"]["rows"]}
     lines = []
     for label, one in found.items():

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from oracle.housner import Block, rock
 
-from studies.rocking.scene import one_block, solve
+from studies.rocking.single_block import one_block, solve
 
 ASPECTS = (2.0, 2.9, 3.6, 5.0)
 FRACTIONS = (0.1, 0.35, 1.0, 2.0)

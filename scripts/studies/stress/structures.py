@@ -14,6 +14,7 @@ from dem_cli.api import build_model
 from dem_cli.geometry import polygon
 from dem_cli.model.assemble import case_blocks
 from studies.places import CASES
+from studies.polygons import rectangle
 from studies.solution import from_tables
 
 Tables = dict[str, Any]
@@ -90,10 +91,6 @@ def explicit(scene: StressScene) -> StressScene:
 
 
 # -- scenes drawn here -------------------------------------------------------------------------------
-
-
-def rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:
-    return [[left, bottom], [right, bottom], [right, top], [left, top]]
 
 
 def block(name: str, corners: Sequence, **more: Any) -> Tables:

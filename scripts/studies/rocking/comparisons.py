@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from studies.rocking import ensembles, free, pulses, sliding
+from studies.rocking import ensembles, free_rocking, overturning, sliding
 
 FINE = {"output": {"rate": 2000.0}}
 PAIRS = 240  # of a block and a record
@@ -19,12 +19,14 @@ BOUNCES = ((0.0, (0.5, 0.25, 0.1, 0.02)), (0.2, (0.5, 0.25, 0.1, 0.02)))  # ζ, 
 
 
 def _map() -> Iterator[dict[str, Any]]:
-    for fraction in free.FRACTIONS:
+    for fraction in free_rocking.FRACTIONS:
         damping = {"contact_fraction": fraction}
         yield {
             "fraction": fraction,
-            "ratios": [free.restitution(aspect, damping, **FINE) for aspect in free.ASPECTS],
-            "soft": [free.restitution(aspect, damping, stiffness=SOFT, **FINE) for aspect in free.ASPECTS],
+            "ratios": [free_rocking.restitution(aspect, damping, **FINE) for aspect in free_rocking.ASPECTS],
+            "soft": [
+                free_rocking.restitution(aspect, damping, stiffness=SOFT, **FINE) for aspect in free_rocking.ASPECTS
+            ],
         }
 
 
@@ -44,10 +46,10 @@ def _energy() -> Iterator[dict[str, Any]]:
 
 
 PARTS: dict[str, Callable[[], Iterator[Any]]] = {
-    "free": lambda: (free.compared(aspect, **FINE) for aspect in free.ASPECTS),
-    "free_soft": lambda: (free.compared(aspect, stiffness=SOFT, **FINE) for aspect in free.ASPECTS),
+    "free": lambda: (free_rocking.compared(aspect, **FINE) for aspect in free_rocking.ASPECTS),
+    "free_soft": lambda: (free_rocking.compared(aspect, stiffness=SOFT, **FINE) for aspect in free_rocking.ASPECTS),
     "map": _map,
-    "bounds": lambda: (row for ratio in pulses.RATIOS for row in pulses.compared(pulses.BLOCK, ratio)),
+    "bounds": lambda: (row for ratio in overturning.RATIOS for row in overturning.compared(overturning.BLOCK, ratio)),
     "slides": lambda: (sliding.sliding(name, damping={"contact_fraction": 0.35}) for name in sliding.SLIDES),
     "stacks": lambda: (sliding.stack(name, output={"rate": 5000.0}) for name in sliding.STACKS),
     "bounces": _bounces,

@@ -76,7 +76,7 @@ def measure() -> dict[str, Any]:
 
 
 def values(found: dict[str, Any]) -> dict[str, str]:
-    """What inferred.md.j2 shows."""
+    """What sensitivity.md.j2 shows."""
     cases = storage.read("church")["models"]["cases"]["runs"]
     plain = {name: middle(cases[name]) for name in NAMES}
     rows = []

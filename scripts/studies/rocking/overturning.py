@@ -15,7 +15,8 @@ import numpy as np
 from oracle.base_motion import pulse
 from oracle.housner import Block, overturns
 
-from studies.rocking.scene import fallen_angle, one_block, pulse_table, solve
+from studies.bisection import bisect_ratio
+from studies.rocking.single_block import fallen_angle, one_block, pulse_table, solve
 
 BLOCK = Block(0.5, 2.0)
 RATIOS = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0)  # ω/p
@@ -47,7 +48,9 @@ def bounds(block: Block, ratio: float) -> list[float]:
     grid = np.exp(np.arange(0.0, math.log(HIGHEST), GRID))
     answers = [exact(block, ratio, x) for x in grid]
     changes = [k for k in range(len(grid) - 1) if answers[k] != answers[k + 1]]
-    return [bisected(lambda x: exact(block, ratio, x), grid[k], grid[k + 1], 1e-6) for k in changes]
+    return [
+        bisected(lambda x, k=k: exact(block, ratio, x) == answers[k + 1], grid[k], grid[k + 1], 1e-6) for k in changes
+    ]
 
 
 class OverturningBound(NamedTuple):
@@ -79,15 +82,13 @@ def compared(block: Block, ratio: float, **how: Any) -> list[dict[str, Any]]:
     for bound in around(bounds(block, ratio)):
         error = None
         if bound.met(lambda x: dem(block, ratio, x, **how)):
-            error = bisected(lambda x: dem(block, ratio, x, **how), bound.low, bound.high, TOLERANCE) / bound.x - 1.0
+            above = bound.overturns_above
+            found = bisected(lambda x, f=above: dem(block, ratio, x, **how) == f, bound.low, bound.high, TOLERANCE)
+            error = found / bound.x - 1.0
         rows.append({"ratio": ratio, "bound": bound.x, "overturns_above": bound.overturns_above, "error": error})
     return rows
 
 
-def bisected(question, low: float, high: float, tolerance: float) -> float:
-    """Where the answer changes between low and high, to a relative tolerance."""
-    first = question(low)
-    while high / low > 1.0 + tolerance:
-        middle = math.sqrt(low * high)
-        low, high = (middle, high) if question(middle) == first else (low, middle)
-    return math.sqrt(low * high)
+def bisected(beyond: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
+    """The geometric mean of both sides."""
+    return math.sqrt(math.prod(bisect_ratio(low, high, tolerance, beyond)))
