@@ -23,10 +23,21 @@ class StudyRunner:
 
     parts = "SECTION"  # what sections are called in the help
     solves = True  # compile first, so that nobody's seconds hold that
-    machine = False  # keep on which machine it was measured
 
-    def __init__(self, name: str, about: str, sections: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        name: str,
+        about: str,
+        sections: Mapping[str, Any],
+        values: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None,
+        pictures: Mapping[str, tuple[str, Draw]] | None = None,
+        machine: bool = False,
+    ) -> None:
+        """values: what page.md.j2 shows of the data; pictures: suffix of docs/NAME_*.png to the section that it shows
+        ("" for all data) and what draws it; machine: keep on which machine it was measured.
+        """
         self.name, self.about, self.sections = name, about, sections
+        self.values, self.pictures, self.machine = values, pictures or {}, machine
 
     # -- what a study may say for itself -------------------------------------------------------------------
 
@@ -51,20 +62,12 @@ class StudyRunner:
         """What is wrong with a section, a line each."""
         return []
 
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What page.md.j2 shows of the data."""
-        return {}
-
-    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
-        """Suffix of docs/NAME_*.png: the section that it shows ("" for all data), and what draws it."""
-        return {}
-
     # -- files ---------------------------------------------------------------------------------------------
 
     def page(self, table: Mapping[str, Any]) -> str:
         """The page of what is kept."""
         machine = {"machine": sentence(table["machine"])} if "machine" in table else {}
-        return filled(f"{self.name}/page.md.j2", **self.values(table), **machine)
+        return filled(f"{self.name}/page.md.j2", **(self.values(table) if self.values else {}), **machine)
 
     def write(self, found: Mapping[str, Any]) -> None:
         """Data with the sections found, others stay; page, and pictures of those found."""
@@ -81,7 +84,7 @@ class StudyRunner:
         """Page, and pictures of some sections, from what is kept."""
         table = storage.read(self.name)
         (DOCS / f"{self.name}.md").write_text(self.page(table), encoding="utf-8")
-        for suffix, (section, draw) in self.pictures().items():
+        for suffix, (section, draw) in self.pictures.items():
             if not section or section in chosen:
                 draw(table[section] if section else table, DOCS / f"{'_'.join(filter(None, (self.name, suffix)))}.png")
 
@@ -118,7 +121,9 @@ class SectionedStudy(StudyRunner):
     """A study whose sections are modules: measure() -> JSON, values(JSON) for SECTION.md.j2, PICTURES."""
 
     def __init__(self, name: str, about: str, sections: Sequence[ModuleType], final: Sequence[str] = ("ok",)) -> None:
-        super().__init__(name, about, {module.__name__.rpartition(".")[2]: module for module in sections})
+        modules = {module.__name__.rpartition(".")[2]: module for module in sections}
+        drawn = {suffix: (part, draw) for part, module in modules.items() for suffix, draw in module.PICTURES.items()}
+        super().__init__(name, about, modules, pictures=drawn)
         self.final = tuple(final)  # how the status of an answer begins
 
     def measure(self, section: str, options: argparse.Namespace) -> Any:
@@ -133,11 +138,6 @@ class SectionedStudy(StudyRunner):
     def page(self, table: Mapping[str, Any]) -> str:
         there = [name for name in self.sections if name in table]
         return "\n".join([filled(f"{self.name}/head.md.j2"), *(self.said(name, table[name]) for name in there)])
-
-    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
-        return {
-            suffix: (name, draw) for name, module in self.sections.items() for suffix, draw in module.PICTURES.items()
-        }
 
 
 def runs_of(found: Any) -> Iterator[dict[str, Any]]:

@@ -8,7 +8,6 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-
 from studies import storage
 from studies.registry import STUDIES
 

@@ -23,7 +23,7 @@ def test_the_page_is_made_from_its_json():
 
 def test_pictures_are_there():
     named = set(re.findall(r"\]\((chapter7_\w+\.png)\)", TEXT))
-    drawn = {f"chapter7_{suffix}.png" for suffix in STUDY.pictures()}
+    drawn = {f"chapter7_{suffix}.png" for suffix in STUDY.pictures}
     assert named == drawn
     assert all((DOCS / name).stat().st_size > 10_000 for name in named)
 

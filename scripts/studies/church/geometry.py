@@ -18,7 +18,6 @@ DRUMS = {"b": 8, "c": 2}  # of the left and of the right column, the wider first
 COURSES = 8  # of a side wall
 WOOD = ("chestnut", "roof-a", "roof-d", "roof-n")
 DENSITIES = {"tuff": 1700.0, "peperino": 2112.0, "travertine": 2420.0, "chestnut": 650.0}  # Table A-1
-MODULI = {"tuff": 2.648e9, "peperino": 27.36e9, "travertine": 57.47e9}  # Table A-1 [Pa]
 
 
 @dataclass(frozen=True)

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from studies.imperfections import low_blocks, tables
 from studies.imperfections.pictures import draw, walls
 from studies.places import DOCS
-from studies.study import Draw, StudyRunner
+from studies.study import StudyRunner
 
 
 class ImperfectionStudy(StudyRunner):
     """One section: a row per wall."""
-
-    machine = True
 
     def measure(self, section: str, options: argparse.Namespace) -> list[dict[str, Any]]:
         rows = []
@@ -28,12 +25,6 @@ class ImperfectionStudy(StudyRunner):
     def problems(self, section: str, found: Any) -> list[str]:
         return [f"no answer: {tables.line(row)}" for row in found if tables.gave_up(row)]
 
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        return tables.values(table)
-
-    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
-        return {"": ("rows", draw_both)}
-
 
 def draw_both(rows: Any, path: Path) -> None:
     """The picture of the page, and that of case_imperfections.md."""
@@ -41,4 +32,11 @@ def draw_both(rows: Any, path: Path) -> None:
     walls(DOCS / "case_imperfections.png")
 
 
-STUDY = ImperfectionStudy("imperfections", "The 21-block wall with one block too low", {"rows": low_blocks.runs})
+STUDY = ImperfectionStudy(
+    "imperfections",
+    "The 21-block wall with one block too low",
+    {"rows": low_blocks.runs},
+    tables.values,
+    {"": ("rows", draw_both)},
+    machine=True,
+)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import tomllib
-from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -39,7 +38,7 @@ def name_of(file: Path) -> str:
 class LoadStudy(StudyRunner):
     """One section per case; DEM within 1 % of the zero-dilation path, none above the associated load by 0.5 %."""
 
-    parts, machine = "CASE", True
+    parts = "CASE"
 
     def measure(self, section: str, options: argparse.Namespace) -> dict[str, Any]:
         return asdict(measure(self.sections[section]))
@@ -50,12 +49,11 @@ class LoadStudy(StudyRunner):
     def problems(self, section: str, found: Any) -> list[str]:
         return [f"{section}: {text}" for text in problems(CaseLoads.read(found))]
 
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        return tables.values(table)
-
 
 STUDY = LoadStudy(
     "loads",
     "Failure loads by limit analysis and by DEM",
     {name_of(file): file for file in sorted(pushovers(), key=name_of)},
+    tables.values,
+    machine=True,
 )

@@ -9,7 +9,7 @@ import numpy as np
 from studies.bisection import bisect_ratio
 from studies.pulses import column, domain
 
-CASE, BOOK_CASE = "dimitri_arch", "arch_on_buttresses"
+CASE = "dimitri_arch"
 DURATIONS = (0.5, 1.0, 2.0)
 LASTS, MARGIN = 12.0, 0.5
 LOWEST, RATIO, HIGHEST = 0.12, 1.1, 8.0  # g, -, g

@@ -2,30 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from studies.pulses import buttresses, column, earthquakes, pictures, tables, voussoirs
-from studies.study import Draw, StudyRunner
+from studies.study import StudyRunner
 
-
-class PulseStudy(StudyRunner):
-    """One section per structure and question."""
-
-    machine = True
-
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        return tables.values(table)
-
-    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
-        return {
-            "column": ("", pictures.draw_domain),
-            "arch": ("vault", pictures.draw_histories),
-            "points": ("vault", pictures.draw_points),
-        }
-
-
-STUDY = PulseStudy(
+STUDY = StudyRunner(
     "pulses",
     "Published pulse tests of a column, an arch on buttresses and an arch of voussoirs",
     {
@@ -42,4 +22,11 @@ STUDY = PulseStudy(
         "buttresses": buttresses.study,
         "spread": earthquakes.study,
     },
+    tables.values,
+    {
+        "column": ("", pictures.draw_domain),
+        "arch": ("vault", pictures.draw_histories),
+        "points": ("vault", pictures.draw_points),
+    },
+    machine=True,
 )

@@ -24,7 +24,6 @@ RUNS = {  # law, damping; None: that of the case, stiffness-proportional
 }
 FREQUENCY, KN = 11.0, 1e10  # where 5 % hold [Hz]; [Pa/m]
 STATIC_SHARE = 1.0 / (1.0 + sum(4.0 * ratio for ratio, _ in maxwell.PUBLISHED))
-LAYOUTS = {2: 1, 4: 3}  # parts across the ring, beside the two of the case
 
 
 def voussoirs(parts: int) -> list[dict[str, Any]]:

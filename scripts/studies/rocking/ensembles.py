@@ -18,7 +18,7 @@ from scipy.stats import binomtest, ks_2samp
 
 from studies.rocking.single_block import fallen_angle, one_block, record_file, solve
 
-COUNT, CHANGE, AFTER = 60, 1.001, 5.0
+CHANGE, AFTER = 1.001, 5.0
 FALLS = 2.0  # stands for a peak of a block that overturned, in α
 
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from typing import Any
 
 from studies.rocking import comparisons, pictures, tables
-from studies.study import Draw, StudyRunner
+from studies.study import StudyRunner
 
 
 class RockingStudy(StudyRunner):
     """One section per comparison."""
-
-    machine = True
 
     def measure(self, section: str, options: argparse.Namespace) -> list[Any]:
         rows = []
@@ -26,15 +23,16 @@ class RockingStudy(StudyRunner):
     def said(self, section: str, found: Any) -> str:
         return f"{section}: {len(found)} rows"
 
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        return tables.values(table)
 
-    def pictures(self) -> Mapping[str, tuple[str, Draw]]:
-        return {
-            "free": ("free", pictures.draw_swings),
-            "pulses": ("bounds", pictures.draw_bounds),
-            "pairs": ("pairs", pictures.draw_pairs),
-        }
-
-
-STUDY = RockingStudy("rocking", "Blocks that rock, slide and bounce, against exact motions", comparisons.PARTS)
+STUDY = RockingStudy(
+    "rocking",
+    "Blocks that rock, slide and bounce, against exact motions",
+    comparisons.PARTS,
+    tables.values,
+    {
+        "free": ("free", pictures.draw_swings),
+        "pulses": ("bounds", pictures.draw_bounds),
+        "pairs": ("pairs", pictures.draw_pairs),
+    },
+    machine=True,
+)

@@ -18,6 +18,7 @@ from studies import storage
 from studies.stress import invariance, proportions, shaking, steady_state, stiffness, tables
 from studies.stress.verdicts import WRONG, StressRecord
 from studies.study import StudyRunner
+from studies.template import filled
 
 AXES = {
     "stiffness": stiffness.joint_stiffness,
@@ -89,14 +90,12 @@ class StressStudy(StudyRunner):
         if set(table) == set(self.sections):
             self.draw(found)
 
-    def values(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
+    def page(self, table: Mapping[str, Any]) -> str:
         records = {name: records_of(rows) for name, rows in table.items()}
-        about = {
-            record.axis: (self.sections[name].__doc__ or "").strip()
-            for name, found in records.items()
-            for record in found
-        }
-        return tables.values([record for found in records.values() for record in found], about)
+        said = {name: (axis.__doc__ or "").strip() for name, axis in self.sections.items()}
+        about = {one.axis: said[name] for name, found in records.items() for one in found}
+        every = [record for found in records.values() for record in found]
+        return filled("stress/page.md.j2", **tables.values(every, about))
 
 
 def records_of(rows: Any) -> list[StressRecord]:
