@@ -12,7 +12,7 @@ from reference import results
 from dem_cli.bench.table import percent
 from dem_cli.post import style
 from studies.bisection import bisect
-from studies.chapter6.shaken_case import extremes, run
+from studies.chapter6.shaken_case import ShakenCase, extremes, run
 from studies.storage import rounded
 from studies.template import commands, table
 
@@ -46,7 +46,7 @@ def measure() -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _shaken(a: float, *more: str):
+def _shaken(a: float, *more: str) -> ShakenCase:
     return run("column_arch_rocking_harmonic", f"motion.amplitude={a * LATERAL * GRAVITY:.5g}", *more)
 
 

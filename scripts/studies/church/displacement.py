@@ -51,8 +51,8 @@ def values(found: dict[str, Any]) -> dict[str, str]:
             cells += ["does not stand", "–"] if at is None else [f"{1e3 * at:.1f}", percent(at / thesis - 1.0)]
         rows.append((f"6 × 10^{exponent} t/m", *cells, bracket(one["bracket"])))
     head = ("spring of a node", *(cell for load in AT for cell in (f"dem at {load:g}", "error")), "failure")
-    thesis = ", ".join(f"{1e3 * moved:.1f} mm at {load:g}" for load, moved in AT.items())
-    return {"thesis": thesis, "springs": table(head, rows)}
+    said = ", ".join(f"{1e3 * far:.1f} mm at {load:g}" for load, far in AT.items())
+    return {"thesis": said, "springs": table(head, rows)}
 
 
 def moved(curve: list[list[float]], load: float) -> float | None:

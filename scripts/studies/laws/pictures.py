@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def draw(page: LawPage, file: Path) -> None:
                 ax.legend(fontsize=8, loc=panel.legend)
 
 
-def plot(ax, line: Graph) -> None:
+def plot(ax: Any, line: Graph) -> None:
     """One line with arrows along it, or points with their scatter."""
     colour = COLOURS[line.colour]
     if line.points:

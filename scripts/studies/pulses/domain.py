@@ -65,7 +65,7 @@ class Shaker:
     def __init__(
         self, case: Mapping[str, Any], damping: Mapping[str, Any], lasts: float, margin: float,
         monitor: Sequence[Any] | None = None,
-    ):  # fmt: skip
+    ) -> None:  # fmt: skip
         analysis = {"kind": "fragility", "intensities": [1.0], "coda": lasts, "margin": margin}
         made = changed(case, damping=dict(damping), monitor=monitor) | {"analysis": analysis}
         loaded = from_tables(made)

@@ -17,7 +17,7 @@ URL_IN_STYLE = re.compile(r"(?:url\(|@import\s+)[\"']?((?:https?:)?//[^\"')\s]+)
 class HtmlPage(HTMLParser):
     """What a page links to, what it loads, and where one can link to in it."""
 
-    def __init__(self, text: str):
+    def __init__(self, text: str) -> None:
         super().__init__()
         self.links: list[str] = []
         self.loads: list[str] = []

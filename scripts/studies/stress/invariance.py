@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,9 @@ KINEMATICS = ("fixed", "large")
 SIZES = {"column": 0.04, "wall 0.6": 0.04, "wall 0.65": 0.04, "wall 0.75": 0.04, "arch": 0.15, "portal": 0.08}
 
 
-def compared(axis: str, value: str, change: Change, short: bool, structures=STRUCTURES) -> Iterator[StressRecord]:
+def compared(
+    axis: str, value: str, change: Change, short: bool, structures: Sequence[str] = STRUCTURES
+) -> Iterator[StressRecord]:
     """The changed scene against the unchanged one, both drawn by hand."""
     scenes = named()
     for name in ("column",) if short else structures:
