@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli import __version__
-from dem_cli.cli import console
-from dem_cli.cli.console import seconds
+from dem_cli.cli.words import console
+from dem_cli.cli.words.console import seconds
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def left_out(without: int, slow: Sequence[Path]) -> list[str]:
 
 def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, quiet: bool) -> Iterator[Record]:
     """Records of all cases as they come, the longest first."""
-    from dem_cli.cli.count import Count
+    from dem_cli.cli.words.count import Count
     from dem_cli.cli.workers import usable_cores
     from dem_cli.kernels.jit import cache_is_cold
     from dem_cli.sweep.pool import Died, each_done
@@ -191,7 +191,7 @@ def show(records: Sequence[Record], took: float, as_json: bool) -> None:
         answer: dict[str, Any] = {"version": __version__, "counts": found, "wall_seconds": took, "cases": records}
         console.show(json.dumps(answer, indent=2, ensure_ascii=False))
         return
-    from dem_cli.cli.verify_table import show_tables
+    from dem_cli.cli.words.verify_table import show_tables
 
     show_tables(records)
     states = {"passed": found["passed"], "missed, as known": found["missed"], "FAILED": found["failed"] + found["met"]}

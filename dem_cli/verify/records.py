@@ -12,7 +12,7 @@ from typing import Any
 from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
 from dem_cli.output.reference import as_declared, error, verdicts
-from dem_cli.output.summary import plain
+from dem_cli.output.scalars import plain
 from dem_cli.verify.find import SHELVES
 
 Record = dict[str, Any]  # of a case: see `record`

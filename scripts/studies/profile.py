@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.contact.layout import Layout, draw
+from dem_cli.contact.layout import PointLayout, draw
 from dem_cli.laws.profile import Profile
 from dem_cli.post import style
 from studies.places import DOCS
@@ -39,8 +39,8 @@ def moments(places: np.ndarray, gaps: np.ndarray, shares: np.ndarray, rotations:
 def draw_joint(path: Path) -> None:
     """The polygon of a joint, and its moment over its rotation."""
     profile = Profile(sides=3, central=0.2, aperture=APERTURE)
-    polygon = draw(Layout(**profile.ranges), (0,), LENGTH)
-    plane = draw(Layout(), (0,), LENGTH)
+    polygon = draw(PointLayout(**profile.ranges), (0,), LENGTH)
+    plane = draw(PointLayout(), (0,), LENGTH)
     rotations = np.linspace(-FARTHEST, FARTHEST, 1501) * ANGLE
     with style.figure(path, figsize=(8.4, 3.7)) as figure:
         shape, response = figure.subplots(1, 2, width_ratios=(1.0, 1.5))

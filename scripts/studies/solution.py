@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import tomli_w
+from dem_cli.analyses.solve import solve
 
 from dem_cli import api
 from dem_cli.case.reader import LoadedCase
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 from dem_cli.output.shapes import placed_vertices
-from dem_cli.solve.run import run
 from studies.observer import RunKeeper
 from studies.places import ROOT
 
@@ -32,7 +32,7 @@ class Solution(NamedTuple):
 def solve(loaded: LoadedCase) -> Solution:
     """Solve a case that was read. Raises SolverError."""
     model, seen = api.build_model(loaded), RunKeeper()
-    return Solution(model, run(loaded.case, model, seen).summary, seen)
+    return Solution(model, solve(loaded.case, model, seen).summary, seen)
 
 
 def from_file(path: Path, *overrides: str) -> LoadedCase:

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dem_cli.assembly.assemble import assembly
 from reference import result, results, value
 from studies import storage
 from studies.appendix_b import failure_loads, sweep
 from studies.appendix_b.study import STUDY
 
 from dem_cli.api import load_case
-from dem_cli.model.assemble import assembly
 from dem_cli.sweep.plan import plan_of
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,12 +6,11 @@ import math
 from pathlib import Path
 
 import pytest
+from dem_cli.engine.properties import joint_properties, law_of
 from engine.limits import limit_loads
 from studies import storage
 from studies.imperfections import low_blocks, tables
 from studies.imperfections.study import STUDY
-
-from dem_cli.solve.joints import joint_properties, law_of
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

@@ -6,12 +6,12 @@ import time
 from typing import Any, NamedTuple
 
 import numpy as np
+from dem_cli.analyses.solve import solve as solve_model
 
 from dem_cli import api
 from dem_cli.errors import SolverError
 from dem_cli.output import shapes
 from dem_cli.output.record import Frame
-from dem_cli.solve.run import run as solve_model
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import command_of, from_file

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dem_cli.assembly.assemble import assembly
 from matplotlib import colormaps
 from matplotlib.colors import Normalize
 from matplotlib.patches import Rectangle
 
 from dem_cli.api import make_case_model
 from dem_cli.case.reader import Source, validate
-from dem_cli.model.assemble import assembly
 from dem_cli.post import style
 
 LENGTH, HEIGHT, BLOCKS = 40.0, 17.5, 3  # [mm], [mm], in a full course

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from dem_cli.analyses.solve import solve
+from dem_cli.engine.properties import joint_properties, law_of
 
 from dem_cli import api
 from dem_cli.case.schema import Case
@@ -19,8 +21,6 @@ from dem_cli.limit.associated import OK, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
-from dem_cli.solve.joints import joint_properties, law_of
-from dem_cli.solve.run import run
 from studies.observer import Silence
 
 # Increments of the fine path: the first displacement and its growth, and the growth of the load that counts as none.
@@ -110,7 +110,7 @@ def loaded(file: Path, overrides: Sequence[str]) -> tuple[Case, Model]:
 
 def explicit(row: CaseLoads, case: Case, model: Model) -> MethodLoad:
     """DEM; what it warns of goes to the row."""
-    summary, seconds = timed(lambda: run(case, model, Silence()).summary)
+    summary, seconds = timed(lambda: solve(case, model, Silence()).summary)
     row.warnings += [text for text in summary["warnings"] if text not in row.warnings]
     start = summary.get("start", {}).get("kind", "")
     low, high = summary.get("failure_load_bracket") or (None, None)

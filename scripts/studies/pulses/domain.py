@@ -12,13 +12,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from dem_cli.ensembles.shaken_run import RestedStructure
+from dem_cli.ensembles.variants import Variant
 
 from dem_cli.api import build_model
 from dem_cli.motion.build import suites_of
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.pulses import impulse
-from dem_cli.solve.perturb import Variant
-from dem_cli.solve.trial import Rested
 from studies.bisection import bisect_ratio
 from studies.observer import Silence
 from studies.places import CASES
@@ -70,7 +70,7 @@ class Shaker:
         made = changed(case, damping=dict(damping), monitor=monitor) | {"analysis": analysis}
         loaded = from_tables(made)
         model = build_model(loaded)
-        self.rested = Rested(Variant(loaded.case, model, 0), suites_of(loaded.case)[0], Silence())
+        self.rested = RestedStructure(Variant(loaded.case, model, 0), suites_of(loaded.case)[0], Silence())
         self.runs, self.seconds = 0, 0.0
 
     def falls(self, amplitude: float, tp: float) -> bool:
@@ -78,7 +78,7 @@ class Shaker:
         return bool(self.run([Motion(impulse(amplitude * G, tp, REBOUND))]).collapsed)
 
     def run(self, motions: Sequence[Any]) -> Any:
-        """What became of it under the sum of motions (solve/trial.py: Run)."""
+        """What became of it under the sum of motions (ensembles/shaken_run.py: Run)."""
         run = self.rested.shaken(motions)
         assert run.collapsed is not None, run.how
         self.runs, self.seconds = self.runs + 1, self.seconds + run.seconds

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from dem_cli.api import make_case_model
 from dem_cli.case.explain import Entry
-from dem_cli.case.keys import Key, Table, tables
+from dem_cli.case.keys import CaseTable, Key, tables
 from studies.places import DOCS
 from studies.template import table as markdown
 
@@ -38,7 +38,7 @@ def text() -> str:
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
-def overview(found: Sequence[Table]) -> str:
+def overview(found: Sequence[CaseTable]) -> str:
     """A table of tables: heading, kinds, what it is for."""
     rows = []
     for name in dict.fromkeys(table.path[0] for table in found):
@@ -49,7 +49,7 @@ def overview(found: Sequence[Table]) -> str:
     return markdown(("table", "holds", "kinds"), rows)
 
 
-def section(found: Sequence[Table]) -> list[str]:
+def section(found: Sequence[CaseTable]) -> list[str]:
     """A table at the top of the file with all its kinds, then the tables inside it."""
     first = found[0]
     kinds = [table for table in found if table.tag]
@@ -75,12 +75,12 @@ def section(found: Sequence[Table]) -> list[str]:
     return parts
 
 
-def plain(table: Table) -> list[Key]:
+def plain(table: CaseTable) -> list[Key]:
     """The keys of a table; at the top of a case only those that are no tables."""
     return [key for key in table.keys if table.path or not key.only_tables]
 
 
-def common(kinds: Sequence[Table]) -> list[Key]:
+def common(kinds: Sequence[CaseTable]) -> list[Key]:
     """Keys that all kinds have and explain alike."""
     said = [{(key.name, key.description, key.allowed, key.default) for key in table.keys} for table in kinds]
     alike = set.intersection(*said)
@@ -98,7 +98,7 @@ def row(key: Key) -> tuple[str, ...]:
     return f"`{key.name}`", safe(key.allowed.replace("'", '"')), units, default, safe(key.meaning)
 
 
-def example(table: Table) -> str:
+def example(table: CaseTable) -> str:
     """The table with the keys that it needs, which is valid; as a block of TOML."""
     needed = [key for key in table.keys if key.names_kind or key.required]
     others = [key for key in table.keys if key.example and key not in needed]
@@ -122,13 +122,13 @@ def valid(declared: type[BaseModel], lines: Sequence[str]) -> bool:
     return True
 
 
-def paragraphs(table: Table) -> str:
+def paragraphs(table: CaseTable) -> str:
     """What the table is, each paragraph a sentence or more."""
     lines = [capital(line) for line in safe(table.about).split("\n") if line]
     return "\n\n".join(line if line.endswith((".", "?")) else f"{line}." for line in lines)
 
 
-def more(table: Table) -> str:
+def more(table: CaseTable) -> str:
     """A link to the page that says most about a table, where there is one beside this."""
     page = Entry(table, None, table.kinds).page.removeprefix("docs/")
     title = (DOCS / page).read_text(encoding="utf-8").split("\n")[0].removeprefix("# ")
@@ -152,6 +152,6 @@ def slug(heading: str) -> str:
     return "".join(kept)
 
 
-def anchor(table: Table) -> str:
+def anchor(table: CaseTable) -> str:
     """Of the section of one kind."""
     return slug(f"{table.tag} = {table.kinds[0]}")

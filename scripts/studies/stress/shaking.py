@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from dem_cli.analyses.solve import solve
 
-from dem_cli.solve.run import run
 from studies.observer import RunKeeper
 from studies.polygons import rectangle
 from studies.stress.structures import StressScene, block, drawn, ground
@@ -22,7 +22,7 @@ def shake(scene: StressScene) -> tuple[dict[str, Any], RunKeeper, Any]:
     """Summary, what was observed, and the model."""
     case, model, _ = scene.build()
     history = RunKeeper()
-    return run(case, model, history).summary, history, model
+    return solve(case, model, history).summary, history, model
 
 
 def scene(name: str, blocks: list[dict], duration: float, **tables: Any) -> StressScene:

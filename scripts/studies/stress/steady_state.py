@@ -7,15 +7,15 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+from dem_cli.engine import simulation as engine
+from dem_cli.engine.fictitious_masses import fictitious_masses
+from dem_cli.engine.kinematics import live_scale
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation, compiled_advance
+from dem_cli.statics.equilibrium import relax
 
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
-from dem_cli.solve import simulation as engine
-from dem_cli.solve.equilibrium import relax
-from dem_cli.solve.joints import joint_properties, law_of
-from dem_cli.solve.masses import fictitious_masses
-from dem_cli.solve.run import live_scale
-from dem_cli.solve.simulation import Simulation, compiled_advance
 from studies.polygons import rectangle
 from studies.stress.structures import StressScene, block, drawn, ground, named
 from studies.stress.verdicts import HELD, REFUSED, WRONG, StressRecord, figure, load_record
@@ -54,10 +54,10 @@ def rest(short: bool) -> Iterator[StressRecord]:
         for kinematics in ("fixed", "large"):
             sim = simulation(scene, kinematics)
             settled = settle(sim, load)
-            before, friction = sim.save_places(), sim.ledger[slot.FRICTION]
+            before, friction = sim.places(), sim.ledger[slot.FRICTION]
             sim.advance(steps, slot.HOLD_LOAD)
             structure = f"{scene.name}, {kinematics}"
-            drift = float(np.abs(sim.save_places() - before).max()) / size
+            drift = float(np.abs(sim.places() - before).max()) / size
             ratio = sim.kinetic_energy() / sim.elastic_energy()
             slipped = float(sim.ledger[slot.FRICTION] - friction) / sim.elastic_energy()
             yield figure(AXIS_REST, structure, "drift in block sizes", drift if settled else np.nan, 1e-9)

@@ -6,9 +6,10 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
+from dem_cli.analyses.solve import solve
+from dem_cli.assembly.validate import warnings as oddities
+
 from dem_cli.errors import CaseError, DemError
-from dem_cli.model.validate import warnings as oddities
-from dem_cli.solve.run import run
 from studies.observer import RunKeeper
 from studies.stress.structures import StressScene
 
@@ -57,7 +58,7 @@ def push(scene: StressScene) -> PushoverAnswer:
         warnings.simplefilter("always")
         try:
             case, model, said = scene.build()
-            summary = run(case, model, keeper).summary
+            summary = solve(case, model, keeper).summary
         except CaseError as error:
             return PushoverAnswer("refused", refusal=error.problems[0].message)
         except DemError as error:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dem_cli.bench import page, registry
-from dem_cli.bench.record import Found, group_table, read, record, records_of
+from dem_cli.bench.record import GroupResult, group_table, read, record, records_of
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 MACHINE = {"cores": 2, "processor": "some", "system": "Linux", "load": 0.5, "dem": "1", "python": "3.11"}
@@ -37,14 +37,14 @@ def test_pictures_can_be_drawn_again(tmp_path):
             assert (tmp_path / f"{suffix}.png").stat().st_size > 10_000
 
 
-def kernels(blocks: int) -> Found:
-    return Found([record(f"wall {blocks}", "geometry", "fixed", [7.0], "ns", blocks=blocks, points=4 * blocks)])
+def kernels(blocks: int) -> GroupResult:
+    return GroupResult([record(f"wall {blocks}", "geometry", "fixed", [7.0], "ns", blocks=blocks, points=4 * blocks)])
 
 
 def test_groups_measured_elsewhere_say_so(tmp_path):
     page.write(tmp_path, {"kernels": group_table(kernels(21), MACHINE)})
     assert "\nMachine: 2 cores, some, Linux, dem 1, python 3.11.\n" in (tmp_path / "benchmarks.md").read_text("utf-8")
-    start_up = Found([record("T21", "command", "dem", [1.0], best_wall=1.0, median_wall=1.0)])
+    start_up = GroupResult([record("T21", "command", "dem", [1.0], best_wall=1.0, median_wall=1.0)])
     page.write(tmp_path, {"startup": group_table(start_up, MACHINE | {"cores": 64})})
     text = (tmp_path / "benchmarks.md").read_text("utf-8")
     assert "* kernels: 2 cores" in text

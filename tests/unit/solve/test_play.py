@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dem_cli.engine.clearances import (
+    AMPLIFIED,
+    FARTHEST,
+    MARGIN,
+    STEEPEST,
+    beyond,
+    gap_play,
+    joint_angles,
+    open_gaps,
+    play,
+)
 from engine import block, rectangle, running_wall, simulation, tables, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracle import rolling_polygons as statics
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.solve.play import AMPLIFIED, FARTHEST, MARGIN, STEEPEST, beyond, gap_play, joint_angles, open_gaps, play
 
 HEIGHT, WIDTH = 0.0175, 0.04
 
