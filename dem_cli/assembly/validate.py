@@ -152,13 +152,13 @@ def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
     wrong = np.nonzero(slim < SLIVER)[0]
     if not wrong.size:
         return []
-    worst = np.argmin(slim)
+    worst = int(np.argmin(slim))
     more = f" (and {wrong.size - 1} more)" if wrong.size > 1 else ""
     return [f"block '{names[worst]}'{more} is a sliver (width / length = {slim[worst]:.1e}): expect tiny steps"]
 
 
 def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -> list[str]:
-    large, small = np.argmax(values), np.argmin(values)
+    large, small = int(np.argmax(values)), int(np.argmin(values))
     ratio = values[large] / values[small]
     if ratio <= limit:
         return []

@@ -229,9 +229,9 @@ class Simulation:
         )  # fmt: skip
         self.control[:] = control
 
-    def accelerations(self, block: int) -> np.ndarray:
-        """Of the last step, per unit of the solver's time, (n_dof,)."""
-        return self.bodies.unbalanced[block] * self.loads.inverse_masses[block]
+    def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
+        """Of the last step, per unit of the solver's time, (..., n_dof)."""
+        return self.bodies.unbalanced[blocks] * self.loads.inverse_masses[blocks]
 
     def rest(self) -> None:
         """Stop all free blocks; their kinetic energy goes to damping."""

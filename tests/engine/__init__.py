@@ -19,7 +19,7 @@ from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, HistoryRow, Samples
+from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
 
 MU, DENSITY = 0.6, 2000.0
 
@@ -35,7 +35,7 @@ class Scene(NamedTuple):
 
 
 @dataclass
-class Records:
+class Records(Observer):
     """An observer that only remembers."""
 
     rows: list[HistoryRow] = field(default_factory=list)
@@ -59,9 +59,6 @@ class Records:
     def history(self) -> Samples:
         """The whole time history."""
         return Samples(*(np.concatenate(parts) for parts in zip(*self.stretches, strict=True)))
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        pass
 
 
 def rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:

@@ -15,6 +15,7 @@ from dem_cli.analyses.time_history import run as repeated
 from dem_cli.ensembles import shaken_run
 from dem_cli.ensembles.batch import Batch
 from dem_cli.errors import SolverError
+from dem_cli.output.record import Observer
 
 BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rocking_pulse_falls.toml"
 EXACT = Block(0.5, 2.0)
@@ -23,16 +24,11 @@ GRID = [4.2, 4.3, 4.45, 8.0, 12.6, 13.2]  # of pulses [m/s2]; 12.6 is in the gap
 SMALL = ["analysis.duration=3.0", "analysis.coda=1.0"]
 
 
-class Kept:
+class Kept(Observer):
     """An observer that keeps the table of all runs."""
 
     def runs(self, rows):
         self.rows = rows
-
-    def frame(self, *_): ...
-    def row(self, *_): ...
-    def samples(self, *_): ...
-    def progress(self, *_): ...
 
 
 def study(*overrides, threads=1, kind="fragility", solve=run):
