@@ -16,6 +16,7 @@ from dem_cli.assembly.assemble import assembly
 from dem_cli.case.schema import Case
 from dem_cli.engine.kinematics import live_scale
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
@@ -99,10 +100,10 @@ def scene(case: dict | Path, *overrides: str) -> Scene:
     return Scene(loaded.case, assembly(loaded.case).model)
 
 
-def solve(case: dict | Path, *overrides: str) -> tuple[dict[str, Any], Records]:
+def solve(case: dict | Path, *overrides: str, settings: Settings = DEFAULT) -> tuple[dict[str, Any], Records]:
     """Summary of a run and what its observer saw."""
     made, records = scene(case, *overrides), Records()
-    return solver.solve(made.case, made.model, records).summary, records
+    return solver.solve(made.case, made.model, records, settings=settings).summary, records
 
 
 def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6) -> Simulation:

@@ -35,7 +35,7 @@ def study(*overrides, threads=1, kind="fragility", solve=run):
     """Summary and table of a study of the block of the case file under its pulse and others."""
     loaded = api.load_case(BLOCK, [f"analysis.kind={kind}", *overrides])
     kept = Kept()
-    summary = solve(loaded.case, api.build_model(loaded), kept, Batch(threads)).summary
+    summary = solve(loaded.case, api.build_model(loaded), kept, batch=Batch(threads)).summary
     return summary, kept.rows
 
 
@@ -90,7 +90,7 @@ def test_a_block_that_is_falling_when_the_motion_ends_has_fallen():
     short = loaded.case.analysis.model_copy(update={"duration": None})
     case = loaded.case.model_copy(update={"analysis": short})
     kept = Kept()
-    assert run(case, api.build_model(loaded), kept, Batch()).summary["collapse_intensities"] == [4.45]
+    assert run(case, api.build_model(loaded), kept, batch=Batch()).summary["collapse_intensities"] == [4.45]
     assert kept.rows[0].time > 1.0 / FREQUENCY
 
 
