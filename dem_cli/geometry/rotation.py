@@ -46,6 +46,13 @@ def swept(spins: np.ndarray, arms: np.ndarray) -> np.ndarray:
     return spins * across(arms) if arms.shape[-1] == 2 else np.cross(spins, arms)
 
 
+def frames(stored: np.ndarray, dimension: int) -> np.ndarray:
+    """Unit normal and tangents, (n, d, d), from frames (n, d·d); in the plane only normals are up to date."""
+    if dimension == 2:
+        return np.stack([stored[:, :2], across(stored[:, :2])], axis=1)
+    return stored.reshape(-1, dimension, dimension)
+
+
 def unturned(n: int, dimension: int) -> np.ndarray:
     """Orientations of n blocks that have not turned, (n, 1) or (n, 4)."""
     return np.zeros((n, 1)) if dimension == 2 else np.tile((1.0, 0.0, 0.0, 0.0), (n, 1))
