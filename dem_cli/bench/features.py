@@ -9,11 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, SIZES, Known, Nobody, solve
+from dem_cli.bench.cases import KNOWN, SIZES, Known, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
 from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.output.record import Observer
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
@@ -45,7 +46,7 @@ class Feature:
         return True
 
 
-class Disk(Nobody):
+class Disk(Observer):
     """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
 
     def __init__(self, case: Any, model: Any, folder: Path):

@@ -11,10 +11,11 @@ import numpy as np
 
 from dem_cli import api
 from dem_cli.bench import draw
-from dem_cli.bench.cases import FOLDER, Nobody
+from dem_cli.bench.cases import FOLDER
 from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.output.record import Observer
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
@@ -30,7 +31,7 @@ DAMPING = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
 BLOCK, SHAKEN = "block", {"column": "shaken_column", "arch": "shaken_arch"}
 
 
-class History(Nobody):
+class History(Observer):
     """An observer that keeps the first monitor."""
 
     def __init__(self) -> None:

@@ -8,10 +8,9 @@ from dem_cli.contact.joints import Faces, JointProperties
 from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
+from dem_cli.engine.settings import DEFAULT, DetectionSettings
 from dem_cli.kernels.records import Bodies, Contacts
 from dem_cli.model.model import Model
-
-SAME_PLACE = 0.01  # of the reach of detection: blocks that moved less have the same faces as before
 
 
 class JointTracking:
@@ -27,10 +26,10 @@ class JointTracking:
 
     def __init__(
         self, model: Model, bodies: Bodies, properties: JointProperties, moves: bool, n_memory: int, smallest: float,
-        reach: float,
+        reach: float, settings: DetectionSettings = DEFAULT.detection,
     ):  # fmt: skip
         self.model, self.properties, self.moves, self.n_memory = model, properties, moves, n_memory
-        self.smallest, self.reach = smallest, reach
+        self.smallest, self.reach, self.settings = smallest, reach, settings
         self.chains = None  # what comes back of the joints of the start
         self.detections = 0
         self.take(self._first(bodies))
@@ -75,7 +74,7 @@ class JointTracking:
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
         carry_memory(self.narrow, old, new)
-        if bodies.travel.max(initial=0.0) < SAME_PLACE * self.reach:
+        if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = old.geometry.faces[old.contacts.stale[:-1] == 1]
             new.contacts.stale[:-1] |= same_rows(asked, new.geometry.faces) >= 0

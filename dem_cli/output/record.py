@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -115,8 +115,8 @@ def distinct(names: Iterable[str]) -> list[str]:
     return found
 
 
-class Observer(Protocol):
-    """Who a solver reports to while it runs; all return at once and never change the state."""
+class Observer:
+    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state."""
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""
