@@ -31,6 +31,14 @@ def across(vectors: np.ndarray) -> np.ndarray:
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
+def beside(normals: np.ndarray) -> np.ndarray:
+    """A unit vector square to each unit vector, (n, d): in the plane turned by +90°."""
+    if normals.shape[1] == 2:
+        return across(normals)
+    found = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    return found / np.linalg.norm(found, axis=1)[:, np.newaxis]
+
+
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Cross product in the plane, (...): how far b lies to the left of a, times the length of a."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -37,6 +37,14 @@ def test_across_is_a_quarter_turn():
     assert rotation.across(PLANE) == pytest.approx(rotation.turned(PLANE, 0.5 * np.pi), abs=1e-15)
 
 
+def test_beside_is_square():
+    normals = SPACE / np.linalg.norm(SPACE, axis=1)[:, None]
+    found = rotation.beside(normals)
+    assert (found * normals).sum(axis=1) == pytest.approx(0.0, abs=1e-15)
+    assert np.linalg.norm(found, axis=1) == pytest.approx(1.0)
+    assert np.array_equal(rotation.beside(PLANE), rotation.across(PLANE))
+
+
 def test_the_plane_is_a_part_of_space():
     """Products, velocities and matrices of planar data are those of the same data in space."""
     other = RNG.normal(size=(7, 2))
