@@ -55,7 +55,7 @@ def test_joint_models_are_valid(name):
 
 def test_compiled_code_stays_in_its_folder(quick):
     """Elsewhere it would not be told apart from that of older sources."""
-    assert numba.config.CACHE_DIR == str(jit.cache_folder())
+    assert str(jit.cache_folder()) == numba.config.CACHE_DIR
 
 
 def test_quick_answers_are_right(quick):
