@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
@@ -12,6 +11,7 @@ from engine import block, rectangle, running_wall, simulation, tables
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.jit import kernel
 from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.registry import LAWS
 
@@ -88,7 +88,7 @@ def test_planar_twin_of_the_loop(kinematics):
     states = sim.contacts.normal > 0
     assert states.any()
     assert not states.all()
-    loop = numba.njit(error_model="numpy")(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
+    loop = kernel(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
     rng, work = np.random.default_rng(3), []
     for _ in range(5):
         kick = rng.normal(size=sim.bodies.velocities.shape) * 1e-6
