@@ -131,7 +131,9 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
         job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already
     try:
-        loads = search.limits or limit_loads(model, properties, law_of(case), associated_only=by_path)
+        loads = search.limits or limit_loads(
+            model, properties, law_of(case), associated_only=by_path, settings=job.settings.limit
+        )
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return {}

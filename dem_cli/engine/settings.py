@@ -6,9 +6,11 @@ A case file offers none of them; benchmarks and studies hand in others. Each was
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
+from dem_cli.limit.settings import LimitSettings
 from dem_cli.model.scales import CLOSURE, OVERLAP
 
 
@@ -285,16 +287,22 @@ class Settings:
     restitution: RestitutionSettings = RestitutionSettings()
     safety: SafetySettings = SafetySettings()
     statistics: StatisticsSettings = StatisticsSettings()
+    limit: LimitSettings = field(default_factory=LimitSettings)
     doubts: DoubtSettings = DoubtSettings()
 
     def changed(self) -> dict[str, Any]:
         """The settings that differ from the default, by their path, such as "relaxation.tolerance"."""
-        return {
-            f"{group.name}.{field.name}": value
-            for group in fields(self)
-            for field in fields(getattr(self, group.name))
-            if (value := getattr(getattr(self, group.name), field.name)) != field.default
-        }
+        return dict(_differences(self, ""))
+
+
+def _differences(settings: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Path and value of each setting of a record, and of the records in it, that is not the default."""
+    for part in fields(settings):
+        value = getattr(settings, part.name)
+        if is_dataclass(value):
+            yield from _differences(value, f"{path}{part.name}.")
+        elif value != part.default:
+            yield path + part.name, value
 
 
 DEFAULT = Settings()

@@ -15,6 +15,7 @@ from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.path import Path, trace
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
 
@@ -65,6 +66,7 @@ def limit_loads(
     heads_frictionless: bool = False,
     associated_only: bool = False,
     progress: Progress = lambda load, reached: None,
+    settings: LimitSettings = DEFAULT_LIMIT,
 ) -> LimitLoads:
     """Limit analysis of the faces that touch at the start; the multiplier is that of model.live_loads.
 
@@ -77,11 +79,11 @@ def limit_loads(
     begun = time.perf_counter()
     structure = start_structure(model, properties)
     friction = friction_of(structure.joints, law, heads_frictionless)
-    associated = limit_load(structure, friction)
+    associated = limit_load(structure, friction, settings.associated)
     seconds = time.perf_counter() - begun
     if associated_only or associated.status in (FALLS, LOCKED) or not structure.dead.any():
         return LimitLoads(structure, friction, associated, None, seconds, None)
-    path = trace(structure, friction, progress=progress)
+    path = trace(structure, friction, progress=progress, settings=settings)
     return LimitLoads(structure, friction, associated, path, seconds, time.perf_counter() - begun - seconds)
 
 

@@ -27,15 +27,13 @@ from dem_cli.limit.program import (
     program_of,
     standing,
 )
+from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
 
 OK = "ok"
 FALLS = "does not stand under its dead loads"
 LOCKED = "no load of this direction makes it fail"
 GIVEN_UP = "not converged"
 
-RESIDUAL, GAP = 1e-6, 1e-4  # largest accepted: unbalanced force in own weights; width of the bounds over the load
-NOTHING = 1e-3  # live over dead loads, below which bounds are compared with this
-PROOF = 1e-6  # relative error accepted in a proof that something is impossible
 # Settings of the solver, tried in turn until the answer passes: quick, then careful.
 TRIES: tuple[dict[str, Any], ...] = (
     {
@@ -64,7 +62,9 @@ class LimitLoad(NamedTuple):
     iterations: int  # of the solver
 
 
-def limit_load(structure: Structure, friction: np.ndarray) -> LimitLoad:
+def limit_load(
+    structure: Structure, friction: np.ndarray, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+) -> LimitLoad:
     """The largest multiplier of the live loads that the structure carries with associated friction.
 
     friction: coefficient of every point, (n_points,), see limit.cone.friction_of.
@@ -73,7 +73,7 @@ def limit_load(structure: Structure, friction: np.ndarray) -> LimitLoad:
     """
     if not np.abs(structure.live).max(initial=0.0) > 0.0:
         raise UsageError("limit analysis needs live loads on blocks that can move, and there are none")
-    program = program_of(structure, cone_of(friction))
+    program = program_of(structure, cone_of(friction), settings)
     found = _first_good(program, largest_load, _judge_load)
     if found.status not in (OK, LOCKED):
         return found
@@ -99,8 +99,8 @@ def _first_good(
 ) -> LimitLoad:
     """The first answer that passes; where none does, the last."""
     iterations = 0
-    for settings in TRIES:
-        found = solve(program, settings)
+    for options in TRIES:
+        found = solve(program, options)
         iterations += found.iterations
         judged = judge(program, found)._replace(iterations=iterations)
         if not judged.status.startswith(GIVEN_UP):
@@ -125,9 +125,10 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     residual = float(np.abs(imbalance).max())
     lower = found.multiplier - float((np.abs(imbalance) * s.scales) @ np.abs(velocities))
     upper = float(amounts @ np.maximum(-(program.motion @ velocities), 0.0)) - float(s.dead @ velocities)
-    gap = (upper - lower) / max(abs(found.multiplier), NOTHING * program.load)
+    gap = (upper - lower) / max(abs(found.multiplier), program.settings.nothing * program.load)
     made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
-    if residual <= RESIDUAL and -RESIDUAL <= gap <= GAP:
+    accepted = program.settings
+    if residual <= accepted.residual and -accepted.residual <= gap <= accepted.gap:
         return made
     reason = f"{GIVEN_UP}: residual {residual:.1e} of own weights, bounds {gap:.1e} apart ({found.said})"
     return made._replace(status=reason)
@@ -140,7 +141,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     normal, shear = _forces(program, np.maximum(found.amounts, 0.0))
     imbalance = program.structure.imbalance(np.column_stack([normal, shear]).ravel(), 0.0)
     residual = float(np.abs(imbalance).max(initial=0.0))
-    if found.kind == ANSWERED and residual <= RESIDUAL:
+    if found.kind == ANSWERED and residual <= program.settings.residual:
         return _refusal(program, OK, residual)
     return _refusal(program, f"{GIVEN_UP}: cannot tell whether it {FALLS[9:]}", residual)
 
@@ -154,7 +155,7 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
     power = float(s.dead @ velocities)
     violation = max(0.0, float(-(program.motion @ velocities).min(initial=0.0)))
     error = violation * program.weight * program.n_blocks / power if power > 0.0 else np.inf
-    return _proved(FALLS, error, found), error
+    return _proved(program, FALLS, error, found), error
 
 
 def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
@@ -163,12 +164,14 @@ def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
     load = found.multiplier * float(np.abs(s.live / s.scales).max())
     error = float(np.abs(unbalanced).max()) / load if load > 0.0 else np.inf
-    return _proved(LOCKED, error, found), error
+    return _proved(program, LOCKED, error, found), error
 
 
-def _proved(claim: str, error: float, found: ProgramSolution) -> str:
+def _proved(program: Program, claim: str, error: float, found: ProgramSolution) -> str:
     """The claim, if its proof is good enough."""
-    return claim if error <= PROOF else f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
+    if error <= program.settings.proof:
+        return claim
+    return f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
 
 
 def _forces(program: Program, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

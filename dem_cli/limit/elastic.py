@@ -20,9 +20,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
-
-LEAST_FRICTION = 1e-6  # of points without friction: negligible, and the equations stay the same
-SINGULAR = 1e-13  # added to the diagonal, over its mean
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 
 
 class State(NamedTuple):
@@ -43,11 +41,21 @@ class Direction(NamedTuple):
     shear: np.ndarray
     positive: np.ndarray
 
+    def and_on(self, other: Direction, share: float) -> Direction:
+        """This direction, and on by a share of another one."""
+        return Direction(
+            self.displacements + share * other.displacements,
+            self.load + share * other.load,
+            self.shear + share * other.shear,
+            self.positive + share * other.positive,
+        )
+
 
 class Elastic:
     """Matrices of a structure whose joints are elastic, scaled."""
 
-    def __init__(self, structure: Structure, friction: np.ndarray):
+    def __init__(self, structure: Structure, friction: np.ndarray, settings: LimitSettings = DEFAULT_LIMIT):
+        self.settings = settings
         joints, d, n_dof = structure.joints, structure.model.dimension, structure.n_dof
         blocks = len(structure.free) // n_dof
         self.weight = float(structure.scales.reshape(blocks, n_dof)[:, 0].mean())
@@ -59,7 +67,7 @@ class Elastic:
         self.bn, self.bt = scaled[0::2].tocsr(), scaled[1::2].tocsr()
         self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
-        self.friction = np.maximum(friction, LEAST_FRICTION)
+        self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight
         largest = np.abs(live).max(initial=0.0)
@@ -122,7 +130,7 @@ class Elastic:
         p, (nn, tt, tn) = self.point, self.outer
         values = stiff_n[p] * nn + stiff_t[p] * tt - coupling[p] * tn
         data = np.bincount(self.place, values, len(self.indices))
-        data[self.diagonal] += SINGULAR * np.abs(data[self.diagonal]).mean()
+        data[self.diagonal] += self.settings.path.singular * np.abs(data[self.diagonal]).mean()
         n = len(self.columns)
         matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
         return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=1e-3, options={"SymmetricMode": True})

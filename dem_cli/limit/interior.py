@@ -14,20 +14,6 @@ import numpy as np
 
 from dem_cli.limit.elastic import Direction, Elastic, State
 
-TOLERANCE = 1e-7  # infeasibility, in block weights and their displacements
-END = 1e-9  # of τ, over the square of the lightest block
-BOUNDARY = 0.95  # share of the way to the boundary
-# Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
-CENTRING = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
-STALLED, PATIENCE = 0.8, 12  # fold: the mean product fell by less than this within so many iterations
-CENTRED, WIDE = 4.0, 3.0  # largest ratio of a product to the mean: of a kept iterate, of one that may be predicted from
-REVERSAL = 0.6  # τ of one kept iterate over that of the last
-STRIDE = 0.9  # relative change of any product's factor in one prediction
-PASSED = 0.3  # τ over that of the fold, below which it is passed
-ON_ARC = 500  # iterations on one arc
-SLOW = 150  # iterations without a fold
-ENDLESS = 1e12  # relative change by τ at which the path turns on the spot
-
 
 @dataclass
 class Iterate:
@@ -47,7 +33,8 @@ class Increment:
 
     def __init__(self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
-        self.end = END * min(1.0, float(problem.own.min(initial=1.0))) ** 2
+        self.settings = problem.settings.interior_point
+        self.end = self.settings.end * min(1.0, float(problem.own.min(initial=1.0))) ** 2
 
     def start(self, tau: float, ahead: float) -> Iterate:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
@@ -72,28 +59,29 @@ class Increment:
         ahead  how far slips go on from the last increment, as a share of that
         folds  how many folds of the central path to go round
         """
-        at, length, kept, means = self.start(tau, ahead), 1.0, None, []
-        first = True
-        while len(means) < SLOW and not stop():
+        settings, at, length, first = self.settings, self.start(tau, ahead), 1.0, True
+        kept: tuple[float, Iterate] | None = None
+        means: list[float] = []
+        while len(means) < settings.slow and not stop():
             mean = float((at.x[: len(at.x) // 2] * at.x[len(at.x) // 2 :]).mean())
             infeasible = self._residuals(at)
-            if infeasible < TOLERANCE and mean <= 3.0 * self.end:
+            if infeasible < settings.tolerance and mean <= 3.0 * self.end:
                 return self._state(at)
             if not self._factorise(at):
                 return None
             means.append(mean)
             if infeasible < 1e-3:
-                if self._spread(at, mean) < CENTRED and (kept is None or mean < REVERSAL * kept[0]):
+                if self._spread(at, mean) < settings.centred and (kept is None or mean < settings.reversal * kept[0]):
                     kept = (mean, at.copy())
-                if len(means) > PATIENCE and mean > STALLED * means[-PATIENCE]:
+                if len(means) > settings.patience and mean > settings.stalled * means[-settings.patience]:
                     turned = self._arc(*kept, mean, stop) if kept is not None and folds > 0 else None
                     if turned is None:
                         return None
                     at, kept, means, length, folds = turned, None, [], 1.0, folds - 1
                     continue
-            centring = next(share for least, share in CENTRING if length > least or least == 0.0)
+            centring = next(share for least, share in settings.centring if length > least or least == 0.0)
             step = self._direction(at, tau if first else max(centring * mean, self.end))
-            length, first = _to_boundary(at.x, step.positive), False
+            length, first = _to_boundary(at.x, step.positive, settings.boundary), False
             _move(at, step, length)
         return None
 
@@ -101,10 +89,9 @@ class Increment:
 
     def _arc(self, tau: float, at: Iterate, fold: float, stop: Callable[[], bool]) -> Iterate | None:
         """From a kept iterate round the fold until τ is well below it; None where that fails."""
-        last, on_path = None, False
-        at = at.copy()
-        for _ in range(ON_ARC):
-            if tau < PASSED * fold:
+        settings, last, on_path, at = self.settings, None, False, at.copy()
+        for _ in range(settings.on_arc):
+            if tau < settings.passed * fold:
                 return at
             if stop():
                 return None
@@ -114,22 +101,22 @@ class Increment:
             spread = self._spread(at, tau)
             onto, along = self._direction(at, tau), self._tangent()
             relative = tau * along.positive / at.x
-            if not np.abs(relative).max() < ENDLESS:
+            if not np.abs(relative).max() < settings.endless:
                 return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
             tangent *= -1.0 if last is None else np.sign(tangent @ last)
-            on_path = on_path or (infeasible < 1e-3 and spread < WIDE)
+            on_path = on_path or (infeasible < 1e-3 and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
                 offset = onto.positive / at.x
                 change = -(offset @ tangent[:-1]) / (relative @ tangent[:-1] + tangent[-1])
-                if spread < WIDE:
-                    change += tangent[-1] * STRIDE / max(-tangent[:-1].min(), 0.3 * tangent[:-1].max(),
+                if spread < settings.wide:
+                    change += tangent[-1] * settings.stride / max(-tangent[:-1].min(), 0.3 * tangent[:-1].max(),
                                                          abs(tangent[-1]) / 3.0)  # fmt: skip
                     last = tangent
                 change = float(np.clip(change, max(np.log(self.end / tau), -3.0), 2.0))
-            step = Direction(*(a + tau * change * b for a, b in zip(onto, along, strict=True)))
-            length = _to_boundary(at.x, step.positive)
+            step = onto.and_on(along, tau * change)
+            length = _to_boundary(at.x, step.positive, settings.boundary)
             _move(at, step, length)
             tau *= np.exp(length * change)
         return None
@@ -219,10 +206,10 @@ def _apart(difference: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
     return first, tau / first
 
 
-def _to_boundary(x: np.ndarray, step: np.ndarray) -> float:
-    """Length of the step that keeps everything positive, at most one."""
+def _to_boundary(x: np.ndarray, step: np.ndarray, share: float) -> float:
+    """Length of the step that goes a share of the way to where something is no more positive, at most one."""
     steepest = float((step / x).min(initial=0.0))
-    return min(1.0, -BOUNDARY / steepest) if steepest < 0.0 else 1.0
+    return min(1.0, -share / steepest) if steepest < 0.0 else 1.0
 
 
 def _move(at: Iterate, step: Direction, length: float) -> None:

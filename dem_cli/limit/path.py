@@ -17,22 +17,11 @@ import numpy as np
 from dem_cli.limit.elastic import Elastic, State
 from dem_cli.limit.interior import Increment
 from dem_cli.limit.matrices import Structure
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 
 OK = "ok"
 FALLS = "not converged: no state under dead loads was found"  # no proof that there is none
 UNFINISHED = "not converged: the load still grows with displacement"
-# Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
-# increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
-WAYS = ((0.25, 2.0), (0.35, 2.0), (0.5, 4.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
-NEAR, SLOWER = 0.01, 1.4  # growth of the load in one increment, below which displacements grow by no more than that
-# Where an increment fails: shares of its growth, and how many folds of the central path to go round.
-ATTEMPTS = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
-EFFORT = 2e7  # factorisations × points before giving up: about half a minute
-FURTHEST = 1e5  # displacement at which a structure counts as self-locking
-PLATEAU = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
-CALM = 0.5  # share of the plateau's growth that is calm enough at once
-TAU = 0.1  # of the first products, over the square of the largest normal force
-ACCEPTED = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
 
 
 @dataclass
@@ -75,25 +64,28 @@ class Path:
 def trace(
     structure: Structure,
     friction: np.ndarray,
-    plateau: float = PLATEAU,
-    effort: float = EFFORT,
+    plateau: float | None = None,
+    effort: float | None = None,
     progress: Callable[[float, float], None] = lambda load, reached: None,
+    settings: LimitSettings = DEFAULT_LIMIT,
 ) -> Path:
     """From gravity to the plateau of the load, 2D.
 
     friction  coefficient of every point [-], (n_points,)
-    plateau   relative growth of the load, from one increment to the next, that counts as none
-    effort    factorisations × points after which what was reached is returned
+    plateau   relative growth of the load, from one increment to the next, that counts as none (None: as the settings)
+    effort    factorisations × points after which what was reached is returned (None: as the settings)
     progress  told the load and the displacement of every increment
     """
-    problem = Elastic(structure, friction)
+    problem = Elastic(structure, friction, settings)
+    growth_of_plateau = settings.path.plateau if plateau is None else plateau
+    most = settings.path.effort if effort is None else effort
     path = Path(FALLS)
 
     def spent() -> bool:
-        return problem.factorisations * problem.n_points > effort
+        return problem.factorisations * problem.n_points > most
 
     at_rest = _at_rest(problem)
-    for easier in (1.0, 1e2, 1e4):
+    for easier in settings.path.easier:
         standing = _advance(problem, at_rest, None, spent, easier=easier)
         if standing is not None:
             break
@@ -103,11 +95,11 @@ def trace(
     _keep(path, structure, problem, standing, at_rest, 0.0)
     path.status = UNFINISHED
     best = path
-    for first, growth in WAYS:
+    for first, growth in settings.path.ways:
         tried = replace(
             path, loads=[*path.loads], reached=[*path.reached], live_displacements=[*path.live_displacements]
         )
-        _follow(tried, structure, problem, standing, first, growth, plateau, spent, progress)
+        _follow(tried, structure, problem, standing, (first, growth), growth_of_plateau, spent, progress)
         if tried.status == OK or tried.reached[-1] > best.reached[-1]:
             best = tried
         best.factorisations = problem.factorisations
@@ -121,32 +113,32 @@ def _follow(
     structure: Structure,
     problem: Elastic,
     state: State,
-    first: float,
-    growth: float,
+    way: tuple[float, float],
     plateau: float,
     stop: Callable[[], bool],
     progress: Callable[[float, float], None],
 ) -> None:
     """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
+    settings, (first, growth) = problem.settings.path, way
     origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
     reached = last = 0.0
     pace, calm = growth, 0
-    while calm < 2 and reached < FURTHEST:
-        for share, folds in ATTEMPTS:
+    while calm < 2 and reached < settings.furthest:
+        for share, folds in settings.attempts:
             further = reached * pace * share if reached else first * share
             ahead = (further - reached) / last if last else 0.0
             found = None
             if further > reached:
                 found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
-            if found is not None and problem.residual(found, state) >= ACCEPTED:
+            if found is not None and problem.residual(found, state) >= settings.accepted:
                 found = None
             if found is not None or stop():
                 break
         if found is None:
             return
         grown = abs(found.load - state.load) / max(abs(found.load), 1e-12)
-        calm += 0 if not reached else 2 if grown < CALM * plateau else 1 if grown < plateau else -calm
-        pace = SLOWER if grown < NEAR else growth
+        calm += 0 if not reached else 2 if grown < settings.calm * plateau else 1 if grown < plateau else -calm
+        pace = settings.slower if grown < settings.near else growth
         _keep(path, structure, problem, found, state, further)
         state, reached, last = found, further, further - reached
         progress(path.loads[-1], reached)
@@ -170,7 +162,9 @@ def _advance(
 ) -> State | None:
     """The state at a displacement of the live load; without one, under dead loads alone."""
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
-    return Increment(problem, state, target).solve(easier * TAU * max(largest, 1.0) ** 2, ahead, folds, stop)
+    return Increment(problem, state, target).solve(
+        easier * problem.settings.path.tau * max(largest, 1.0) ** 2, ahead, folds, stop
+    )
 
 
 def _compliance(problem: Elastic, state: State) -> float:

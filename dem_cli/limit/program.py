@@ -18,9 +18,9 @@ from scipy.sparse import csc_matrix, csr_matrix, diags, vstack
 
 from dem_cli.limit.cone import Cone
 from dem_cli.limit.matrices import Structure
+from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
 
 ANSWERED, IMPOSSIBLE, UNBOUNDED, UNKNOWN = "answered", "impossible", "unbounded", "unknown"
-FEASIBLE = 2e-7  # unbalanced force in own weights at which the solver may stop
 KINDS = {
     "Solved": ANSWERED,
     "AlmostSolved": ANSWERED,
@@ -40,6 +40,7 @@ class Program(NamedTuple):
     n_blocks: int  # that can move
     weight: float  # mean weight [N]
     load: float  # multiplier that makes the live loads as large as the dead ones
+    settings: AssociatedSettings
 
 
 class ProgramSolution(NamedTuple):
@@ -53,7 +54,7 @@ class ProgramSolution(NamedTuple):
     said: str  # by the solver
 
 
-def program_of(structure: Structure, cone: Cone) -> Program:
+def program_of(structure: Structure, cone: Cone, settings: AssociatedSettings = DEFAULT_LIMIT.associated) -> Program:
     """The linear program of a structure with live loads."""
     d, n_dof = structure.model.dimension, structure.n_dof
     forces = (loads.reshape(-1, n_dof)[:, :d] for loads in (structure.dead, structure.live))
@@ -61,20 +62,21 @@ def program_of(structure: Structure, cone: Cone) -> Program:
     live = live or float(np.abs(structure.live).sum())  # moments alone
     n_blocks = len(structure.free) // n_dof
     weight = (dead or live) / n_blocks
-    return Program(structure, cone, cone.motion(structure.compatibility), n_blocks, weight, (dead or live) / live)
+    motion = cone.motion(structure.compatibility)
+    return Program(structure, cone, motion, n_blocks, weight, (dead or live) / live, settings)
 
 
-def largest_load(program: Program, settings: dict[str, Any]) -> ProgramSolution:
+def largest_load(program: Program, options: dict[str, Any]) -> ProgramSolution:
     """Forces under the largest multiplier, and the mechanism that ends it."""
-    return _solve(program, settings, program.structure.live[None] * program.load)
+    return _solve(program, options, program.structure.live[None] * program.load)
 
 
-def standing(program: Program, settings: dict[str, Any]) -> ProgramSolution:
+def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
     """Some forces that carry the dead loads alone."""
-    return _solve(program, settings, np.zeros((0, len(program.structure.free))))
+    return _solve(program, options, np.zeros((0, len(program.structure.free))))
 
 
-def _solve(program: Program, settings: dict[str, Any], live: np.ndarray) -> ProgramSolution:
+def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> ProgramSolution:
     """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ≥ 0.
 
     The multipliers of these rows are −λ and the amounts of the generators.
@@ -89,7 +91,7 @@ def _solve(program: Program, settings: dict[str, Any], live: np.ndarray) -> Prog
     cones = [clarabel.ZeroConeT(len(live)), clarabel.NonnegativeConeT(program.motion.shape[0])]
     chosen = clarabel.DefaultSettings()
     chosen.verbose, chosen.max_threads = False, 1
-    for name, value in ({"tol_feas": FEASIBLE / spread} | settings).items():
+    for name, value in ({"tol_feas": program.settings.feasible / spread} | options).items():
         setattr(chosen, name, value)
     q = -s.dead / s.scales / spread
     answer = clarabel.DefaultSolver(csc_matrix((len(q), len(q))), q, a, b, cones, chosen).solve()

@@ -36,7 +36,7 @@ def split_load(width: float, height: float, slope: float, weight: float = 1.0, t
     corners = above_the_cut(width, height, slope)
     found = polygon.properties(corners)
     share = weight * found.area / (width * height)
-    arms = [TopLoad(share, *found.centroid), *top]
+    arms = [TopLoad(float(share), float(found.centroid[0]), float(found.centroid[1])), *top]
     return sum(t.weight * t.from_toe for t in arms) / sum(t.weight * t.height for t in arms)
 
 

@@ -11,9 +11,9 @@ from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
 
-SHOWN = 0.01  # mechanism of a frame: largest motion over the largest radius of a block that can move
-PRESSED = 1e-6  # of the largest normal force: what an interior point leaves at open points is smaller
-MOVES = 1e-3  # of the largest motion of any point
+SHOWN_MOTION = 0.01  # mechanism of a frame: largest motion over the largest radius of a block that can move
+PRESSED_SHARE = 1e-6  # of the largest normal force: what an interior point leaves at open points is smaller
+MOVING_SHARE = 1e-3  # of the largest motion of any point
 
 
 class Collapse(NamedTuple):
@@ -30,7 +30,7 @@ class Collapse(NamedTuple):
 def frame(structure: Structure, collapse: Collapse, tilting: bool = False) -> Frame:
     """A state of collapse as a snapshot: its forces, and the structure moved a little along its mechanism.
 
-    Largest motion of a block: SHOWN of the largest radius; velocities are the mechanism as it is. tilting: the
+    Largest motion of a block: SHOWN_MOTION of the largest radius; velocities are the mechanism as it is. tilting: the
     multiplier is tan θ of a table that turns, and forces are those under the turned weight.
     """
     model, d = structure.model, structure.model.dimension
@@ -45,11 +45,11 @@ def frame(structure: Structure, collapse: Collapse, tilting: bool = False) -> Fr
 
 
 def _amplitude(model: Model, velocities: np.ndarray) -> float:
-    """Time for which a mechanism is followed, so that its largest motion is SHOWN of the largest radius."""
+    """Time for which a mechanism is followed, so that its largest motion is SHOWN_MOTION of the largest radius."""
     d, radii = model.dimension, model.shapes.radii
     turning = np.linalg.norm(velocities[:, d:], axis=1) * radii
     fastest = float(np.maximum(np.linalg.norm(velocities[:, :d], axis=1), turning).max(initial=0.0))
-    return SHOWN * float(radii[~model.fixed].max()) / fastest if fastest > 0.0 else 0.0
+    return SHOWN_MOTION * float(radii[~model.fixed].max()) / fastest if fastest > 0.0 else 0.0
 
 
 def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, factor: float) -> ContactRecord:
@@ -59,9 +59,9 @@ def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, facto
     motion = (structure.compatibility @ moved.ravel()[structure.free]).reshape(-1, d)
     slides = np.linalg.norm(motion[:, 1:], axis=1)
     fastest = float(np.linalg.norm(motion, axis=1).max(initial=0.0))
-    pressed = collapse.normal > PRESSED * collapse.normal.max(initial=0.0)
+    pressed = collapse.normal > PRESSED_SHARE * collapse.normal.max(initial=0.0)
     kinds = [STATES.index(name) for name in ("open", "sliding", "sticking")]
-    state = np.select([~pressed, slides > MOVES * fastest], kinds[:2], kinds[2])
+    state = np.select([~pressed, slides > MOVING_SHARE * fastest], kinds[:2], kinds[2])
     return ContactRecord(
         joint=owner,
         blocks=joints.blocks[owner],

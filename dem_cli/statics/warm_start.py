@@ -97,6 +97,7 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
     path = trace(
         structure, friction, warm_start.flat * job.case.analysis.resolution,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
+        settings=job.settings.limit,
     )  # fmt: skip
     report |= path.summary()
     if path.load is None or path.load <= 0.0 or path.state is None:
@@ -119,10 +120,11 @@ def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: 
     from dem_cli.limit.associated import OK, limit_load
     from dem_cli.limit.cone import friction_of
 
+    associated = job.settings.limit.associated
     job.clock.progress("limit analysis", 0.0, 0.0, None)
-    safe = limit_load(structure, friction_of(sim.joints, sim.law, heads_frictionless=True))
+    safe = limit_load(structure, friction_of(sim.joints, sim.law, heads_frictionless=True), associated)
     begun, friction = time.perf_counter(), friction_of(sim.joints, sim.law)
-    most = limit_load(structure, friction)
+    most = limit_load(structure, friction, associated)
     limits = LimitLoads(structure, friction, most, None, time.perf_counter() - begun, None)
     report |= {"load": safe.multiplier, "status": safe.status, "residual": safe.residual, "associated": most.multiplier}
     if safe.status != OK or safe.multiplier is None or most.status != OK:

@@ -18,15 +18,18 @@ from dem_cli.limit import associated
 from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.associated import FALLS, GIVEN_UP, LOCKED, OK
 from dem_cli.limit.cone import friction_of
+from dem_cli.limit.settings import DEFAULT_LIMIT
 
-NEAR = 1e-6  # relative; the bounds are accepted up to associated.GAP, and lie closer in all of these
+ACCEPTED = DEFAULT_LIMIT.associated
+
+NEAR = 1e-6  # relative; the bounds are accepted up to ACCEPTED.gap, and lie closer in all of these
 
 
 def load(case, **options) -> float:
     """The multiplier, with its claims checked."""
     found = solved(case, **options).associated
     assert found.status == OK
-    assert found.residual <= associated.RESIDUAL
+    assert found.residual <= ACCEPTED.residual
     assert found.lower <= found.multiplier * (1 + NEAR) + 1e-12
     assert found.multiplier <= found.upper * (1 + NEAR) + 1e-12
     return found.multiplier
@@ -148,7 +151,7 @@ def test_forces_balance_and_lie_in_the_cones():
     found = solved(wall())
     s, answer = found.structure, found.associated
     reactions = np.column_stack([answer.normal, answer.shear]).ravel()
-    assert np.abs(s.imbalance(reactions, answer.multiplier)).max() == answer.residual <= associated.RESIDUAL
+    assert np.abs(s.imbalance(reactions, answer.multiplier)).max() == answer.residual <= ACCEPTED.residual
     assert (answer.normal >= 0.0).all()
     assert (np.abs(answer.shear[:, 0]) <= found.friction * answer.normal * (1 + 1e-12)).all()
 

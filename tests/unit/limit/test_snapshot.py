@@ -7,7 +7,7 @@ import pytest
 from engine import block, rectangle, running_wall, tables
 from engine.limits import on_a_base, solved
 
-from dem_cli.limit.snapshot import SHOWN, Collapse, frame
+from dem_cli.limit.snapshot import SHOWN_MOTION, Collapse, frame
 from dem_cli.output.record import STATES
 from dem_cli.output.store import contact_forces
 
@@ -52,7 +52,7 @@ def test_a_rocking_block_opens_at_one_end_and_turns_about_the_other():
     assert moved[1, 0] > 0.0
     assert made.orientations[1, 0] < 0.0
     radius = np.hypot(0.15, 0.5)
-    assert max(np.hypot(*moved[1]), abs(made.orientations[1, 0]) * radius) == pytest.approx(SHOWN * radius)
+    assert max(np.hypot(*moved[1]), abs(made.orientations[1, 0]) * radius) == pytest.approx(SHOWN_MOTION * radius)
 
 
 def test_a_sliding_block_slides():

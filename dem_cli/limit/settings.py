@@ -1,0 +1,71 @@
+"""Settings of limit analysis: the path to collapse, its interior point, accepted errors of the associated load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PathSettings:
+    """The path of elastic, frictional joints from gravity to collapse: increments, plateau, effort."""
+
+    # Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
+    # increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
+    ways: tuple[tuple[float, float], ...] = ((0.25, 2.0), (0.35, 2.0), (0.5, 4.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
+    near: float = 0.01  # growth of the load in one increment, below which displacements grow by no more than
+    slower: float = 1.4  # that
+    # Where an increment fails: shares of its growth, and how many folds of the central path to go round.
+    attempts: tuple[tuple[float, int], ...] = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
+    easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
+    effort: float = 2e7  # factorisations × points before giving up: about half a minute
+    furthest: float = 1e5  # displacement at which a structure counts as self-locking
+    plateau: float = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
+    calm: float = 0.5  # share of the plateau's growth that is calm enough at once
+    tau: float = 0.1  # of the first products, over the square of the largest normal force
+    accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
+    least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
+    singular: float = 1e-13  # added to the diagonal, over its mean
+
+
+@dataclass(frozen=True)
+class InteriorPointSettings:
+    """The interior point of one increment, and its way round the folds of the central path."""
+
+    tolerance: float = 1e-7  # infeasibility, in block weights and their displacements
+    end: float = 1e-9  # of τ, over the square of the lightest block
+    boundary: float = 0.95  # share of the way to the boundary
+    # Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
+    centring: tuple[tuple[float, float], ...] = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
+    stalled: float = 0.8  # fold: the mean product fell by less than this
+    patience: int = 12  # within so many iterations
+    centred: float = 4.0  # largest ratio of a product to the mean, of a kept iterate
+    wide: float = 3.0  # the same of an iterate that may be predicted from
+    reversal: float = 0.6  # τ of one kept iterate over that of the last
+    stride: float = 0.9  # relative change of any product's factor in one prediction
+    passed: float = 0.3  # τ over that of the fold, below which it is passed
+    on_arc: int = 500  # iterations on one arc
+    slow: int = 150  # iterations without a fold
+    endless: float = 1e12  # relative change by τ at which the path turns on the spot
+
+
+@dataclass(frozen=True)
+class AssociatedSettings:
+    """The associated limit load as a linear program: where the solver stops, which errors are accepted."""
+
+    feasible: float = 2e-7  # unbalanced force in own weights at which the solver may stop
+    residual: float = 1e-6  # largest accepted unbalanced force in own weights
+    gap: float = 1e-4  # largest accepted width of the bounds over the load
+    nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
+    proof: float = 1e-6  # relative error accepted in a proof that something is impossible
+
+
+@dataclass(frozen=True)
+class LimitSettings:
+    """All settings of limit analysis."""
+
+    path: PathSettings = PathSettings()
+    interior_point: InteriorPointSettings = InteriorPointSettings()
+    associated: AssociatedSettings = AssociatedSettings()
+
+
+DEFAULT_LIMIT = LimitSettings()
