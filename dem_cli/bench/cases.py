@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dem_cli import api
+from dem_cli.output.record import SilentObserver
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
+    from dem_cli.output.record import Observer
 
 FOLDER = Path(__file__).resolve().parent
 HEADS = "limit analysis, no friction in head joints"
@@ -88,21 +90,13 @@ SIZES = (  # walls of the same blocks and friction 0.6, by size
 )
 
 
-class Nobody:
-    """An observer that keeps nothing."""
-
-    def frame(self, frame: Any) -> None: ...
-    def row(self, row: Any) -> None: ...
-    def progress(self, *where: Any) -> None: ...
-
-
-def solve(case: Case, model: Model, observer: Any = None) -> dict[str, Any]:
+def solve(case: Case, model: Model, observer: Observer | None = None) -> dict[str, Any]:
     """The summary of a run; of a run that gave up, its status and message."""
     from dem_cli.analyses.solve import solve
     from dem_cli.errors import SolverError
 
     try:
-        return solve(case, model, observer or Nobody()).summary
+        return solve(case, model, observer or SilentObserver()).summary
     except SolverError as error:
         return {"status": str(error), "failure_load": None, "steps": None}
 

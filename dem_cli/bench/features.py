@@ -9,11 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, SIZES, Known, Nobody, solve
+from dem_cli.bench.cases import KNOWN, SIZES, Known, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
 from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.output.record import Frame, HistoryRow, SilentObserver
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
@@ -45,7 +46,7 @@ class Feature:
         return True
 
 
-class Disk(Nobody):
+class DiskObserver(SilentObserver):
     """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
 
     def __init__(self, case: Any, model: Any, folder: Path):
@@ -54,7 +55,14 @@ class Disk(Nobody):
 
         names = [f"monitor {i + 1}" for i in range(len(case.monitor))]
         self.writer = ResultWriter(folder, model, case_text(case), {}, names, case.analysis.kind)
-        self.frame, self.row = self.writer.frame, self.writer.row  # type: ignore[method-assign]
+
+    def frame(self, frame: Frame) -> None:
+        """To both files."""
+        self.writer.frame(frame)
+
+    def row(self, row: HistoryRow) -> None:
+        """To results.h5."""
+        self.writer.row(row)
 
 
 def features(name: str) -> tuple[Feature, ...]:
@@ -64,11 +72,13 @@ def features(name: str) -> tuple[Feature, ...]:
         Feature(PLAIN),
         Feature("10 monitors", (MONITORS,)),
         Feature("20 frames, kept by nobody", ("output.frames=20",)),
-        Feature("20 frames and histories on disk", ("output.frames=20",), Disk),
+        Feature("20 frames and histories on disk", ("output.frames=20",), DiskObserver),
         Feature("geometry that moves", ("analysis.kinematics=large",)),
         Feature("limit analysis beside it", ("analysis.limit=true",), shows="limit_analysis"),
         Feature("collapse followed", (follow,)),
-        Feature("collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), Disk),
+        Feature(
+            "collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), DiskObserver
+        ),
     )
 
 

@@ -11,10 +11,11 @@ import numpy as np
 
 from dem_cli import api
 from dem_cli.bench import draw
-from dem_cli.bench.cases import FOLDER, Nobody
+from dem_cli.bench.cases import FOLDER
 from dem_cli.bench.record import GroupResult, Measurement, Options, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.output.record import Samples, SilentObserver
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
@@ -30,17 +31,15 @@ DAMPING = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
 BLOCK, SHAKEN = "block", {"column": "shaken_column", "arch": "shaken_arch"}
 
 
-class History(Nobody):
+class FirstMonitor(SilentObserver):
     """An observer that keeps the first monitor."""
 
     def __init__(self) -> None:
-        self.parts: list[Any] = []
+        self.parts: list[Samples] = []
 
-    def samples(self, samples: Any) -> None:
+    def samples(self, samples: Samples) -> None:
+        """Keep them."""
         self.parts.append(samples)
-
-    def runs(self, rows: Any) -> None: ...
-    def structure(self, model: Any) -> None: ...
 
     @property
     def times(self) -> np.ndarray:
@@ -67,10 +66,10 @@ class Line:
         loaded = api.load_case(FOLDER / f"{self.file}.toml", [*self.overrides, f"analysis.margin={margin}"])
         model = api.build_model(loaded)
 
-        def run() -> tuple[dict[str, Any], History]:
+        def run() -> tuple[dict[str, Any], FirstMonitor]:
             from dem_cli.analyses.solve import solve as solve
 
-            history = History()
+            history = FirstMonitor()
             return solve(loaded.case, model, history).summary, history
 
         return TimedTask(run)
@@ -109,9 +108,9 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _finest(line: Line, quick: bool) -> History:
+def _finest(line: Line, quick: bool) -> FirstMonitor:
     """The history that others are compared with."""
-    history: History = line.job(0.5 * USUAL if quick else FINEST).run()[1]
+    history: FirstMonitor = line.job(0.5 * USUAL if quick else FINEST).run()[1]
     return history
 
 
@@ -125,7 +124,7 @@ def landing_error(times: np.ndarray, angles: np.ndarray) -> float | None:
     return float(np.abs(landed[: len(LANDINGS)] / LANDINGS - 1.0).max())
 
 
-def distance(history: History, reference: History) -> float:
+def distance(history: FirstMonitor, reference: FirstMonitor) -> float:
     """Root mean square of the difference of two histories, over that of the second."""
     at = np.arange(0.0, min(history.times[-1], reference.times[-1]), EVERY)
     mine, other = (np.interp(at, h.times, h.values) for h in (history, reference))

@@ -79,7 +79,7 @@ def as_csv(table: Sequence[dict[str, Any]]) -> str:
 
 def as_text(summary: Mapping[str, Any]) -> list[str]:
     """The table of the thesis (Table 7-2): a line per profile, the closest one marked."""
-    lines = [
+    lines: list[tuple[str, ...]] = [
         ("shape", "sides", "middle side", "aperture [mm]", "load", "of plane", "displacement [mm]", "distance", "")
     ]
     lines += [_line(row, row == summary["closest"]) for row in summary["trials"]]

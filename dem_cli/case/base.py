@@ -6,6 +6,7 @@ Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TO
 from __future__ import annotations
 
 import math
+from types import GenericAlias
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -73,7 +74,12 @@ def as_tuples(value: Any) -> Any:
 
 def one_or_more(table: Any) -> Any:
     """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
-    return Annotated[tuple[table, ...], OneOrMore()]  # type: ignore[valid-type]
+    return Annotated[sequence_of(table), OneOrMore()]
+
+
+def sequence_of(table: Any) -> Any:
+    """The type of a tuple of any number of these, made while the program runs."""
+    return GenericAlias(tuple, (table, ...))
 
 
 class OneOrMore:

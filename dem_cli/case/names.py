@@ -131,29 +131,33 @@ def check_names(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | N
         for i, table in enumerate(getattr(case, key))
         if table.block is not None and table.block not in blocks
     ]
-    for i, table in enumerate(case.monitor):
-        found += [
-            CaseProblem(("monitor", i, "between", k), unknown_name("block", name, list(blocks)))
-            for k, name in enumerate(table.between or ())
-            if name not in blocks
-        ]
-    for i, table in enumerate(case.settlement):
-        if fixed is not None and table.block in blocks and not fixed[blocks[table.block]]:
-            message = f"block {show(table.block)} is not fixed; only a fixed block can be moved"
+    found += [
+        CaseProblem(("monitor", i, "between", k), unknown_name("block", name, list(blocks)))
+        for i, monitor in enumerate(case.monitor)
+        for k, name in enumerate(monitor.between or ())
+        if name not in blocks
+    ]
+    for i, settlement in enumerate(case.settlement):
+        if fixed is not None and settlement.block in blocks and not fixed[blocks[settlement.block]]:
+            message = f"block {show(settlement.block)} is not fixed; only a fixed block can be moved"
             found.append(CaseProblem(("settlement", i, "block"), message))
     found += _initial_problems(case, blocks, fixed)
     if case.damping is not None and case.damping.block is not None and case.damping.block not in blocks:
         found.append(CaseProblem(("damping", "block"), unknown_name("block", case.damping.block, list(blocks))))
-    for i, table in enumerate(case.motion):
-        supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
-        for k, name in enumerate(table.blocks):
+    return [*found, *_motion_problems(case, blocks, fixed)]
+
+
+def _motion_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
+    """[[motion]] tables about blocks that do not exist or are not supports."""
+    supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
+    for i, motion in enumerate(case.motion):
+        for k, name in enumerate(motion.blocks):
+            path = ("motion", i, "blocks", k)
             if name not in blocks:
-                found.append(CaseProblem(("motion", i, "blocks", k), unknown_name("support", name, supports)))
+                yield CaseProblem(path, unknown_name("support", name, supports))
             elif name not in supports:
                 message = f"block {show(name)} is not fixed; only a fixed block can be moved"
-                message += f" (fixed: {listing(supports)})"
-                found.append(CaseProblem(("motion", i, "blocks", k), message))
-    return found
+                yield CaseProblem(path, f"{message} (fixed: {listing(supports)})")
 
 
 def _initial_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:

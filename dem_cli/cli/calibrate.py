@@ -16,13 +16,14 @@ from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side, usable_cores
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
+from dem_cli.output.record import SilentObserver
 
 if TYPE_CHECKING:
     from dem_cli.calibrate.table import NamedShape
     from dem_cli.calibrate.trials import CalibrationTrial
     from dem_cli.case.reader import LoadedCase
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Frame, HistoryRow
+    from dem_cli.output.record import HistoryRow
 
 CASE, TABLE, PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
 
@@ -126,20 +127,15 @@ def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[
     return [found[i] for i in range(len(plan))]
 
 
-class Last:
-    """An observer that keeps the rows only."""
+class RowKeeper(SilentObserver):
+    """An observer that keeps the rows of the history."""
 
     def __init__(self) -> None:
         self.rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:
+        """Keep it."""
         self.rows.append(row)
-
-    def frame(self, frame: Frame) -> None:
-        pass
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        pass
 
 
 def solved(text: str) -> TrialAnswer:
@@ -152,7 +148,7 @@ def solved(text: str) -> TrialAnswer:
     loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
     case = loaded.case
     only_failure = case.analysis.model_copy(update={"follow": 0.0, "limit": False})
-    observer = Last()
+    observer = RowKeeper()
     try:
         model = api.build_model(loaded)
         summary = solve(case.model_copy(update={"analysis": only_failure}), model, observer).summary

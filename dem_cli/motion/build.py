@@ -135,14 +135,14 @@ def _unit_of(table: RecordTable, quantity: str | None, unit: str | None, i_table
     if quantity is not None and quantity != table.quantity:
         message = f"'{table.quantity}' is not allowed; {name} says that it holds {quantity}"
         raise CaseError([CaseProblem(("motion", i_table, "quantity"), message)])
-    if table.unit is None and unit is None:
+    if (found := table.unit or unit) is None:
         message = f"missing; {name} does not say what its values are in (allowed: {allowed})"
         raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
     factors = UNITS[table.quantity]
     if table.unit is not None and unit is not None and factors[table.unit] != factors[unit]:
         message = f"'{table.unit}' is not allowed; {name} says that its values are in {unit}"
         raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
-    return table.unit or unit  # type: ignore[return-value]
+    return found
 
 
 def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> None:

@@ -97,7 +97,10 @@ class HarmonicTable(MotionTable):
     @property
     def length(self) -> float:
         """How long it lasts [s]."""
-        return self.duration if self.duration is not None else self.cycles / self.frequency  # type: ignore[operator]
+        if self.cycles is not None:
+            return self.cycles / self.frequency
+        assert self.duration is not None
+        return self.duration
 
 
 class RecordTable(MotionTable):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import os
 from pathlib import Path
+from typing import Any
 
 import h5py
 
@@ -41,24 +42,28 @@ class HeldBackFile(io.RawIOBase):
         except OSError as error:
             self.error = error
 
-    def write(self, data) -> int:  # type: ignore[no-untyped-def, override]
+    def write(self, data: Any) -> int:
+        """Hold a piece back."""
         if self.error is None:
             self._held.append((self._place, bytes(data)))
-        self._place += len(data)
+        count = memoryview(data).nbytes
+        self._place += count
         self._size = max(self._size, self._place)
-        return len(data)
+        return count
 
-    def readinto(self, buffer) -> int:  # type: ignore[no-untyped-def, override]
-        start, stop = self._place, self._place + len(buffer)
-        on_disk = os.pread(self._disk, len(buffer), start)
-        buffer[: len(on_disk)] = on_disk
-        buffer[len(on_disk) :] = bytes(len(buffer) - len(on_disk))
+    def readinto(self, buffer: Any) -> int:
+        """What was written last at this place, held back or not."""
+        view = memoryview(buffer).cast("B")
+        start, stop = self._place, self._place + len(view)
+        on_disk = os.pread(self._disk, len(view), start)
+        view[: len(on_disk)] = on_disk
+        view[len(on_disk) :] = bytes(len(view) - len(on_disk))
         for place, piece in self._held:
             a, b = max(start, place), min(stop, place + len(piece))
             if a < b:
-                buffer[a - start : b - start] = piece[a - place : b - place]
+                view[a - start : b - start] = piece[a - place : b - place]
         self._place = stop
-        return len(buffer)
+        return len(view)
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         base = {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._size}[whence]

@@ -39,6 +39,11 @@ class Held:
             rows = [row for row in rest if row.load >= load - slack] or rows
         answer = {}
         for i, (name, unit) in enumerate(zip(self.names, self.units) if rows else ()):
-            nearest = min(rows, key=lambda row, i=i: abs(row.monitors[i]))  # type: ignore[misc]
-            answer[name] = dict(zip(PARTS, (nearest.monitors[i], nearest.load, unit)))
+            value, load = min(((row.monitors[i], row.load) for row in rows), key=_size)
+            answer[name] = dict(zip(PARTS, (value, load, unit)))
         return answer
+
+
+def _size(held: tuple[float, float]) -> float:
+    """How large the value of a monitor is, whatever its sign and load."""
+    return abs(held[0])

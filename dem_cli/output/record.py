@@ -130,3 +130,25 @@ class Observer(Protocol):
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """All runs of an analysis that consists of many, at its end."""
+
+
+class SilentObserver:
+    """An observer that keeps nothing; a subclass overrides what it listens to."""
+
+    def frame(self, frame: Frame) -> None:
+        """Let a snapshot go."""
+
+    def row(self, row: HistoryRow) -> None:
+        """Let a row of the history go."""
+
+    def samples(self, samples: Samples) -> None:
+        """Let a stretch of a time history go."""
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Say nothing of where the run stands."""
+
+    def structure(self, model: Model) -> None:
+        """Let another structure go."""
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """Let the runs go."""

@@ -15,14 +15,24 @@ class Wanted(Protocol):
     """What this file asks of a `[reference]`."""
 
     @property
-    def path(self) -> str: ...
-    @property
-    def expected(self) -> bool | float | tuple[float, float] | str: ...
-    @property
-    def allowance(self) -> float | None: ...
+    def path(self) -> str:
+        """Key of the summary that is compared."""
 
-    kind: str
-    missed: str | None
+    @property
+    def expected(self) -> bool | float | tuple[float, float] | str:
+        """Value, or ends of the interval, that it should have."""
+
+    @property
+    def allowance(self) -> float | None:
+        """How far off a number may be."""
+
+    @property
+    def kind(self) -> str:
+        """What sort of reference this is."""
+
+    @property
+    def missed(self) -> str | None:
+        """Why the case says that this is missed; None: it is to be met."""
 
 
 def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[dict[str, Any]]:

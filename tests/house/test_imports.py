@@ -20,6 +20,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "engine",
         "kernels",
         "model",
+        "output.record",
         "output.store",
         "post.style",
     },
