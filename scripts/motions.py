@@ -35,7 +35,7 @@ def main(words: Sequence[str] | None = None) -> int:
 def suites(count: int) -> str:
     """How suites of seven fit Eurocode 8, by spectrum and ground type."""
     from dem_cli.motion.eurocode import SOILS
-    from dem_cli.motion.measures import fit
+    from dem_cli.motion.intensity_measures import fit
     from dem_cli.motion.motion import Motion
     from dem_cli.motion.synthetic import suite, target_of
     from dem_cli.motion.table import ArtificialTable
@@ -91,11 +91,11 @@ def draw() -> None:
     from dem_cli.motion.motion import Motion
     from dem_cli.motion.synthetic import suite, target_of
     from dem_cli.motion.table import ArtificialTable
-    from dem_cli.post.spectra import Suite, draw_motions, draw_spectra
+    from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
 
     table = ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0, count=OF_SEVEN)
     motions = [Motion(record, name=f"artificial {i}") for i, record in enumerate(suite(table, 1), 1)]
-    made = [Suite(motions, target_of(table))]
+    made = [MotionSuite(motions, target_of(table))]
     draw_spectra(made, PAGE.with_name("motion_spectra.png"), "Suite of seven")
     draw_motions(made, PAGE.with_name("motion_records.png"), "Suite of seven")
 

@@ -27,7 +27,7 @@ BLOCKS = "structure.0.blocks_per_course={}"
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownStructure:
     """A structure and its failure load."""
 
     name: str
@@ -51,16 +51,18 @@ class Known:
         return load / nearest - 1.0
 
 
-def _t21(friction: float, load: float, source: str, upper: float | None = None, path: float | None = None) -> Known:
+def _t21(
+    friction: float, load: float, source: str, upper: float | None = None, path: float | None = None
+) -> KnownStructure:
     name = f"T21 μ {friction:g}"
-    return Known(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper, path)
+    return KnownStructure(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper, path)
 
 
 def _wall(
     courses: int, blocks: int, count: int, load: float, upper: float | None, path: float | None = None, name: str = ""
-) -> Known:
+) -> KnownStructure:
     sizes = (COURSES.format(courses), BLOCKS.format(blocks))
-    return Known(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper, path)
+    return KnownStructure(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper, path)
 
 
 SLIDES = "closed form: the top course slides at μ"
@@ -74,9 +76,9 @@ KNOWN = {
         _t21(0.75, 0.645963, HEADS, 0.681151),
         _t21(1.0, 0.645963, HEADS, 1.0),
         _wall(22, 10, 231, 0.466478, 0.476977, 0.468707, "T231"),
-        Known("COL14", "column", (), 0.04 / 0.245, "closed form: turns over at width / height"),
-        Known("ARCH μ 0.6", "arch", (), 0.148315, "limit analysis, four hinges"),
-        Known("ARCH μ 0.4", "arch", ("joints.dry.friction=0.4",), 0.052164, "limit analysis, associated"),
+        KnownStructure("COL14", "column", (), 0.04 / 0.245, "closed form: turns over at width / height"),
+        KnownStructure("ARCH μ 0.6", "arch", (), 0.148315, "limit analysis, four hinges"),
+        KnownStructure("ARCH μ 0.4", "arch", ("joints.dry.friction=0.4",), 0.052164, "limit analysis, associated"),
     )
 }
 SIZES = (  # walls of the same blocks and friction 0.6, by size
@@ -108,7 +110,7 @@ def compiled() -> None:
     solve(case, model)
 
 
-def answer(known: Known, summary: dict[str, Any]) -> dict[str, Any]:
+def answer(known: KnownStructure, summary: dict[str, Any]) -> dict[str, Any]:
     """What a record keeps of a run."""
     load = summary["failure_load"]
     found = {"load": load, "error": known.error(load), "steps": summary["steps"]}

@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, SIZES, Known, solve
+from dem_cli.bench.cases import KNOWN, SIZES, KnownStructure, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.output.record import Frame, HistoryRow, SilentObserver
@@ -82,7 +82,7 @@ def features(name: str) -> tuple[Feature, ...]:
     )
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """Kernels first, then whole runs."""
     found = GroupResult()
     _kernels(options, found)
@@ -90,9 +90,9 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _kernels(options: Options, found: GroupResult) -> None:
+def _kernels(options: BenchOptions, found: GroupResult) -> None:
     """ns per point and step of three stepping loops in turn: bare, with ledger, with everything."""
-    rows: list[tuple[Known, str, str, TimedTask, int]] = []
+    rows: list[tuple[KnownStructure, str, str, TimedTask, int]] = []
     for known in SIZES:
         if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
             for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
@@ -114,7 +114,7 @@ def _kernels(options: Options, found: GroupResult) -> None:
 
 def loops(sim: Any) -> dict[str, Callable]:
     """Stepping loops that do the same motion, by what they have."""
-    from dem_cli.bench.bare import make_bare
+    from dem_cli.bench.bare_loop import make_bare
     from dem_cli.engine.simulation import compiled_advance
     from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
     from dem_cli.kernels.drift import drift_centroids, drift_corners
@@ -137,7 +137,7 @@ def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
     )  # fmt: skip
 
 
-def _runs(options: Options, found: GroupResult) -> None:
+def _runs(options: BenchOptions, found: GroupResult) -> None:
     rows: list[tuple[str, Feature, TimedTask]] = []
     with tempfile.TemporaryDirectory() as folder:
         for name in QUICK_CASES if options.quick else CASES:
@@ -154,7 +154,7 @@ def _runs(options: Options, found: GroupResult) -> None:
             found.notes.append(f"{feature.name}, {name}: left out, the run's summary has no {feature.shows}")
 
 
-def _run(known: Known, feature: Feature, folder: Path) -> TimedTask:
+def _run(known: KnownStructure, feature: Feature, folder: Path) -> TimedTask:
     case, model = known.build(*feature.overrides)
 
     def run() -> dict[str, Any]:

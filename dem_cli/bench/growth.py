@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import draw
-from dem_cli.bench.cases import SIZES, Known, answer, solve
+from dem_cli.bench import diagrams
+from dem_cli.bench.cases import SIZES, KnownStructure, answer, solve
 from dem_cli.bench.kernels import blocks_of
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
@@ -22,7 +22,7 @@ def resolution(blocks: int) -> float:
     return 0.002 if blocks < LARGE else 0.01 if blocks < LARGEST else 0.05
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per size."""
     found = GroupResult()
     sizes = [k for k in SIZES if options.long or blocks_of(k) < LARGEST]
@@ -37,7 +37,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _job(known: Known) -> TimedTask:
+def _job(known: KnownStructure) -> TimedTask:
     case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEPS)
 
     def run() -> dict[str, Any]:
@@ -72,9 +72,11 @@ def picture(records: list[Measurement], path: Path) -> None:
     panels = {
         "CPU seconds": {"walls": [(r.value, r.best) for r in records]},
         "steps": {"walls": [(r.value, r.found["steps"]) for r in records if r.found["steps"]]},
-        "|error|": {"walls": [(r.value, max(abs(r.found["error"]), draw.FLOOR)) for r in records if r.found["error"]]},
+        "|error|": {
+            "walls": [(r.value, max(abs(r.found["error"]), diagrams.FLOOR)) for r in records if r.found["error"]]
+        },
     }
-    draw.growth(path, panels, "blocks")
+    diagrams.growth(path, panels, "blocks")
 
 
 PICTURES = {"growth": picture}

@@ -7,9 +7,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import draw, tilting
-from dem_cli.bench.cases import KNOWN, Known, answer, solve
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench import diagrams, tilting
+from dem_cli.bench.cases import KNOWN, KnownStructure, answer, solve
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
@@ -21,7 +21,7 @@ RESOLUTION = 0.002  # of the bisection in the engines
 DEM = "dem"
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per structure, program and setting; axis: the program, value: the setting."""
     found, rows = GroupResult(), []
     structures = WIDE[:1] if options.quick else WIDE
@@ -44,7 +44,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def dem_job(known: Known, resolution: float) -> TimedTask:
+def dem_job(known: KnownStructure, resolution: float) -> TimedTask:
     """From the case file to the failure load."""
 
     def run() -> dict[str, Any]:
@@ -54,7 +54,7 @@ def dem_job(known: Known, resolution: float) -> TimedTask:
     return TimedTask(run)
 
 
-def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: float) -> TimedTask:
+def engine_job(known: KnownStructure, engine: Any, setting: tilting.EngineSettings, resolution: float) -> TimedTask:
     """From the model to the failure load; a new world for each trial."""
     from dem_cli.model.scales import smallest_edge
 
@@ -127,7 +127,7 @@ def picture(records: list[Measurement], path: Path) -> None:
         name: {p: [(r.best, r.found["error"]) for r in records if (r.case, r.axis) == (name, p)] for p in programs}
         for name in names
     }
-    draw.work_precision(path, panels, joined={DEM})
+    diagrams.work_precision(path, panels, joined={DEM})
 
 
 PICTURES = {"others": picture}

@@ -9,10 +9,10 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import constants, draw
-from dem_cli.bench.cases import KNOWN, Known, answer, solve
+from dem_cli.bench import constants, diagrams
+from dem_cli.bench.cases import KNOWN, KnownStructure, answer, solve
 from dem_cli.bench.points import points_per_joint
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
@@ -35,19 +35,19 @@ class Axis:
     text: str
     usual: Any
     values: tuple[Any, ...]
-    overrides: Callable[[Known, Any], list[str]]
+    overrides: Callable[[KnownStructure, Any], list[str]]
     inside: Callable[[Any], AbstractContextManager] = lambda value: nullcontext()
     cheap: tuple[Any, ...] | None = None  # values for DEAR; None: all
 
 
-def stiffness(known: Known, ratio: float) -> list[str]:
+def stiffness(known: KnownStructure, ratio: float) -> list[str]:
     """A given kn with kn·h/W = ratio for a mean block of weight W and smallest edge h."""
     from dem_cli.model.scales import stiffness_scale
 
     return [FINE, BUDGET, f"joints.dry.kn={ratio * stiffness_scale(known.build()[1])!r}"]
 
 
-def fine(known: Known, value: Any) -> list[str]:
+def fine(known: KnownStructure, value: Any) -> list[str]:
     """Nothing but a narrow bracket."""
     return [FINE, BUDGET]
 
@@ -99,7 +99,7 @@ AXES = (
 )
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per knob, value and case."""
     found = GroupResult()
     for axis in AXES:
@@ -114,7 +114,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, TimedTask]]:
+def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[KnownStructure, Any, TimedTask]]:
     with axis.inside(axis.usual):
         pass  # raises constants.Missing
     for value in (axis.values[0], axis.usual) if quick else axis.values:
@@ -124,7 +124,7 @@ def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, TimedTask]]:
             yield KNOWN[name], value, _job(KNOWN[name], axis, value)
 
 
-def _job(known: Known, axis: Axis, value: Any) -> TimedTask:
+def _job(known: KnownStructure, axis: Axis, value: Any) -> TimedTask:
     case, model = known.build(*axis.overrides(known, value))
 
     def run() -> dict[str, Any]:
@@ -181,7 +181,7 @@ def picture(records: list[Measurement], path: Path) -> None:
             if r.value == FIRST_INSIDE:
                 line.append((nan, nan))  # another line of the same colour
             line.append((r.best, r.found["error"]))
-    draw.work_precision(path, panels)
+    diagrams.work_precision(path, panels)
 
 
 PICTURES = {"precision": picture}

@@ -7,26 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.bench.tilting import Setting
+from dem_cli.bench.tilting import EngineSettings
 from dem_cli.model.model import Model
 
 NAME, PACKAGE = "pymunk", "pymunk"
 TIGHT = {"collision_slop": 1e-3}  # of the smallest edge, which is 1; the library's own is 0.1
 SETTINGS = (
-    Setting("defaults: 1/60 s, 10 iterations, slop 0.1; edge 17.5 (pixels)", 17.5, 981.0, 1 / 60, (10,), True),
-    Setting("1/60 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 60, (30,), options=TIGHT),
-    Setting("1/240 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (10,), options=TIGHT),
-    Setting("1/240 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (30,), options=TIGHT),
-    Setting("1/240 s, 100 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (100,), options=TIGHT),
-    Setting("1/960 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 960, (10,), True, options=TIGHT),
-    Setting("1/1920 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 1920, (10,), options=TIGHT),
+    EngineSettings("defaults: 1/60 s, 10 iterations, slop 0.1; edge 17.5 (pixels)", 17.5, 981.0, 1 / 60, (10,), True),
+    EngineSettings("1/60 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 60, (30,), options=TIGHT),
+    EngineSettings("1/240 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (10,), options=TIGHT),
+    EngineSettings("1/240 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (30,), options=TIGHT),
+    EngineSettings("1/240 s, 100 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (100,), options=TIGHT),
+    EngineSettings("1/960 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 960, (10,), True, options=TIGHT),
+    EngineSettings("1/1920 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 1920, (10,), options=TIGHT),
 )
 
 
 class PymunkWorld:
     """A space; friction of two shapes is multiplied by Chipmunk, so that each has √μ."""
 
-    def __init__(self, model: Model, friction: float, setting: Setting, smallest: float):
+    def __init__(self, model: Model, friction: float, setting: EngineSettings, smallest: float):
         import pymunk
 
         self.setting = setting

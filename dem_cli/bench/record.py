@@ -37,7 +37,7 @@ class GroupResult:
 
 
 @dataclass(frozen=True)
-class Options:
+class BenchOptions:
     """How much is measured."""
 
     quick: bool = False  # the smallest sizes, once: does it work?

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import FOLDER
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
@@ -33,7 +33,7 @@ def cpu_of_children() -> float:
     return times.children_user + times.children_system
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """`dem --help`, the first run with an empty cache of compiled code, later runs."""
     found, times = GroupResult(), {}
     with tempfile.TemporaryDirectory() as folder:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import KNOWN
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
@@ -21,7 +21,7 @@ INSIDE, BESIDE = "threads in one run", "runs side by side"
 LIMIT = ["--set", "analysis.limit=true"]  # Clarabel, which can use threads, in the run as well
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """Wall-clock time of runs of T231 with 1 and 2 threads, and of 1 and 2 runs at once."""
     found = GroupResult()
     known = KNOWN["T21 μ 0.6" if options.quick else "T231"]

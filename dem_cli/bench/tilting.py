@@ -22,7 +22,7 @@ TWICE = 1.1  # × friction: first load tried as the upper one, because a joint t
 
 
 @dataclass(frozen=True)
-class Setting:
+class EngineSettings:
     """How an engine is run."""
 
     name: str
@@ -34,7 +34,7 @@ class Setting:
     options: Mapping[str, Any] = field(default_factory=dict)  # what else the engine is told
 
 
-class World(Protocol):
+class EngineWorld(Protocol):
     """A structure in an engine."""
 
     def tilt(self, load: float) -> None:
@@ -47,7 +47,7 @@ class World(Protocol):
         """Centroids of the free blocks in the engine's units, (n_free, 2)."""
 
 
-def stands(world: World, setting: Setting, load: float) -> bool:
+def stands(world: EngineWorld, setting: EngineSettings, load: float) -> bool:
     """One trial in a new world."""
     second = np.sqrt(setting.edge / setting.gravity) / setting.step  # steps in one √(h/g)
     world.tilt(0.0)
@@ -70,7 +70,9 @@ def _near(places: np.ndarray, before: np.ndarray, limit: float) -> bool:
     return bool(np.sqrt(((places - before) ** 2).sum(axis=1)).max() <= limit)
 
 
-def failure_load(make: Callable[[], World], setting: Setting, friction: float, resolution: float) -> dict[str, Any]:
+def failure_load(
+    make: Callable[[], EngineWorld], setting: EngineSettings, friction: float, resolution: float
+) -> dict[str, Any]:
     """Highest load that stood, the lowest that fell above it, and the number of trials and steps."""
     low, high, trials = 0.0, TWICE * friction, 1
     while stands(make(), setting, high):

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
-from dem_cli.bench import draw
+from dem_cli.bench import diagrams
 from dem_cli.bench.cases import FOLDER
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.output.record import Samples, SilentObserver
@@ -53,7 +53,7 @@ class FirstMonitor(SilentObserver):
 
 
 @dataclass(frozen=True)
-class Line:
+class StepStudy:
     """One structure and setting, for which the step varies."""
 
     axis: str
@@ -75,17 +75,17 @@ class Line:
         return TimedTask(run)
 
 
-def lines(quick: bool) -> Iterator[Line]:
+def lines(quick: bool) -> Iterator[StepStudy]:
     """All lines of the pictures."""
     for kn in STIFFNESS[1:2] if quick else STIFFNESS:
-        yield Line(BLOCK, f"kn·h/W {kn * EDGE / WEIGHT_OVER_AREA:.0e}", "rocking", (f"joints.dry.kn={kn!r}",))
+        yield StepStudy(BLOCK, f"kn·h/W {kn * EDGE / WEIGHT_OVER_AREA:.0e}", "rocking", (f"joints.dry.kn={kn!r}",))
     shorter = ("analysis.duration=1.5",) if quick else ()
     for axis, file in SHAKEN.items():
         for name, overrides in DAMPING.items():
-            yield Line(axis, name, file, (*overrides, *shorter))
+            yield StepStudy(axis, name, file, (*overrides, *shorter))
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per line and step."""
     found = GroupResult()
     wanted = list(lines(options.quick))
@@ -108,7 +108,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _finest(line: Line, quick: bool) -> FirstMonitor:
+def _finest(line: StepStudy, quick: bool) -> FirstMonitor:
     """The history that others are compared with."""
     history: FirstMonitor = line.job(0.5 * USUAL if quick else FINEST).run()[1]
     return history
@@ -193,7 +193,7 @@ def picture(records: list[Measurement], path: Path) -> None:
     panels: dict[str, dict[str, list[tuple[float, float | None]]]] = {}
     for r in records:
         panels.setdefault(r.axis, {}).setdefault(r.case, []).append((r.best, r.found["error"]))
-    draw.work_precision(path, panels)
+    diagrams.work_precision(path, panels)
 
 
 PICTURES = {"time_histories": picture}

@@ -74,7 +74,7 @@ def as_tuples(value: Any) -> Any:
 
 def one_or_more(table: Any) -> Any:
     """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
-    return Annotated[sequence_of(table), OneOrMore()]
+    return Annotated[sequence_of(table), OneOrMoreSchema()]
 
 
 def sequence_of(table: Any) -> Any:
@@ -82,7 +82,7 @@ def sequence_of(table: Any) -> Any:
     return GenericAlias(tuple, (table, ...))
 
 
-class OneOrMore:
+class OneOrMoreSchema:
     """Tells editors, by the JSON Schema, that one table will do."""
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
-from dem_cli.case.keys import NAME, CaseTable, Key, tables
+from dem_cli.case.keys import NAME, CaseKey, CaseTable, tables
 from dem_cli.errors import UsageError
 
 CLOSE = 0.75  # a name that is so near to a key is a slip, not a material or a joint of that name
@@ -31,11 +31,11 @@ PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
 }
 
 
-class Entry(NamedTuple):
+class CaseEntry(NamedTuple):
     """A key as it is in tables of some kinds, or, without a key, the table itself."""
 
     table: CaseTable
-    key: Key | None
+    key: CaseKey | None
     kinds: tuple[str, ...]
 
     @property
@@ -55,7 +55,7 @@ class Entry(NamedTuple):
         return page or "docs/case.md"
 
 
-def find(model: type[BaseModel], query: str) -> list[Entry]:
+def find(model: type[BaseModel], query: str) -> list[CaseEntry]:
     """Every key or table that `query` may mean, alike ones together. Raises UsageError where there is none."""
     words = [word for word in re.sub(r"[\[\]\"' ]", "", query).split(".") if word and not word.isdigit()]
     names: dict[tuple[str, ...], set[str]] = {}
@@ -68,15 +68,15 @@ def find(model: type[BaseModel], query: str) -> list[Entry]:
     return _together(entry for rank, entry in found if rank == best)
 
 
-def entries(model: type[BaseModel]) -> Iterator[Entry]:
+def entries(model: type[BaseModel]) -> Iterator[CaseEntry]:
     """All tables and all keys, of each kind for itself; keys whose value can only be a table as that table."""
     for table in tables(model):
         if table.path:
-            yield Entry(table, None, table.kinds)
-        yield from (Entry(table, key, table.kinds) for key in table.keys if not key.only_tables)
+            yield CaseEntry(table, None, table.kinds)
+        yield from (CaseEntry(table, key, table.kinds) for key in table.keys if not key.only_tables)
 
 
-def _rank(words: Sequence[str], entry: Entry, names: Collection[str]) -> tuple[int, int] | None:
+def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tuple[int, int] | None:
     """How badly words name an entry: whether its path is cut in front, words that are a user's own names; or None."""
     steps: list[Any] = list(entry.table.path)
     if entry.kinds:
@@ -116,9 +116,9 @@ def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str
     return _own_names(words[1:], rest, names) if words and words[0] == step else None
 
 
-def _together(found: Iterator[Entry]) -> list[Entry]:
+def _together(found: Iterator[CaseEntry]) -> list[CaseEntry]:
     """Entries that say the same of several kinds as one."""
-    kept: dict[tuple[Any, ...], Entry] = {}
+    kept: dict[tuple[Any, ...], CaseEntry] = {}
     for entry in found:
         key = entry.key
         same: tuple[Any, ...] = (entry.path, entry.kinds)

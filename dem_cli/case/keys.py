@@ -17,8 +17,8 @@ import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from dem_cli.case.base import OneOrMore
-from dem_cli.case.words import Kind, allowed, is_table, kind_of
+from dem_cli.case.base import OneOrMoreSchema
+from dem_cli.case.wording import DeclaredType, allowed, is_table, kind_of
 
 NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
 NOTHING: tuple[Any, ...] = (None, (), {}, "")
@@ -58,13 +58,13 @@ class CaseTable(NamedTuple):
         return lines[0] if self.tag == "law" else HEADING.sub("", "\n".join(lines)) or self.said
 
     @property
-    def keys(self) -> list[Key]:
+    def keys(self) -> list[CaseKey]:
         """Its keys, the one that names the kind first."""
         names = sorted(self.declared.model_fields, key=lambda name: name != self.tag)
-        return [Key(self, name, self.declared.model_fields[name]) for name in names]
+        return [CaseKey(self, name, self.declared.model_fields[name]) for name in names]
 
 
-class Key(NamedTuple):
+class CaseKey(NamedTuple):
     """A key of a table."""
 
     table: CaseTable
@@ -77,7 +77,7 @@ class Key(NamedTuple):
         return ".".join((*self.table.path, self.name))
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> DeclaredType:
         """Its type and the limits on its value."""
         return kind_of(self.field.annotation, self.field.metadata)
 
@@ -167,7 +167,7 @@ def _below(table: CaseTable) -> Iterator[CaseTable]:
 
 
 def _inside(
-    kind: Kind, steps: tuple[str, ...] = (), several: bool = False
+    kind: DeclaredType, steps: tuple[str, ...] = (), several: bool = False
 ) -> Iterator[tuple[type[BaseModel], tuple[str, ...], bool]]:
     """Tables that a value of this kind may be or hold: class, path to it, whether there may be many."""
     for choice in kind.choices:
@@ -177,11 +177,11 @@ def _inside(
         elif origin is dict:
             yield from _inside(kind_of(arguments[1]), (*steps, NAME), several)
         elif origin is tuple and arguments[-1] is Ellipsis:
-            one_will_do = any(isinstance(limit, OneOrMore) for limit in choice.limits)
+            one_will_do = any(isinstance(limit, OneOrMoreSchema) for limit in choice.limits)
             yield from _inside(kind_of(arguments[0]), steps, not one_will_do)
 
 
-def _holds_float(kind: Kind) -> bool:
+def _holds_float(kind: DeclaredType) -> bool:
     """Whether a value of this kind is or may hold a float, tables aside."""
     inner = [kind_of(part) for choice in kind.choices for part in get_args(choice.type) if part is not Ellipsis]
     literal = get_origin(kind.type) is Literal

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import tomli
 from pydantic import BaseModel
 
-from dem_cli.case.words import listing, show, unknown_name
+from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
 
 NAMED = ("materials", "joints")  # tables of named tables: a new name is taken for a slip

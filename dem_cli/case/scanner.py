@@ -19,7 +19,7 @@ STRING = re.compile(
 SCALAR = re.compile(r"[^,\]}\n#]*")
 
 
-class Places:
+class KeyPositions:
     """Line and column (from 1) of keys and values, by key path."""
 
     def __init__(self, text: str):

@@ -18,7 +18,7 @@ from dem_cli.case.base import (
     CaseModel,
     KeyProblem,
     NonNegative,
-    OneOrMore,
+    OneOrMoreSchema,
     Pair,
     Positive,
     StructureBase,
@@ -184,7 +184,7 @@ class Output(CaseModel):
     rate: Positive = Field(default=200.0, description="samples of the monitors per second, in time histories [1/s]")
 
 
-class WrittenBy(CaseModel):
+class ProgramStamp(CaseModel):
     """[dem]: put into the effective case by the program."""
 
     version: str = Field(description="version of dem that wrote this file", examples=["0.1.0"])
@@ -199,7 +199,7 @@ class Case(CaseModel):
     dimension: Literal[2] = Field(default=2, description="of space; only 2 so far")
     gravity: NonNegative = Field(default=9.81, description="acceleration towards −y [m/s2]")
     seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
-    dem: WrittenBy | None = Field(default=None, description="written by the program")
+    dem: ProgramStamp | None = Field(default=None, description="written by the program")
     materials: dict[str, Material] = Field(min_length=1, description="materials by name")
     joints: dict[str, Any] = Field(min_length=1, description="joints by name; the first is the default one")
     interface: tuple[Interface, ...] = Field(default=(), description="other joints between two materials")
@@ -213,7 +213,7 @@ class Case(CaseModel):
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
-    reference: Annotated[tuple[Reference, ...], OneOrMore()] = Field(
+    reference: Annotated[tuple[Reference, ...], OneOrMoreSchema()] = Field(
         default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
     )
     motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli import __version__
-from dem_cli.calibrate.answer import OK, TrialAnswer
+from dem_cli.calibrate.comparison import OK, TrialAnswer
 from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
@@ -81,7 +81,7 @@ def check(loaded: LoadedCase) -> None:
         )
     joint = case.calibration.joint
     if joint and joint not in case.joints:
-        from dem_cli.case.words import unknown_name
+        from dem_cli.case.wording import unknown_name
 
         problem = CaseProblem(("calibration", "joint"), unknown_name("joint", joint, list(case.joints)))
         raise CaseError([problem], loaded.render)
@@ -142,9 +142,9 @@ def solved(text: str) -> TrialAnswer:
     """One trial, up to failure: its case as text, so that it can go to another process."""
     from dem_cli import api
     from dem_cli.analyses.solve import solve
-    from dem_cli.case.reader import LoadedCase, Source, parse_toml, validate
+    from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
 
-    source = Source(Path(CASE), text)
+    source = CaseSource(Path(CASE), text)
     loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
     case = loaded.case
     only_failure = case.analysis.model_copy(update={"follow": 0.0, "limit": False})
@@ -178,7 +178,7 @@ def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resoluti
 
 def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]) -> dict[str, Any]:
     """What summary.json holds. Raises SolverError where no profile has a failure load."""
-    from dem_cli.calibrate.answer import closest, rows
+    from dem_cli.calibrate.comparison import closest, rows
     from dem_cli.output.summary import ordered
 
     case, measured = loaded.case, loaded.case.calibration
@@ -221,7 +221,7 @@ def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
 
 def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[CalibrationTrial], quiet: bool) -> None:
     """Summary, table, the case with the closest profile, and the picture."""
-    from dem_cli.calibrate.answer import as_csv
+    from dem_cli.calibrate.comparison import as_csv
     from dem_cli.case.writer import case_text
     from dem_cli.output.folder import write_error
     from dem_cli.output.summary import write_summary
@@ -245,7 +245,7 @@ def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Calibrat
 
 def answer(summary: dict[str, Any], folder: Path) -> str:
     """The table of all profiles, and what was written."""
-    from dem_cli.calibrate.answer import as_text
+    from dem_cli.calibrate.comparison import as_text
     from dem_cli.cli.run import file_names, shown
 
     lines = [f"{summary['title']}: profiles of joint '{summary['joint']}'", *as_text(summary)]

@@ -11,9 +11,9 @@ from dem_cli.errors import DemError, UsageError
 
 if TYPE_CHECKING:
     from dem_cli.output.reader import Results
-    from dem_cli.post.chart import Paper
+    from dem_cli.post.chart import ChartOptions
     from dem_cli.post.labels import Quantity
-    from dem_cli.post.table import SweepTable
+    from dem_cli.post.sweep_table import SweepTable
 
 LONGEST = 60  # letters of a cell of a listing
 
@@ -33,24 +33,24 @@ def describe(key: str) -> tuple[str, str]:
 
 
 def of_runs(
-    folders: Sequence[Path], x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: Paper
+    folders: Sequence[Path], x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: ChartOptions
 ) -> None:
     """A curve for each run. Raises UsageError."""
     from dem_cli.output.reader import read
-    from dem_cli.post.curves import Member, draw_curves
+    from dem_cli.post.curves import FamilyMember, draw_curves
     from dem_cli.post.labels import of_key
-    from dem_cli.post.table import shown
+    from dem_cli.post.sweep_table import shown
 
     results = [read(folder) for folder in folders]
     x, ys = _columns(results[0], x, ys)
     family = ""
     names = _names(folders)
-    members = [Member(name, name, run) for name, run in zip(names, results)]
+    members = [FamilyMember(name, name, run) for name, run in zip(names, results)]
     if by:
         family = ", ".join(of_key(key, describe).label() for key in by)
         values = [tuple(_case_value(folder, key) for key in by) for folder in folders]
         members = [
-            Member(", ".join(map(shown, row)), row[0] if len(by) == 1 else row, run)
+            FamilyMember(", ".join(map(shown, row)), row[0] if len(by) == 1 else row, run)
             for row, run in zip(values, results)
         ]
     titles = list(dict.fromkeys(str(run.summary.get("title", "")) for run in results))
@@ -59,7 +59,7 @@ def of_runs(
 
 def _columns(results: Results, x: str | None, ys: Sequence[str]) -> tuple[str, list[str]]:
     """What was asked for, with the usual columns where nothing was said."""
-    from dem_cli.post.columns import usual
+    from dem_cli.post.run_columns import usual
 
     found = usual(results)
     if not ys and found is None:
@@ -95,13 +95,13 @@ def _case_value(folder: Path, key: str) -> Any:
 
 def of_sweep(
     folder: Path, x: str | None, ys: Sequence[str], by: Sequence[str], where: Sequence[str], as_map: bool,
-    target: Path, paper: Paper,
+    target: Path, paper: ChartOptions,
 ) -> None:  # fmt: skip
     """Columns of its table, or of its runs where the table has none of that name. Raises UsageError."""
     from dem_cli.post.labels import nearest
     from dem_cli.post.maps import draw_map
-    from dem_cli.post.sweeps import draw_sweep
-    from dem_cli.post.table import read_sweep
+    from dem_cli.post.sweep_chart import draw_sweep
+    from dem_cli.post.sweep_table import read_sweep
 
     table = read_sweep(folder).only(dict(map(_condition, where)))
     inside = [name for name in (x, *ys) if name and nearest(name, table.names) is None]
@@ -127,13 +127,13 @@ def of_sweep(
 
 def _needs_map(table: SweepTable, x: str | None, ys: Sequence[str], ranked: Sequence[str]) -> bool:
     """Whether, where nobody said how, an answer in words over two keys would be nothing but lines on top of lines."""
-    from dem_cli.post.table import is_answer_in_words
+    from dem_cli.post.sweep_table import is_answer_in_words
 
     return x is None and len(ys) == 1 and len(ranked) == 2 and is_answer_in_words(table.columns[ys[0]])
 
 
 def _condition(text: str) -> tuple[str, Any]:
-    from dem_cli.post.table import value
+    from dem_cli.post.sweep_table import value
 
     name, sign, said = text.partition("=")
     if not sign:
@@ -153,7 +153,7 @@ def _quantities(table: SweepTable) -> dict[str, Quantity]:
 def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
     """Rows whose runs kept their results, and where these are."""
     from dem_cli.output.store import RESULTS
-    from dem_cli.output.sweeps import RUNS
+    from dem_cli.output.sweep_files import RUNS
 
     for i, run in enumerate(table.columns["run"]):
         folder = table.folder / RUNS / run
@@ -164,8 +164,8 @@ def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
 def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
     """Whether the runs know these columns. Raises UsageError where nobody can, and that is why."""
     from dem_cli.output.reader import read
-    from dem_cli.post.columns import tables
     from dem_cli.post.labels import nearest
+    from dem_cli.post.run_columns import tables
 
     first = next(_kept(table), None)
     if first is None:
@@ -175,13 +175,13 @@ def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
 
 
 def _runs_of_sweep(
-    table: SweepTable, x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: Paper
+    table: SweepTable, x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: ChartOptions
 ) -> None:
     """A curve for each run that is kept, coloured by a swept key."""
     from dem_cli.output.reader import read
     from dem_cli.post.chart import MOST_NAMES
-    from dem_cli.post.curves import Member, draw_curves
-    from dem_cli.post.table import shown
+    from dem_cli.post.curves import FamilyMember, draw_curves
+    from dem_cli.post.sweep_table import shown
 
     quantities = _quantities(table)
     keys = [table.exact(key) for key in by] or table.ranked()
@@ -189,7 +189,7 @@ def _runs_of_sweep(
     x, ys = _columns(rows[0][1], x, ys)
     if len({row for row, _ in rows}) > MOST_NAMES:  # too many to be named: coloured by the first key
         keys, rows = keys[:1], [(row[:1], run) for row, run in rows]
-    members = [Member(", ".join(map(shown, row)), row[0] if len(keys) == 1 else row, run) for row, run in rows]
+    members = [FamilyMember(", ".join(map(shown, row)), row[0] if len(keys) == 1 else row, run) for row, run in rows]
     family = ", ".join(quantities[key].label() for key in keys)
     draw_curves(members, x, ys, target, paper, table.title, family)
 
@@ -197,8 +197,8 @@ def _runs_of_sweep(
 def listing(folders: Sequence[Path], sweep: bool) -> list[str]:
     """A line for each column: its name, its unit, and what it means."""
     from dem_cli.output.reader import read
-    from dem_cli.post.columns import tables
-    from dem_cli.post.table import distinct, numeric, read_sweep, shown
+    from dem_cli.post.run_columns import tables
+    from dem_cli.post.sweep_table import distinct, numeric, read_sweep, shown
 
     groups: list[tuple[str, list[tuple[str, ...]]]] = []
     if sweep:

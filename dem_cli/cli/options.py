@@ -22,7 +22,7 @@ overrides_option = click.option(
 _SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
 
 
-class Size(click.ParamType):
+class PictureSize(click.ParamType):
     """1200x800, or 1200 and a height that suits."""
 
     name = "WIDTH[xHEIGHT]"
@@ -35,7 +35,7 @@ class Size(click.ParamType):
         return (sides[0], sides[1] if len(sides) > 1 else None)
 
 
-class Limits(click.ParamType):
+class AxisLimits(click.ParamType):
     """0:0.02, the lower and the upper end of an axis."""
 
     name = "LOW:HIGH"

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import Limits, Size
+from dem_cli.cli.options import AxisLimits, PictureSize
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
-    from dem_cli.post.chart import Paper
+    from dem_cli.post.chart import ChartOptions
 
 CHART, SWEEP = "plot.png", "sweep.png"
 FORMATS = (".png", ".svg", ".pdf")
@@ -33,10 +33,10 @@ NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "e
     "-o", "--output", metavar="PATH", type=click.Path(path_type=Path),
     help="A file ending in .png, .svg or .pdf; where all pictures are drawn, a folder.",
 )  # fmt: skip
-@click.option("--size", type=Size(), help="Of a chart [pixels], such as 1200x800.")
+@click.option("--size", type=PictureSize(), help="Of a chart [pixels], such as 1200x800.")
 @click.option("--log", type=click.Choice(("x", "y", "xy")), help="Logarithmic axes.")
-@click.option("--xlim", type=Limits(), help="Ends of the x axis, such as 0:0.02.")
-@click.option("--ylim", type=Limits(), help="Ends of the y axis.")
+@click.option("--xlim", type=AxisLimits(), help="Ends of the x axis, such as 0:0.02.")
+@click.option("--ylim", type=AxisLimits(), help="Ends of the y axis.")
 @click.option("--animate", is_flag=True, help="With all pictures of a run: collapse.gif as well.")
 def command(
     folders: Sequence[Path],
@@ -64,8 +64,8 @@ def command(
     dem plot SWEEP -x displacement -y load        a curve for each of its runs (dem sweep --keep all)
     """
     from dem_cli.cli import chart
-    from dem_cli.post.chart import Paper
-    from dem_cli.post.table import is_sweep
+    from dem_cli.post.chart import ChartOptions
+    from dem_cli.post.sweep_table import is_sweep
 
     for folder in folders:
         if not folder.is_dir():
@@ -75,15 +75,15 @@ def command(
         raise UsageError(f"{sweeps[0]}: a sweep is drawn alone, not beside other folders")
     if (where or as_map) and not sweeps:
         raise UsageError("--where and --map are for the folder of a sweep")
-    paper = Paper(size, frozenset(log or ""), xlim, ylim)
+    paper = ChartOptions(size, frozenset(log or ""), xlim, ylim)
     asked = bool(x or ys or by or listed or len(folders) > 1)
     if picture is not None:
-        if sweeps or asked or paper != Paper():
+        if sweeps or asked or paper != ChartOptions():
             raise UsageError("--picture is for one run, without columns and sizes")
         draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
         return
     if not sweeps and not asked:
-        if paper != Paper() or (output is not None and output.suffix.lower() in FORMATS):
+        if paper != ChartOptions() or (output is not None and output.suffix.lower() in FORMATS):
             raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
         draw_pictures(folders[0], output, animate)
         return
@@ -108,7 +108,7 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
     """All pictures of one run."""
     from dem_cli.cli.motion import draw_spectra_of_run
     from dem_cli.output.folder import write_error
-    from dem_cli.post.plots import draw_all
+    from dem_cli.post.run_pictures import draw_all
 
     target = output or folder
     try:
@@ -127,7 +127,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
     """One of the pictures of a run."""
     from dem_cli.output.folder import write_error
     from dem_cli.post.chart import check_format
-    from dem_cli.post.plots import draw_one
+    from dem_cli.post.run_pictures import draw_one
 
     check_format(path)
     try:
@@ -140,7 +140,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
 
 def draw_chart(
     folders: Sequence[Path], sweep: bool, x: str | None, ys: list[str], by: list[str], where: Sequence[str],
-    as_map: bool, target: Path, paper: Paper,
+    as_map: bool, target: Path, paper: ChartOptions,
 ) -> None:  # fmt: skip
     """One chart, of runs or of a sweep."""
     from dem_cli.cli import chart

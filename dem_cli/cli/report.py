@@ -25,8 +25,8 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     The page is one file that loads nothing: answer, warnings, audit, a view of the structure to turn and play, charts,
     tables, the case.
     """
-    from dem_cli.output.whole import write_text
-    from dem_cli.post.table import is_sweep
+    from dem_cli.output.atomic_file import write_text
+    from dem_cli.post.sweep_table import is_sweep
     from dem_cli.report import run, sweep
 
     if not folder.is_dir():
@@ -49,14 +49,14 @@ def said(summary: dict[str, Any]) -> Any:
     """The lines that `dem run` prints of a summary, and its verdicts."""
     from dem_cli.cli.words.reference import one_line
     from dem_cli.output.reference import as_declared, from_summary
-    from dem_cli.report.run import Said
+    from dem_cli.report.run import TerminalText
 
     if not summary:  # of a killed run
-        return Said([], [])
+        return TerminalText([], [])
     answers = from_summary(summary.get("reference"))
     tones = ["bad" if not as_declared(answer) else "look" if "missed" in answer else "good" for answer in answers]
     verdicts = [(tone, f"reference: {one_line(answer)}") for tone, answer in zip(tones, answers, strict=True)]
-    return Said(console.answer_rows(summary), verdicts)
+    return TerminalText(console.answer_rows(summary), verdicts)
 
 
 def _summary(folder: Path) -> dict[str, Any]:

@@ -254,7 +254,7 @@ def abandoning(writer: ResultWriter):  # type: ignore[no-untyped-def]
 def draw(folder: Path, quiet: bool) -> None:
     """Pictures are welcome, not needed: what goes wrong with them is only said."""
     try:
-        from dem_cli.post.plots import draw_all
+        from dem_cli.post.run_pictures import draw_all
 
         draw_all(folder, folder)
     except (DemError, OSError) as error:

@@ -18,12 +18,12 @@ from dem_cli import __version__
 from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
-from dem_cli.cli.words.count import Count
+from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
-    from dem_cli.sweep.plan import Plan
+    from dem_cli.sweep.plan import SweepPlan
     from dem_cli.sweep.run import PlannedSweep, Spread, Summary, SweepJob
 
 TABLE_EVERY = 15.0  # s between two states of sweep.csv while runs go on
@@ -83,14 +83,14 @@ def command(
         print_plan(sweep)
         return 0
     with opened(folder, fresh, force, (shard and f"-{part[0] + 1}of{part[1]}") or ""):
-        run = Running(loaded, sweep, folder, part, quiet)
+        run = SweepProgress(loaded, sweep, folder, part, quiet)
         found = run.all(partial(spread, scheduler, jobs, folder.resolve()), retry)
     found["wall_seconds"] = time.perf_counter() - started
     console.show(json.dumps(found, indent=2, ensure_ascii=False) if as_json else told(found, folder))
     return 1 if found["failed"] else 0
 
 
-def planned(loaded: LoadedCase) -> Plan:
+def planned(loaded: LoadedCase) -> SweepPlan:
     """The runs that a case asks for. Raises CaseError, with file and line."""
     from dem_cli.sweep.plan import plan_of
 
@@ -145,7 +145,7 @@ def spread(
     yield from each_done(do_job, jobs, processes or usable_cores(), first_alone=cache_is_cold())
 
 
-class Running:
+class SweepProgress:
     """A sweep under way: what is known of its runs, and what the user is told meanwhile."""
 
     def __init__(self, loaded: LoadedCase, sweep: PlannedSweep, folder: Path, part: tuple[int, int], quiet: bool):
@@ -193,7 +193,7 @@ class Running:
         from dem_cli.sweep.table import columns, rows, write_csv
 
         due = time.monotonic() + TABLE_EVERY
-        with Count(len(wanted), len(wanted & self.known.keys()), self.quiet) as bar:
+        with RunCounter(len(wanted), len(wanted & self.known.keys()), self.quiet) as bar:
             for name, summary in carried_out(mine, self.known, do):
                 self.known[name] = summary
                 bar.update(failed=not solved(summary))
@@ -229,8 +229,8 @@ class Running:
         return {"run": row["run"], **{key: row[key] for key in self.sweep.plan.keys}, "reason": row["reason"]}
 
     def facts(self, status: str, found: dict[str, Any] | None = None) -> None:
+        from dem_cli.output.atomic_file import write_text
         from dem_cli.output.store import CASE
-        from dem_cli.output.whole import write_text
         from dem_cli.sweep.folder import write_facts
 
         text = self.loaded.text if self.loaded.text.endswith("\n") else self.loaded.text + "\n"

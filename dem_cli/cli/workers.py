@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
 from dem_cli.errors import SolverError
-from dem_cli.sweep.pool import Died, each_done
+from dem_cli.sweep.pool import WorkerDeath, each_done
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -21,6 +21,6 @@ def usable_cores() -> int:
 def side_by_side(function: Callable[[Item], Result], items: Sequence[Item], jobs: int) -> Iterator[tuple[int, Result]]:
     """As sweep.pool.each_done; raises SolverError where an item kills its process."""
     for number, result in each_done(function, items, jobs):
-        if isinstance(result, Died):
+        if isinstance(result, WorkerDeath):
             raise SolverError("a process of a run died, perhaps for want of memory; fewer --jobs need less")
         yield number, result

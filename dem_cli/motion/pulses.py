@@ -13,7 +13,7 @@ PER_CYCLE = 200  # time steps that show a cycle
 RICKER_HALF = 1.5  # half length of the wavelet in periods: the acceleration is 1e-8 of its peak there
 
 
-class Wave:
+class SineWave:
     """amplitude · r(t) · sin(2π f t + phase); r rises from 0 to 1 over the first `ramp` seconds, and falls likewise.
 
     amplitude [m/s2], frequency [Hz], phase [rad], duration [s], ramp [s], at most half the duration.
@@ -81,7 +81,7 @@ class Wave:
         return float(np.abs(self.acceleration(np.clip(np.concatenate((grid, crests)), 0.0, self.duration))).max())
 
 
-class Ricker:
+class RickerWavelet:
     """amplitude · (1 − 2x²) exp(−x²), x = π f (t − 1.5/f): second derivative of a bell; f is where its spectrum peaks.
 
     Source: N. Ricker, The form and laws of propagation of seismic wavelets, Geophysics 18 (1953).
@@ -113,7 +113,7 @@ class Ricker:
         return -0.5 * self.amplitude / self.rate**2 * np.exp(-x * x)
 
 
-class Steps:
+class RectangularPulses:
     """Acceleration that is constant for a while, then another constant: `values` [m/s2] for `durations` [s]."""
 
     def __init__(self, durations: list[float], values: list[float]):
@@ -142,11 +142,11 @@ class Steps:
         return np.clip(np.searchsorted(self.knots, t, side="right") - 1, 0, len(self.knots) - 1)
 
 
-def impulse(amplitude: float, duration: float, rebound: float = 0.0) -> Steps:
+def impulse(amplitude: float, duration: float, rebound: float = 0.0) -> RectangularPulses:
     """`amplitude` for `duration`, then −rebound · amplitude until the base stands still again (rebound > 0).
 
     With rebound 0.5 the base impulse of Dimitri, De Lorenzis and Zavarise (2011): +a for t, −a/2 for 2 t.
     """
     if rebound == 0.0:
-        return Steps([duration], [amplitude])
-    return Steps([duration, duration / rebound], [amplitude, -rebound * amplitude])
+        return RectangularPulses([duration], [amplitude])
+    return RectangularPulses([duration, duration / rebound], [amplitude, -rebound * amplitude])

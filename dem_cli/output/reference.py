@@ -11,7 +11,7 @@ from dem_cli.output.scalars import scalars
 Value = float | int | str | bool | None
 
 
-class Wanted(Protocol):
+class ReferenceTable(Protocol):
     """What this file asks of a `[reference]`."""
 
     @property
@@ -35,7 +35,7 @@ class Wanted(Protocol):
         """Why the case says that this is missed; None: it is to be met."""
 
 
-def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[dict[str, Any]]:
+def verdicts(summary: Mapping[str, Any], references: Sequence[ReferenceTable]) -> list[dict[str, Any]]:
     """What summary.json says of each reference.
 
     value, tolerance and passed, as the contract of `dem run` has them; quantity, kind, found; `missed`, why the case
@@ -45,7 +45,7 @@ def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[d
     return [verdict(known, reference) for reference in references]
 
 
-def verdict(known: Mapping[str, Value], reference: Wanted) -> dict[str, Any]:
+def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, Any]:
     """One reference and the numbers, words and truths of a summary by their paths."""
     found = known.get(reference.path)
     value = list(reference.expected) if isinstance(reference.expected, tuple) else reference.expected
@@ -79,7 +79,7 @@ def error(found: Value, expected: bool | float | tuple[float, float] | list[floa
     return min(found - low, 0.0) + max(found - high, 0.0)
 
 
-def why_nothing(known: Mapping[str, Value], reference: Wanted) -> str | None:
+def why_nothing(known: Mapping[str, Value], reference: ReferenceTable) -> str | None:
     """Why there is nothing to compare; None where there is something, or where no answer is one (no failure load)."""
     if reference.path in known:
         found, wanted = known[reference.path], _sort(reference.expected)

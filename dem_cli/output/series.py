@@ -16,7 +16,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from dem_cli.output.columns import Columns
+from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.record import Samples
 
 UNITS = {"displacement": "m", "rotation": "rad", "opening": "m", "slip": "m", "velocity": "m/s", "acceleration": "m/s2"}
@@ -54,7 +54,7 @@ class SeriesWriter:
         self.names, self.quantities = tuple(names), tuple(quantities)
         group.attrs.create("monitors", list(self.names), dtype=_TEXT)
         group.attrs.create("quantities", list(self.quantities), dtype=_TEXT)
-        self._group, self._columns = group, Columns(group)
+        self._group, self._columns = group, GrowingGroup(group)
         self._waiting: list[Samples] = []
         self.n_waiting = 0
         self._peaks: list[Peak] = []

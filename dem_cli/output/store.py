@@ -22,15 +22,15 @@ import h5py
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.columns import Columns
-from dem_cli.output.disk import HeldFile
+from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
-from dem_cli.output.held import Held
+from dem_cli.output.growing_dataset import GrowingGroup
+from dem_cli.output.hdf5_file import Hdf5File
 from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, RunRow, Samples
-from dem_cli.output.runs import TABLES, write_runs
+from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
-from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
+from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
 FORMAT = 1
@@ -66,8 +66,8 @@ class ResultWriter:
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._rows: list[HistoryRow] = []
-        self._held = Held(self.monitors, self.quantities)
-        self._files: list[HeldFile] = []
+        self._held = EquilibriumMonitors(self.monitors, self.quantities)
+        self._files: list[Hdf5File] = []
         self._vtk: tuple[GridSeries, PointSeries] | None = None
         self._series: SeriesWriter | None = None
         self._rest = rest_vertices(model)
@@ -85,13 +85,13 @@ class ResultWriter:
         dem.create_group("provenance").attrs.update(provenance)
         _store_model(dem.create_group("model"), self.model)
         self._frames, self._contacts, self._history = (
-            Columns(dem.create_group(name)) for name in ("frames", "contacts", "history")
+            GrowingGroup(dem.create_group(name)) for name in ("frames", "contacts", "history")
         )
         dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
         self._flush()
 
     def _open(self, name: str) -> h5py.File:
-        self._files.append(HeldFile(self.folder / name))
+        self._files.append(Hdf5File(self.folder / name))
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
@@ -231,7 +231,7 @@ def _store_model(group: h5py.Group, model: Model) -> None:
             group.create_dataset(name, data=value)
 
 
-def _store_rows(history: Columns, rows: Sequence[HistoryRow]) -> None:
+def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:
     for name in ROW_SCALARS:
         kind = np.int64 if name == "step" else np.float64
         history.append(name, np.array([getattr(row, name) for row in rows], dtype=kind))

@@ -25,7 +25,7 @@ _LONGEST_TITLE = 11.0  # letters per inch
 
 
 @dataclass(frozen=True)
-class Paper:
+class ChartOptions:
     """How a chart is asked for."""
 
     size: tuple[int, int | None] | None = None  # pixels
@@ -42,7 +42,7 @@ class Paper:
         return width / style.DPI, (height or width * SIZE[1] / SIZE[0]) / style.DPI
 
 
-class Keys:
+class FamilyColours:
     """Colours for the members of a family: by number along a scale, or one after the other."""
 
     def __init__(self, values: Sequence[Any]):
@@ -68,7 +68,7 @@ class Keys:
         return COLOURS[i % len(COLOURS)]
 
 
-def draw_bar(figure: Any, axes: Any, keys: Keys, label: str) -> None:
+def draw_bar(figure: Any, axes: Any, keys: FamilyColours, label: str) -> None:
     """The scale of colours beside all panels."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -96,7 +96,7 @@ def fitted(quantity: Quantity, values: Sequence[np.ndarray]) -> tuple[float, str
     return factor, quantity.label(unit)
 
 
-def dress(axis: Any, paper: Paper) -> None:
+def dress(axis: Any, paper: ChartOptions) -> None:
     """Limits and logarithms as asked for. Raises UsageError where an axis cannot be logarithmic."""
     for name, limits in (("x", paper.x_limits), ("y", paper.y_limits)):
         if name in paper.log:

@@ -12,16 +12,16 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.post import chart, style
-from dem_cli.post.chart import Paper
-from dem_cli.post.columns import find, tables
+from dem_cli.post.chart import ChartOptions
 from dem_cli.post.histories import thinned
 from dem_cli.post.labels import Quantity
+from dem_cli.post.run_columns import find, tables
 
 _PANEL = 0.62  # of the height of a chart: every panel after the first adds so much
 _MOST_BESIDE = 16  # names in a legend at the side
 
 
-class Member(NamedTuple):
+class FamilyMember(NamedTuple):
     """A run of a family."""
 
     name: str  # as the legend has it
@@ -32,14 +32,20 @@ class Member(NamedTuple):
 class Curve(NamedTuple):
     """One line."""
 
-    member: Member
+    member: FamilyMember
     column: str  # of y
     x: np.ndarray
     y: np.ndarray
 
 
 def draw_curves(
-    members: Sequence[Member], x: str, ys: Sequence[str], path: Path, paper: Paper, title: str, family: str = ""
+    members: Sequence[FamilyMember],
+    x: str,
+    ys: Sequence[str],
+    path: Path,
+    paper: ChartOptions,
+    title: str,
+    family: str = "",
 ) -> None:
     """One line per run and column of y. `family`: what the values are by which runs are coloured.
 
@@ -53,7 +59,7 @@ def draw_curves(
         height *= 1.0 + _PANEL * (len(panels) - 1)
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-        keys = chart.Keys([member.value for member in members])
+        keys = chart.FamilyColours([member.value for member in members])
         factor, label = chart.fitted(quantities["x"], [curve.x for curve in curves])
         for axis, panel in zip(axes, panels):
             _draw_panel(axis, panel, factor, quantities, keys, list(ys), paper)
@@ -65,7 +71,7 @@ def draw_curves(
         chart.title(figure, title)
 
 
-def _gathered(members: Sequence[Member], x: str, ys: Sequence[str]) -> tuple[dict[str, Quantity], list[Curve]]:
+def _gathered(members: Sequence[FamilyMember], x: str, ys: Sequence[str]) -> tuple[dict[str, Quantity], list[Curve]]:
     quantities: dict[str, Quantity] = {}
     curves = []
     for member in members:
@@ -82,8 +88,8 @@ def _gathered(members: Sequence[Member], x: str, ys: Sequence[str]) -> tuple[dic
 
 
 def _draw_panel(
-    axis: Any, curves: Sequence[Curve], x_factor: float, quantities: dict[str, Quantity], keys: chart.Keys,
-    ys: list[str], paper: Paper,
+    axis: Any, curves: Sequence[Curve], x_factor: float, quantities: dict[str, Quantity], keys: chart.FamilyColours,
+    ys: list[str], paper: ChartOptions,
 ) -> None:  # fmt: skip
     columns = list(dict.fromkeys(curve.column for curve in curves))
     factor, label = chart.fitted(quantities[columns[0]], [curve.y for curve in curves])
@@ -124,7 +130,7 @@ def _fit_heights(axis: Any, limits: tuple[float, float]) -> None:
 
 
 def _legend(
-    figure: Any, axes: Any, members: Sequence[Member], keys: chart.Keys, ys: Sequence[str],
+    figure: Any, axes: Any, members: Sequence[FamilyMember], keys: chart.FamilyColours, ys: Sequence[str],
     quantities: dict[str, Quantity], family: str,
 ) -> None:  # fmt: skip
     """Runs by colour, columns by colour where there is one run, else by dashes."""

@@ -63,16 +63,16 @@ def canvas() -> Iterator[Callable[..., Any]]:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-        from dem_cli.post import verbatim
+        from dem_cli.post import verbatim_figure
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
 
     def make(**options: Any) -> Any:
-        drawn = verbatim.VerbatimFigure(layout="constrained", **options)
+        drawn = verbatim_figure.VerbatimFigure(layout="constrained", **options)
         FigureCanvasAgg(drawn)
         return drawn
 
-    with matplotlib.rc_context(_STYLE | verbatim.STYLE), warnings.catch_warnings():
+    with matplotlib.rc_context(_STYLE | verbatim_figure.STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # in the font: a box stands there
         yield make
 

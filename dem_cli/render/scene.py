@@ -91,7 +91,7 @@ class Scene:
     ) -> np.ndarray:
         """The structure as in `shown`, which is drawn `scale` times and `moved` along [m], (height, width, 3) bytes.
 
-        look: which joints and forces (render.Look); colours: of the blocks, (n_blocks, 3) in 0 … 1, else of stone.
+        look: which joints and forces (RenderOptions); colours: of the blocks, (n_blocks, 3) in 0 … 1, else of stone.
         """
         from PIL import Image
 

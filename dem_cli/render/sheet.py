@@ -14,7 +14,7 @@ _HEADER, _LEGEND, _BAR = 0.58, 0.34, 0.56  # inches
 _LOWEST, _HIGHEST = 0.3, 0.85  # of the width: the picture without what stands around it
 
 
-class Bar(NamedTuple):
+class ColourBar(NamedTuple):
     """A scale of colours."""
 
     label: str  # with its unit
@@ -56,7 +56,7 @@ class Sheet:
         plan: SheetLayout,
         summary: Mapping[str, Any],
         handles: Sequence[Any] = (),
-        bar: Bar | None = None,
+        bar: ColourBar | None = None,
     ):
         dpi = plan.width / WIDTH
         self.figure = make(figsize=(WIDTH, plan.height / dpi), dpi=dpi)
@@ -76,7 +76,7 @@ class Sheet:
                 handlelength=1.6, columnspacing=1.6, labelspacing=0.25,
             )  # fmt: skip
 
-    def _draw_bar(self, bar: Bar, plan: SheetLayout) -> None:
+    def _draw_bar(self, bar: ColourBar, plan: SheetLayout) -> None:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
 

@@ -14,7 +14,7 @@ from dem_cli.post import style
 from dem_cli.post.capacity import with_breaks
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import of_quantity, thinned
-from dem_cli.report.pack import pack
+from dem_cli.report.packed_arrays import pack
 
 Chart = dict[str, Any]
 _ZOOM_FROM = 6.0  # the collapse goes this many times farther than failure: the chart opens with a look at failure

@@ -11,9 +11,9 @@ from urllib.parse import quote
 
 from dem_cli.errors import UsageError
 from dem_cli.output.store import CASE
-from dem_cli.output.sweeps import FACTS, RUNS
-from dem_cli.post.table import ANSWERS, SweepTable, distinct, read_sweep, shown
-from dem_cli.report.facts import BAD, GOOD, LOOK, Answer
+from dem_cli.output.sweep_files import FACTS, RUNS
+from dem_cli.post.sweep_table import ANSWERS, SweepTable, distinct, read_sweep, shown
+from dem_cli.report.facts import BAD, GOOD, LOOK, Headline
 from dem_cli.report.page import render
 
 OTHERS, MOST_LINES = "the other keys", 12  # of the chart at first
@@ -75,7 +75,7 @@ def axes(table: SweepTable) -> dict[str, str | None]:
         return {"x": across, "y": None, "family": family}
 
 
-def answer(table: SweepTable) -> Answer:
+def answer(table: SweepTable) -> Headline:
     """How many runs there are and what they found."""
     states = [str(state) for state in table.columns["status"]]
     counts = {"solved": states.count("ok"), "to do": states.count("waiting")}
@@ -86,7 +86,7 @@ def answer(table: SweepTable) -> Answer:
         if found:
             more.append(f"{name.replace('_', ' ')} {min(found):.4g} to {max(found):.4g}")
     tone = BAD if not counts["solved"] else LOOK if counts["failed"] or counts["to do"] else GOOD
-    return Answer("sweep of", f"{table.count:,} runs", ", ".join(more), tone)
+    return Headline("sweep of", f"{table.count:,} runs", ", ".join(more), tone)
 
 
 def failures(table: SweepTable) -> list[str]:

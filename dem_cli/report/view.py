@@ -14,13 +14,13 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
-from dem_cli.output.shapes import in_space, rest_orientations, rotations
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures
-from dem_cli.post import view as stage
+from dem_cli.output.vertices import in_space, rest_orientations, rotations
+from dem_cli.post import frame_measures
+from dem_cli.post import view_box as stage
 from dem_cli.render import marks
 from dem_cli.render.solids import surface
-from dem_cli.report.pack import pack
+from dem_cli.report.packed_arrays import pack
 
 MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
@@ -38,10 +38,10 @@ def view(results: Results) -> dict[str, Any]:
     skin, series = surface(model), results.series
     kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
     chosen = [frames[i] for i in kept]
-    scales = [1.0 if frame.stage == MODE else measures.visible_scale(model, frame) for frame in chosen]
+    scales = [1.0 if frame.stage == MODE else frame_measures.visible_scale(model, frame) for frame in chosen]
     return {
         "dimension": model.dimension,
-        "size": measures.size(model),
+        "size": frame_measures.size(model),
         "ids": list(model.block_ids),
         "materials": [model.material_names[i] for i in model.block_material],
         "masses": pack(model.masses),
@@ -163,11 +163,11 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
     middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
     if alone.any():
-        along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * measures.size(model)
+        along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * frame_measures.size(model)
         tangents = _tangents(contacts) * np.where(alone, along, 0.0)[:, np.newaxis]
         ends, middles = ends - tangents, middles + tangents
     first = contacts.blocks[:, 0]
-    hairline = _HAIRLINE * measures.largest_displacement(model, frame)
+    hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame)
     states = np.where((contacts.state == STATES.index("open")) & (contacts.gap < hairline), _FAINT, contacts.state)
     strokes = np.stack((_arms(frame, ends, first), _arms(frame, middles, first)), axis=1)
     return {
@@ -189,7 +189,7 @@ def _tangents(contacts: ContactRecord) -> np.ndarray:
 
 def _forces(frame: Frame) -> dict[str, Any]:
     """The resultant of each joint that is pressed, at its centre of pressure."""
-    found = measures.resultants(frame.contacts)
+    found = frame_measures.resultants(frame.contacts)
     return {
         "force_blocks": pack(found.blocks),
         "force_arms": pack(_arms(frame, found.points, found.blocks[:, 0])),

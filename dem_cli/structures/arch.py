@@ -13,7 +13,7 @@ from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 
 
-class Support(CaseModel):
+class Pier(CaseModel):
     """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
 
     width: Positive = Field(description="width [m]; at least that of the springing joint", examples=[0.8])
@@ -69,12 +69,12 @@ class Arch(StructureBase):
         examples=[20.0],
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    columns: Support | None = Field(
+    columns: Pier | None = Field(
         None,
         description="columns below the springings; default: none, the springings are fixed",
         examples=[{"width": 0.3, "height": 1.0, "courses": 4}],
     )
-    buttresses: Support | None = Field(
+    buttresses: Pier | None = Field(
         None,
         description="buttresses below the springings, the same as columns; default: none",
         examples=[{"width": 0.8, "height": 1.0, "courses": 4}],
@@ -84,7 +84,7 @@ class Arch(StructureBase):
     )
 
     @property
-    def piers(self) -> Support | None:
+    def piers(self) -> Pier | None:
         """What the arch stands on; None for fixed springings."""
         return self.columns or self.buttresses
 
@@ -102,7 +102,7 @@ class Arch(StructureBase):
         return self
 
 
-def _check_piers(arch: Arch, piers: Support) -> None:
+def _check_piers(arch: Arch, piers: Pier) -> None:
     (inner, outer), key = SHAPES[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
     if outer[1] < inner[1] - 1e-9 * arch.ring:
         message = f"{arch.included_angle_deg:g} is not allowed; must be at most 180 for an arch on piers"
@@ -230,7 +230,7 @@ def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
     return blocks
 
 
-def _pier_blocks(arch: Arch, pier: Support, joints: np.ndarray) -> list[Block]:
+def _pier_blocks(arch: Arch, pier: Pier, joints: np.ndarray) -> list[Block]:
     """Rectangles from below; the uppermost one ends in the springing joint and level with its outer edge."""
     blocks = []
     levels = pier.height * np.arange(pier.courses + 1) / pier.courses

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
+from dem_cli.output.atomic_file import PART, write_text
 from dem_cli.output.folder import locked, write_error
 from dem_cli.output.store import CASE
-from dem_cli.output.sweeps import CSV, FACTS, RUNS, SQLITE
-from dem_cli.output.whole import PART, write_text
+from dem_cli.output.sweep_files import CSV, FACTS, RUNS, SQLITE
 
 LOCK, TABLES_LOCK = ".sweep{}.lock", ".tables.lock"
 STALE = 3600.0  # s after which a half-written table is one that a killed sweep left

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dem_cli.output.atomic_file import whole
 from dem_cli.output.scalars import plain
-from dem_cli.output.sweeps import CSV, FIRST, SQLITE
-from dem_cli.output.whole import whole
+from dem_cli.output.sweep_files import CSV, FIRST, SQLITE
 from dem_cli.sweep.plan import show_value
 from dem_cli.sweep.run import FAILED, WAITING, PlannedSweep, Summary
 

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from dem_cli.verify.records import Record, counts, on_shelves
-from dem_cli.verify.words import VERDICTS, allowed, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, off, share, shown
 
 ABOUT = {
     "verification": "Exact answers: closed forms, limit analysis, motions integrated apart from dem to full accuracy. "

@@ -13,7 +13,7 @@ from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
 from dem_cli.output.reference import as_declared, error, verdicts
 from dem_cli.output.scalars import plain
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 
 Record = dict[str, Any]  # of a case: see `record`
 STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed

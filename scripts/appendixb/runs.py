@@ -17,7 +17,7 @@ import tomli_w
 from dem_cli import api
 from dem_cli.analyses import solve as solver
 from dem_cli.output.reader import read
-from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.vertices import placed_vertices, rest_vertices
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = ROOT / "cases" / "validation" / "appendix_b.toml"

@@ -15,7 +15,7 @@ from dem_cli import api
 from dem_cli.analyses import solve as solver
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
-from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.vertices import placed_vertices, rest_vertices
 
 SEATS = {
     "left beam on side wall": ("a-8", "roof-a"), "left beam on bracket": ("b-4", "roof-a"),

@@ -63,7 +63,7 @@ class Shaker:
         from dem_cli.api import build_model, load_case
         from dem_cli.ensembles.shaken_run import RestedStructure
         from dem_cli.ensembles.variants import Variant
-        from dem_cli.motion.build import suites_of
+        from dem_cli.motion.ground_motions import suites_of
 
         analysis = {"kind": "fragility", "intensities": [1.0], "coda": lasts, "margin": margin}
         made = changed(case, damping=dict(damping), monitor=monitor) | {"analysis": analysis}

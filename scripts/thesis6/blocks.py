@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from thesis7.runs import book
 
-from dem_cli.bench.draw import COLOURS, MARKS
+from dem_cli.bench.diagrams import COLOURS, MARKS
 from dem_cli.bench.table import lines_of, percent
 from dem_cli.post import style
 from thesis6.runs import commands, extremes, rounded, run

@@ -10,7 +10,7 @@ import numpy as np
 
 from dem_cli import api
 from dem_cli.bench.table import lines_of
-from dem_cli.motion.build import motions_of
+from dem_cli.motion.ground_motions import motions_of
 from dem_cli.post import style
 from thesis6.arch import UNIT
 from thesis6.runs import ROOT, Run, commands, rounded, run

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from thesis7.runs import book
 
-from dem_cli.bench.draw import COLOURS
+from dem_cli.bench.diagrams import COLOURS
 from dem_cli.bench.table import lines_of, percent
 from dem_cli.post import style
 from thesis6.arch import UNIT, sizes

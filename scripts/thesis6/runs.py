@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli import api
 from dem_cli.analyses import solve as solver
 from dem_cli.errors import SolverError
-from dem_cli.output import shapes
+from dem_cli.output import vertices
 from dem_cli.output.record import Frame, Observer, Samples
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,8 +77,8 @@ def run(case: str, *overrides: str) -> Run:
 
 
 def _blocks(model: Any, frame: Frame) -> list[list[list[float]]]:
-    corners = shapes.placed_vertices(model, frame.positions, frame.orientations)
-    owner = shapes.vertex_blocks(model)
+    corners = vertices.placed_vertices(model, frame.positions, frame.orientations)
+    owner = vertices.vertex_blocks(model)
     return [rounded(corners[owner == k]) for k in range(model.n_blocks)]
 
 

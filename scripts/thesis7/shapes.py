@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from dem_cli.bench.draw import COLOURS, MARKS
+from dem_cli.bench.diagrams import COLOURS, MARKS
 from dem_cli.bench.table import lines_of, percent
 from dem_cli.post import style
 from thesis7 import statics

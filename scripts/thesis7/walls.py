@@ -13,7 +13,7 @@ from dem_cli.analyses import solve as solver
 from dem_cli.bench.table import lines_of, percent
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
-from dem_cli.output.shapes import placed_vertices
+from dem_cli.output.vertices import placed_vertices
 from dem_cli.post import style
 from thesis7.runs import ROOT, Rows, book, commands, run
 

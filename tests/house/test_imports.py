@@ -58,7 +58,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "ensembles": {
         "assembly",
         "case.schema",
-        "case.vary",
+        "case.variation",
         "dynamics",
         "engine",
         "kernels.records",

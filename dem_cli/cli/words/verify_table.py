@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.table import Table
 
 from dem_cli.cli.words.console import seconds
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.records import Record, on_shelves
-from dem_cli.verify.words import VERDICTS, allowed, judgement, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, judgement, off, share, shown
 
 WIDE = 240  # where there is no terminal: lines are not cut
 STYLES = {"passed": "green", "missed": "yellow", "failed": "bold red", "met": "bold red"}

@@ -12,7 +12,7 @@ from dem_cli.bench.box2d_walls import inset
 from dem_cli.bench.cases import KNOWN
 from dem_cli.bench.others import engine_job
 
-SETTING = tilting.Setting("a block", edge=1.0, gravity=10.0, step=0.01, iterations=(1,))
+SETTING = tilting.EngineSettings("a block", edge=1.0, gravity=10.0, step=0.01, iterations=(1,))
 
 
 class SlidingBlock:

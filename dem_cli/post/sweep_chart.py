@@ -10,16 +10,16 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.post import chart, style
-from dem_cli.post.chart import Paper
+from dem_cli.post.chart import ChartOptions
 from dem_cli.post.labels import Quantity
-from dem_cli.post.table import SweepTable, distinct, numeric, shown
+from dem_cli.post.sweep_table import SweepTable, distinct, numeric, shown
 
 _SCATTERED = 0.5  # of the runs: more families than that are no families, but points
 _FAILED = "#c0392b"
 MOST_ENTRIES = 24  # of a legend
 
 
-class Family(NamedTuple):
+class RunFamily(NamedTuple):
     """Runs that differ in x alone."""
 
     first: Any  # value of the first key by which families differ: the colour
@@ -28,7 +28,7 @@ class Family(NamedTuple):
 
 
 def draw_sweep(
-    table: SweepTable, x: str, ys: Sequence[str], by: Sequence[str], path: Path, paper: Paper,
+    table: SweepTable, x: str, ys: Sequence[str], by: Sequence[str], path: Path, paper: ChartOptions,
     quantities: Mapping[str, Quantity],
 ) -> None:  # fmt: skip
     """ys over x, a line for each combination of the keys `by`; exact names of columns. quantities: of all columns."""
@@ -37,20 +37,20 @@ def draw_sweep(
     if points and len(by) > 1:  # a colour says one key
         by = by[:1]
         families = _families(table, x, by)
-    keys = chart.Keys([family.first for family in families])
+    keys = chart.FamilyColours([family.first for family in families])
     rests = list(dict.fromkeys(family.rest for family in families))
     units = list(dict.fromkeys(quantities[y].unit for y in ys))
     panels = [[y for y in ys if quantities[y].unit == unit] for unit in units]
     width, height = paper.inches
     height *= 1.0 + 0.6 * (len(panels) - 1) if paper.size is None else 1.0
     factor, name = _fitted(table, quantities, [x])
-    at = _Places(table.columns[x], factor)
+    at = _AxisPositions(table.columns[x], factor)
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         missing = []
         for axis, panel in zip(axes, panels):
             factor, label = _fitted(table, quantities, panel)
-            heights = {y: _Places(table.columns[y], factor) for y in panel}
+            heights = {y: _AxisPositions(table.columns[y], factor) for y in panel}
             for y in panel:
                 for family in families:
                     look = _look(family, keys, rests, list(ys), y, points)
@@ -67,7 +67,7 @@ def draw_sweep(
         chart.title(figure, table.title)
 
 
-class _Places:
+class _AxisPositions:
     """Where the values of a column stand: numbers where they are, words one beside the other."""
 
     def __init__(self, values: Sequence[Any], factor: float = 1.0):
@@ -98,7 +98,7 @@ def _fitted(table: SweepTable, quantities: Mapping[str, Quantity], names: Sequen
     return factor, label
 
 
-def _families(table: SweepTable, x: str, by: Sequence[str]) -> list[Family]:
+def _families(table: SweepTable, x: str, by: Sequence[str]) -> list[RunFamily]:
     """Rows by their values of `by`; in each, by x."""
     found: dict[tuple[Any, ...], list[int]] = {}
     for i in range(table.count):
@@ -111,12 +111,12 @@ def _families(table: SweepTable, x: str, by: Sequence[str]) -> list[Family]:
     families = []
     for values in sorted(found, key=lambda values: [o.get(v, -1) for o, v in zip(orders, values)]):
         rows = sorted(found[values], key=lambda i: order[table.columns[x][i]])
-        families.append(Family(values[0] if by else None, values[1:], rows))
+        families.append(RunFamily(values[0] if by else None, values[1:], rows))
     return families
 
 
 def _look(
-    family: Family, keys: chart.Keys, rests: Sequence[tuple[Any, ...]], ys: list[str], y: str, points: bool
+    family: RunFamily, keys: chart.FamilyColours, rests: Sequence[tuple[Any, ...]], ys: list[str], y: str, points: bool
 ) -> dict[str, Any]:
     """Colour by the first key, marker by the others, dashes by column where there are several."""
     column, rest = ys.index(y), rests.index(family.rest)
@@ -130,13 +130,18 @@ def _look(
     }
 
 
-def _rank(keys: chart.Keys, family: Family) -> int:
+def _rank(keys: chart.FamilyColours, family: RunFamily) -> int:
     """Number of its colour: markers tell families apart for those who see no colours."""
     return 0 if keys.bar else keys.values.index(family.first)
 
 
 def _draw_family(
-    axis: Any, table: SweepTable, places: tuple[_Places, _Places], y: str, rows: Sequence[int], look: dict[str, Any]
+    axis: Any,
+    table: SweepTable,
+    places: tuple[_AxisPositions, _AxisPositions],
+    y: str,
+    rows: Sequence[int],
+    look: dict[str, Any],
 ) -> None:
     """Points where there is an answer, joined; a bar where a bracket says how sure it is."""
     at, heights = places
@@ -153,7 +158,7 @@ def _draw_family(
             axis.plot([place, place], ends, color=look["color"], lw=1.0, marker="_", ms=6.0, mew=1.0)
 
 
-def _mark_missing(axis: Any, table: SweepTable, at: _Places, y: str) -> bool:
+def _mark_missing(axis: Any, table: SweepTable, at: _AxisPositions, y: str) -> bool:
     """Crosses on the axis where a run has no answer; whether there are any."""
     rows = [i for i in range(table.count) if table.columns[y][i] is None and at.values[i] is not None]
     if rows:
@@ -163,8 +168,8 @@ def _mark_missing(axis: Any, table: SweepTable, at: _Places, y: str) -> bool:
 
 
 def _legend(
-    figure: Any, families: Sequence[Family], keys: chart.Keys, rests: Sequence[tuple[Any, ...]], ys: Sequence[str],
-    by: Sequence[str], quantities: Mapping[str, Quantity], missing: bool,
+    figure: Any, families: Sequence[RunFamily], keys: chart.FamilyColours, rests: Sequence[tuple[Any, ...]],
+    ys: Sequence[str], by: Sequence[str], quantities: Mapping[str, Quantity], missing: bool,
 ) -> None:  # fmt: skip
     """Colours for the first key, markers for the others, dashes for columns, a cross for what has no answer."""
     from matplotlib.lines import Line2D

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import below, key_path
 from dem_cli.case.schema import Case
-from dem_cli.case.words import nearest
+from dem_cli.case.wording import nearest
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, plain
 
 WHERE: KeyPath = ("analysis", "vary")

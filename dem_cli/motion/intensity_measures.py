@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.motion.eurocode import LONGEST, Target
+from dem_cli.motion.eurocode import LONGEST, TargetSpectrum
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
 from dem_cli.motion.units import STANDARD_GRAVITY
@@ -19,7 +19,7 @@ LEAST_MEAN = 0.90  # EN 1998-1 3.2.3.1.2(4)c
 MOST = 100_000  # samples
 
 
-class Strength(NamedTuple):
+class IntensityMeasures(NamedTuple):
     """Measures of one motion."""
 
     duration: float  # [s]
@@ -30,7 +30,7 @@ class Strength(NamedTuple):
     significant: float  # time between 5 % and 95 % of it [s]
 
 
-class Fit(NamedTuple):
+class SpectrumFit(NamedTuple):
     """A suite of motions against a target spectrum, in the terms of EN 1998-1 3.2.3.1.2(4)."""
 
     periods: np.ndarray  # compared at [s], (n,)
@@ -40,14 +40,14 @@ class Fit(NamedTuple):
     meets: bool  # mean peak ≥ 1 and lowest mean ratio ≥ 0.90
 
 
-def strength(motion: Motion) -> Strength:
+def strength(motion: Motion) -> IntensityMeasures:
     """Measures of a motion, from samples as close as it is made of."""
     times = motion.times(MOST)
     acceleration = motion.acceleration(times)
     growth = np.diff(times) * 0.5 * (acceleration[1:] ** 2 + acceleration[:-1] ** 2)
     energy = np.concatenate(([0.0], np.cumsum(growth)))
     begin, end = np.interp(np.array(SIGNIFICANT) * energy[-1], energy, times)
-    return Strength(
+    return IntensityMeasures(
         motion.duration,
         motion.peak,
         float(np.abs(motion.velocity(times)).max()),
@@ -63,14 +63,14 @@ def compared_periods(first_period: float | None = None) -> np.ndarray:
     return np.geomspace(low, high, PERIODS)
 
 
-def fit(motions: Sequence[Motion], target: Target, first_period: float | None = None) -> Fit:
+def fit(motions: Sequence[Motion], target: TargetSpectrum, first_period: float | None = None) -> SpectrumFit:
     """Compare a suite with its target."""
     periods = compared_periods(first_period)
     ratios = spectra(motions, periods, target.damping) / target(periods)
     mean_peak = float(np.mean([motion.peak for motion in motions])) / target.ground
     least_mean = float(ratios.mean(axis=0).min())
     meets = mean_peak >= 1.0 - 1e-9 and least_mean >= LEAST_MEAN
-    return Fit(periods, ratios, mean_peak, least_mean, meets)
+    return SpectrumFit(periods, ratios, mean_peak, least_mean, meets)
 
 
 def spectra(motions: Sequence[Motion], periods: np.ndarray, damping: float) -> np.ndarray:

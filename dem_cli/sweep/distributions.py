@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.case.words import show
+from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 
 MOST = 1_000_000  # runs: more are a slip, or a case for several sweeps

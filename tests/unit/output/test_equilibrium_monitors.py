@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.output.held import Held
+from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.record import Energy, HistoryRow
 
 
@@ -14,7 +14,7 @@ def row(stage, load, *values):
 
 
 def held(*rows):
-    kept = Held(["top", "turn"], ["displacement", "rotation"])
+    kept = EquilibriumMonitors(["top", "turn"], ["displacement", "rotation"])
     for one in rows:
         kept.row(one)
     return kept
@@ -52,6 +52,6 @@ def test_a_fall_under_dead_loads_is_no_equilibrium():
 def test_nothing():
     assert held().values(FOUND) == {}
     assert held(row("collapse", 0.5, 1.0, 1.0)).values({}) == {}
-    kept = Held([], [])
+    kept = EquilibriumMonitors([], [])
     kept.row(LOADS[0]._replace(monitors=()))
     assert kept.values(FOUND) == {}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from dem_cli.api import build_model, load_case, make_case_model
-from dem_cli.case.reader import LoadedCase, Source, parse_toml, validate
+from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError
-from dem_cli.motion.build import motions_of, suites_of
+from dem_cli.motion.ground_motions import motions_of, suites_of
 
 CASE = """
 [materials.stone]
@@ -110,7 +110,7 @@ def test_the_effective_case_finds_its_record_from_anywhere(folder, monkeypatch):
     (folder / "deeper").mkdir()
     moved = again.rename(folder / "deeper" / "elsewhere.toml")
     assert motions_of(load_case(moved).case)[0].peak == motions_of(case)[0].peak
-    source = Source(Path("case.toml"), case_text(case))
+    source = CaseSource(Path("case.toml"), case_text(case))
     assert validate(parse_toml(source.path, source.text), make_case_model(), source).motion == case.motion
 
 
@@ -255,6 +255,6 @@ def test_overrides_reach_one_table(folder):
 
 
 def test_a_case_without_files_is_loaded_from_its_text_alone():
-    source = Source(Path("case.toml"), CASE + PULSE + "frequency = 1.0")
+    source = CaseSource(Path("case.toml"), CASE + PULSE + "frequency = 1.0")
     case = validate(parse_toml(source.path, source.text), make_case_model(), source)
     assert LoadedCase(case, source).case.motion[0].frequency == 1.0

@@ -13,7 +13,7 @@ from dem_cli.kernels.contact_forces import make_press
 from dem_cli.laws.law import Law
 
 
-class Driven(NamedTuple):
+class PathResponse(NamedTuple):
     """What came out, one row a step; work and energy from the start up to there."""
 
     path: np.ndarray  # gap and total slide [m], (n, d)
@@ -37,7 +37,7 @@ def drive(
     start: float = 0.0,
     touches: bool = True,
     step: float = math.inf,
-) -> Driven:
+) -> PathResponse:
     """Move one point of block b along rows of (gap, slide...) [m] while block a stands still.
 
     law, table: a law and its [joints.*] table; a variant that the table asks for is found. kn, ks: stiffness per area
@@ -68,4 +68,4 @@ def drive(
         elastic = 0.5 * (normal**2 / point_kn + np.dot(shear, shear) / point_ks)
         rows.append((normal, shear, slip, lost, work, elastic, memory[0].copy()))
         before = row
-    return Driven(path, *(np.array(column) for column in zip(*rows, strict=True)))
+    return PathResponse(path, *(np.array(column) for column in zip(*rows, strict=True)))

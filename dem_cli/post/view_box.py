@@ -10,8 +10,8 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
-from dem_cli.output.shapes import placed_vertices, rest_vertices
-from dem_cli.post import measures
+from dem_cli.output.vertices import placed_vertices, rest_vertices
+from dem_cli.post import frame_measures
 
 _FALLEN = 0.8  # of the size of the structure: what falls farther is not shown
 _BELOW = 0.15  # of that: of what falls beside the ground, and below it
@@ -25,7 +25,7 @@ def carried(results: Results, scale: float) -> bool:
     if series is None or scale != 1.0 or not len(series.time):
         return False
     travel = float(np.ptp(series.base[:, 2], axis=0).max())
-    return 0.0 < travel <= _CARRIED * measures.size(results.model)
+    return 0.0 < travel <= _CARRIED * frame_measures.size(results.model)
 
 
 def ground(series: HistorySeries | None, frame: Frame) -> np.ndarray:
@@ -37,7 +37,7 @@ def ground(series: HistorySeries | None, frame: Frame) -> np.ndarray:
 
 def corners(model: Model, frame: Frame, scale: float, moved: np.ndarray | float = 0.0) -> np.ndarray:
     """Corners as drawn: displacements times `scale`, all of it `moved` along [m], (n_vertices, d)."""
-    shown = measures.scaled(model, frame, scale)
+    shown = frame_measures.scaled(model, frame, scale)
     return placed_vertices(model, shown.positions, shown.orientations) + moved
 
 

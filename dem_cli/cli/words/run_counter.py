@@ -14,7 +14,7 @@ LINE_EVERY = 10.0  # s, where there is no terminal
 RECENT = 200  # runs from which the speed is taken
 
 
-class Count:
+class RunCounter:
     """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`.
 
     total: runs in all; before: how many of them were there at the start.
@@ -59,7 +59,7 @@ class Count:
     def _failures(self) -> str:
         return f", {self.failed:,} failed" if self.failed else ""
 
-    def __enter__(self) -> Count:
+    def __enter__(self) -> RunCounter:
         if not self.quiet and self.stream.isatty():
             self._bar = _new_bar(self.stream)
             self._task = self._bar.add_task("runs", total=self.total, completed=self.done, speed="", failed="")

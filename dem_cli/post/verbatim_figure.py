@@ -21,12 +21,12 @@ class VerbatimFigure(Figure):
             for axis in (axes.xaxis, axes.yaxis):
                 for kind in ("major", "minor"):
                     formatter = getattr(axis, f"get_{kind}_formatter")()
-                    if isinstance(formatter, LogFormatterMathtext) and not isinstance(formatter, Powers):
-                        getattr(axis, f"set_{kind}_formatter")(Powers(labelOnlyBase=formatter.labelOnlyBase))
+                    if isinstance(formatter, LogFormatterMathtext) and not isinstance(formatter, PowerFormatter):
+                        getattr(axis, f"set_{kind}_formatter")(PowerFormatter(labelOnlyBase=formatter.labelOnlyBase))
         super().draw(renderer)
 
 
-class Powers(LogFormatterSciNotation):
+class PowerFormatter(LogFormatterSciNotation):
     """10³ instead of a formula for it."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:

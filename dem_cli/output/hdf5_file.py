@@ -15,7 +15,7 @@ from typing import Any
 import h5py
 
 
-class HeldBackFile(io.RawIOBase):
+class TransactionalFile(io.RawIOBase):
     """A file whose writes reach the disk at `commit()`; the first one that fails is kept in `error`."""
 
     def __init__(self, path: Path):
@@ -95,11 +95,11 @@ def _write_at(disk: int, place: int, piece: bytes) -> None:
         left, place = left[count:], place + count
 
 
-class HeldFile:
+class Hdf5File:
     """An HDF5 file open for writing; on disk it is always as the last `flush()` left it."""
 
     def __init__(self, path: Path):
-        self._file = HeldBackFile(path)
+        self._file = TransactionalFile(path)
         self.hdf = h5py.File(self._file, "w")
 
     def flush(self) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from dem_cli.case.schema import Case
-from dem_cli.case.words import either, listing, show, unknown_name
+from dem_cli.case.wording import either, listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.motion.read import RecordError, read_series
+from dem_cli.motion.record_file import RecordError, read_series
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
 FORMS = {

@@ -7,7 +7,7 @@ import pytest
 from synthetic import boxes_model, no_contacts, wall_frames, wall_model
 
 from dem_cli.output.record import ContactRecord, Frame
-from dem_cli.post import measures
+from dem_cli.post import frame_measures
 from dem_cli.post.capacity import with_breaks
 
 
@@ -36,7 +36,7 @@ def column():
 
 
 def test_resultant_of_two_points(column):
-    found = measures.resultants(column_contacts(column, 3))
+    found = frame_measures.resultants(column_contacts(column, 3))
     np.testing.assert_allclose(found.points[:, 0], 0.75)  # (0 · 1 + 1 · 3) / 4
     np.testing.assert_allclose(found.points[:, 1], [0.0, 1.0, 2.0])
     np.testing.assert_allclose(found.forces, [(-1.0, 4.0)] * 3)  # tangent = (−1, 0), two shears of 0.5
@@ -44,15 +44,15 @@ def test_resultant_of_two_points(column):
 
 
 def test_nothing_pressed():
-    found = measures.resultants(no_contacts())
+    found = frame_measures.resultants(no_contacts())
     assert len(found.points) == len(found.forces) == 0
 
 
 def test_thrust_runs_through_a_column_but_not_through_a_wall(column):
-    (chain,) = measures.chains(column, measures.resultants(column_contacts(column, 3)))
+    (chain,) = frame_measures.chains(column, frame_measures.resultants(column_contacts(column, 3)))
     assert chain.tolist() in ([0, 1, 2], [2, 1, 0])
     wall = wall_model()
-    assert measures.chains(wall, measures.resultants(wall_frames(wall)[0].contacts)) == []
+    assert frame_measures.chains(wall, frame_measures.resultants(wall_frames(wall)[0].contacts)) == []
 
 
 def moved_frame(model, moved, turn=0.0):
@@ -66,12 +66,12 @@ def moved_frame(model, moved, turn=0.0):
     ("moved", "turn", "scale"), [(0.0, 0.0, 1.0), (1e-6, 0.0, 1e5), (1e-3, 0.0, 100.0), (0.1, 0.0, 1.0)]
 )
 def test_scale_makes_displacements_visible(column, moved, turn, scale):
-    assert measures.visible_scale(column, moved_frame(column, moved, turn)) == pytest.approx(scale)
+    assert frame_measures.visible_scale(column, moved_frame(column, moved, turn)) == pytest.approx(scale)
 
 
 def test_scale_keeps_drawn_rotations_small(column):
     frame = moved_frame(column, 0.0, 1e-3)
-    assert measures.visible_scale(column, frame) * 1e-3 <= 0.35
+    assert frame_measures.visible_scale(column, frame) * 1e-3 <= 0.35
 
 
 def test_scaled_contacts_stay_on_their_block(column):
@@ -81,7 +81,7 @@ def test_scaled_contacts_stay_on_their_block(column):
     contacts = column_contacts(column, 1)._replace(
         blocks=np.array(((2, 3), (2, 3))), points=np.stack((frame.positions[2] + arm,) * 2)
     )
-    shown = measures.scaled(column, frame._replace(contacts=contacts), 10.0)
+    shown = frame_measures.scaled(column, frame._replace(contacts=contacts), 10.0)
     turned = np.array(((np.cos(0.1), -np.sin(0.1)), (np.sin(0.1), np.cos(0.1)))) @ corner
     np.testing.assert_allclose(shown.positions[2], column.centroids[2] + (0.01, 0.0))
     np.testing.assert_allclose(shown.contacts.points[0], shown.positions[2] + turned)

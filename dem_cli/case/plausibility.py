@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from dem_cli.case.schema import Case
-from dem_cli.case.words import show
+from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem
 
 LIGHTEST, HEAVIEST = 100.0, 25000.0  # kg/m3: cork and osmium, about

@@ -11,8 +11,8 @@ from dem_cli.case.base import Pair
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.motion import pulses
 from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
-from dem_cli.motion.read import RecordError, read_series
 from dem_cli.motion.record import Accelerogram, record
+from dem_cli.motion.record_file import RecordError, read_series
 from dem_cli.motion.table import (
     ArtificialTable,
     HarmonicTable,
@@ -103,15 +103,15 @@ def _pulse(table: PulseTable) -> Waveform:
         return pulses.impulse(table.amplitude, table.duration, table.rebound)
     assert table.frequency is not None
     if table.shape == "ricker":
-        return pulses.Ricker(table.amplitude, table.frequency)
+        return pulses.RickerWavelet(table.amplitude, table.frequency)
     cycles = 0.5 if table.shape == "half-sine" else 1.0
     phase = 0.5 * math.pi if table.shape == "cosine" else 0.0
-    return pulses.Wave(table.amplitude, table.frequency, cycles / table.frequency, phase)
+    return pulses.SineWave(table.amplitude, table.frequency, cycles / table.frequency, phase)
 
 
 def _harmonic(table: HarmonicTable) -> Waveform:
     ramp = min(table.ramp / table.frequency, 0.5 * table.length)
-    return pulses.Wave(table.amplitude, table.frequency, table.length, math.radians(table.phase_deg), ramp)
+    return pulses.SineWave(table.amplitude, table.frequency, table.length, math.radians(table.phase_deg), ramp)
 
 
 def _record(table: RecordTable, i_table: int) -> Accelerogram:

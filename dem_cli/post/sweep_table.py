@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
-from dem_cli.output.sweeps import CSV, FACTS, FIRST
+from dem_cli.output.sweep_files import CSV, FACTS, FIRST
 from dem_cli.post.labels import nearest, plain, unknown
 
 ANSWERS = (  # what is drawn where nobody says: the first of these that has values

@@ -32,7 +32,7 @@ class GrowingDataset:
         return start
 
 
-class Columns:
+class GrowingGroup:
     """The growing datasets of one group, made when they first get rows."""
 
     def __init__(self, group: h5py.Group):

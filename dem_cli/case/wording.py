@@ -19,21 +19,21 @@ WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
 SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
 
 
-class Kind(NamedTuple):
+class DeclaredType(NamedTuple):
     """A type as declared, without Annotated and None: the type and the limits on its value."""
 
     type: Any
     limits: tuple[Any, ...] = ()
 
     @property
-    def choices(self) -> tuple[Kind, ...]:
+    def choices(self) -> tuple[DeclaredType, ...]:
         """The members of a union; of anything else, itself."""
         if get_origin(self.type) not in (Union, UnionType):
             return (self,)
         return tuple(choice for member in get_args(self.type) for choice in kind_of(member).choices)
 
 
-def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> Kind:
+def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> DeclaredType:
     """Take Annotated and None off a declared type, keeping the limits."""
     found = list(metadata)
     while True:
@@ -46,20 +46,20 @@ def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> Kind:
             declared = Union[members]  # noqa: UP007 (a tuple of members)
         else:
             parts = [item.metadata if isinstance(item, FieldInfo) else (item,) for item in found]
-            return Kind(declared, tuple(part for some in parts for part in some))
+            return DeclaredType(declared, tuple(part for some in parts for part in some))
 
 
 def is_table(declared: Any) -> bool:
     return isinstance(declared, type) and issubclass(declared, BaseModel)
 
 
-def allowed(kinds: Iterable[Kind], many: bool = False) -> str:
+def allowed(kinds: Iterable[DeclaredType], many: bool = False) -> str:
     """What may stand there: `a number > 0 or 'auto'`."""
     choices = [choice for kind in kinds for choice in kind.choices]
     return " or ".join(dict.fromkeys(allowed_one(choice, many) for choice in choices))
 
 
-def allowed_one(kind: Kind, many: bool = False) -> str:
+def allowed_one(kind: DeclaredType, many: bool = False) -> str:
     """The words for one kind; `many` for the plural."""
     declared, arguments, origin = kind.type, get_args(kind.type), get_origin(kind.type)
     pairs = [(limit, sign) for sign in SIGNS for limit in kind.limits if isinstance(limit, sign)]
@@ -82,13 +82,13 @@ def allowed_one(kind: Kind, many: bool = False) -> str:
     return "something else"
 
 
-def literals(kinds: Iterable[Kind]) -> list[str]:
+def literals(kinds: Iterable[DeclaredType]) -> list[str]:
     """The names that may stand there."""
     choices = [choice.type for kind in kinds for choice in kind.choices]
     return [name for choice in choices if get_origin(choice) is Literal for name in get_args(choice)]
 
 
-def not_allowed(value: Any, kinds: Iterable[Kind]) -> str:
+def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
     """`-3 is not allowed; must be an integer ≥ 1`, with a hint for a name nearly right."""
     kinds = tuple(kinds)
     hint = nearest(value, literals(kinds)) if isinstance(value, str) else ""

@@ -6,7 +6,7 @@ import pytest
 from casefiles import CASES, FILES, case_id
 
 from dem_cli.api import load_case
-from dem_cli.case.vary import value_at, with_value
+from dem_cli.case.variation import value_at, with_value
 from dem_cli.errors import CaseError
 
 ARCH = CASES / "verification" / "least_thickness_arch.toml"

@@ -12,7 +12,7 @@ PARTS = ("value", "load", "unit")  # what is said of a monitor
 AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium
 
 
-class Held:
+class EquilibriumMonitors:
     """Remembers the monitors of a run, equilibrium by equilibrium."""
 
     def __init__(self, names: Sequence[str], quantities: Sequence[str]):

@@ -12,14 +12,16 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures, style
-from dem_cli.render.sheet import Bar
+from dem_cli.post import frame_measures, style
+from dem_cli.render.sheet import ColourBar
 
 QUANTITIES = ("stone", "displacement", "rotation", "velocity")
 _MAP, _FROM, _TO = "YlGnBu", 0.03, 0.8  # light where nothing happens; not so dark that edges get lost
 
 
-def colours(results: Results, frames: Sequence[Frame], quantity: str) -> tuple[list[np.ndarray] | None, Bar | None]:
+def colours(
+    results: Results, frames: Sequence[Frame], quantity: str
+) -> tuple[list[np.ndarray] | None, ColourBar | None]:
     """Colours of the blocks in every frame, (n_blocks, 3) each, and their scale; None of either for stone.
 
     Fixed blocks stay the colour of the ground. Raises UsageError for velocities that are not per second.
@@ -38,7 +40,7 @@ def colours(results: Results, frames: Sequence[Frame], quantity: str) -> tuple[l
     shades = ListedColormap(matplotlib.colormaps[_MAP](np.linspace(_FROM, _TO, 256)))
     ground = model.fixed[:, np.newaxis]
     drawn = [np.where(ground, to_rgb(style.GROUND), shades(row / (highest or 1.0))[:, :3]) for row in rows]
-    return drawn, Bar(label, 0.0, factor * highest or 1.0, shades)
+    return drawn, ColourBar(label, 0.0, factor * highest or 1.0, shades)
 
 
 def block_values(model: Model, frame: Frame, quantity: str) -> np.ndarray:
@@ -73,7 +75,7 @@ def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str 
         ]
         found.append(Line2D([], [], color="#57503f", lw=1, label="closed joint"))
     if forces:
-        totals = [measures.resultants(frame.contacts).forces for frame in frames]
+        totals = [frame_measures.resultants(frame.contacts).forces for frame in frames]
         largest = max((float(np.linalg.norm(row, axis=1).max()) for row in totals if len(row)), default=0.0)
         alone = len(frames) == 1
         size = f"{'longest' if forces == 'arrows' else 'thickest'} {newtons(largest)}" if alone else "relative size"
