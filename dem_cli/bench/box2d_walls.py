@@ -56,13 +56,16 @@ class Box2DWorld:
             self.free.append(bodies[i])
 
     def tilt(self, load: float) -> None:
+        """Turn gravity so that its horizontal part is the load multiplier."""
         self.world.gravity = (load * self.setting.gravity, -self.setting.gravity)
 
     def step(self, steps: int) -> None:
+        """Advance by so many steps."""
         for _ in range(steps):
             self.world.Step(self.setting.step, *self.setting.iterations)
 
     def places(self) -> np.ndarray:
+        """Places of the free blocks, in units of the engine, (n, 2)."""
         return np.array([tuple(body.position) for body in self.free])
 
 

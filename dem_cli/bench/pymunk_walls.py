@@ -52,13 +52,16 @@ class PymunkWorld:
         self.free = [body for body, fixed in zip(bodies, model.fixed, strict=True) if not fixed]
 
     def tilt(self, load: float) -> None:
+        """Turn gravity so that its horizontal part is the load multiplier."""
         self.space.gravity = (load * self.setting.gravity, -self.setting.gravity)
 
     def step(self, steps: int) -> None:
+        """Advance by so many steps."""
         for _ in range(steps):
             self.space.step(self.setting.step)
 
     def places(self) -> np.ndarray:
+        """Places of the free blocks, in units of the engine, (n, 2)."""
         return np.array([body.position for body in self.free])
 
 

@@ -21,6 +21,7 @@ class CalibrationTrial(NamedTuple):
 
     @property
     def name(self) -> str:
+        """What the table and messages call it."""
         if self.shape is None or self.aperture is None:
             return "plane joints"
         return f"shape {self.shape.name}, aperture {1e3 * self.aperture:.3g} mm"

@@ -88,6 +88,7 @@ def mentions(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
 
 
 def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Materials and joints of [[interface]] tables that do not exist."""
     materials, joints = names(data, "materials"), names(data, "joints")
     for path, table in entries(data, "interface"):
         between = table.get("between")
@@ -100,6 +101,7 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Structures of [[imperfection]] tables that do not exist."""
     ids = [table["id"] for _, table in entries(data, "structure") if isinstance(table.get("id"), str)]
     for path, table in entries(data, "imperfection"):
         name = table.get("structure")
@@ -115,6 +117,7 @@ def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any
 
 
 def names(data: dict[str, Any], key: str) -> list[str]:
+    """Keys of a table of tables; none where it is no table."""
     table = data.get(key)
     return list(table) if isinstance(table, dict) else []
 

@@ -40,6 +40,7 @@ class CaseEntry(NamedTuple):
 
     @property
     def path(self) -> str:
+        """Its key path."""
         return self.key.path if self.key else ".".join(self.table.path)
 
     @property

@@ -111,6 +111,7 @@ class CaseKey(NamedTuple):
 
     @property
     def required(self) -> bool:
+        """Whether it must be given."""
         return self.field.is_required()
 
     @property

@@ -43,6 +43,7 @@ class CaseSource:
 
     @cached_property
     def places(self) -> KeyPositions:
+        """Where every key and value of the text stands."""
         return KeyPositions(self.text)
 
     def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:

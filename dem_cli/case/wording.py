@@ -50,6 +50,7 @@ def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> DeclaredType:
 
 
 def is_table(declared: Any) -> bool:
+    """Whether a declared type is a table of the case file."""
     return isinstance(declared, type) and issubclass(declared, BaseModel)
 
 

@@ -42,9 +42,11 @@ class LazyGroup(click.Group):
     """A group that imports a subcommand when it is called and turns every DemError into its exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of all subcommands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """A subcommand, imported now; None where there is none of that name."""
         if name not in COMMANDS:
             return None
         return import_module(f"dem_cli.cli.{name}").command
@@ -52,12 +54,14 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The subcommand that the arguments name, or an error with the nearest name."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
             ctx.fail(unknown_command(name))
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The table of subcommands in the help, without importing any."""
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 

@@ -28,6 +28,7 @@ class PictureSize(click.ParamType):
     name = "WIDTH[xHEIGHT]"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        """Width and height, None where it is left to the picture; an error where it is neither."""
         match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
         sides = [int(side) for side in match.groups() if side] if match else []
         if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
@@ -41,6 +42,7 @@ class AxisLimits(click.ParamType):
     name = "LOW:HIGH"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        """Both ends; an error where they are none."""
         try:
             low, high = map(float, str(value).split(":"))
         except ValueError:

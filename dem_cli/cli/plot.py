@@ -13,6 +13,7 @@ from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
+    from dem_cli.cli.chart import ColumnChoice
     from dem_cli.post.chart import ChartOptions
 
 CHART, SWEEP = "plot.png", "sweep.png"
@@ -65,6 +66,34 @@ def command(
     """
     from dem_cli.cli import chart
     from dem_cli.post.chart import ChartOptions
+
+    sweep = holds_sweep(folders)
+    if (where or as_map) and not sweep:
+        raise UsageError("--where and --map are for the folder of a sweep")
+    options = ChartOptions(size, frozenset(log or ""), xlim, ylim)
+    asked = bool(x or ys or by or listed or len(folders) > 1)
+    if picture is not None:
+        if sweep or asked or options != ChartOptions():
+            raise UsageError("--picture is for one run, without columns and sizes")
+        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
+        return
+    if not sweep and not asked:
+        if options != ChartOptions() or (output is not None and output.suffix.lower() in FORMATS):
+            raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
+        draw_pictures(folders[0], output, animate)
+        return
+    if animate:
+        raise UsageError("--animate comes with all pictures of a run, without -x and -y")
+    if listed:
+        console.show("\n".join(chart.listing(folders, sweep)))
+        return
+    target = output or default(folders, sweep)
+    draw_chart(folders, sweep, chart.ColumnChoice(x, ys, by, where, as_map), target, options)
+    console.show(str(target))
+
+
+def holds_sweep(folders: Sequence[Path]) -> bool:
+    """Whether a sweep is to be drawn. Raises UsageError for a folder that is not there, or a sweep beside others."""
     from dem_cli.post.sweep_table import is_sweep
 
     for folder in folders:
@@ -73,31 +102,10 @@ def command(
     sweeps = [folder for folder in folders if is_sweep(folder)]
     if sweeps and len(folders) > 1:
         raise UsageError(f"{sweeps[0]}: a sweep is drawn alone, not beside other folders")
-    if (where or as_map) and not sweeps:
-        raise UsageError("--where and --map are for the folder of a sweep")
-    paper = ChartOptions(size, frozenset(log or ""), xlim, ylim)
-    asked = bool(x or ys or by or listed or len(folders) > 1)
-    if picture is not None:
-        if sweeps or asked or paper != ChartOptions():
-            raise UsageError("--picture is for one run, without columns and sizes")
-        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
-        return
-    if not sweeps and not asked:
-        if paper != ChartOptions() or (output is not None and output.suffix.lower() in FORMATS):
-            raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
-        draw_pictures(folders[0], output, animate)
-        return
-    if animate:
-        raise UsageError("--animate comes with all pictures of a run, without -x and -y")
-    if listed:
-        console.show("\n".join(chart.listing(folders, bool(sweeps))))
-        return
-    target = output or default(folders, bool(sweeps), bool(x or ys))
-    draw_chart(folders, bool(sweeps), x, list(ys), list(by), where, as_map, target, paper)
-    console.show(str(target))
+    return bool(sweeps)
 
 
-def default(folders: Sequence[Path], sweep: bool, chosen: bool) -> Path:
+def default(folders: Sequence[Path], sweep: bool) -> Path:
     """Where a chart goes: beside the results; of several folders, here."""
     if len(folders) > 1:
         return Path(CHART)
@@ -138,10 +146,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
     console.show(str(path))
 
 
-def draw_chart(
-    folders: Sequence[Path], sweep: bool, x: str | None, ys: list[str], by: list[str], where: Sequence[str],
-    as_map: bool, target: Path, paper: ChartOptions,
-) -> None:  # fmt: skip
+def draw_chart(folders: Sequence[Path], sweep: bool, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
     """One chart, of runs or of a sweep."""
     from dem_cli.cli import chart
     from dem_cli.output.folder import write_error
@@ -151,8 +156,8 @@ def draw_chart(
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if sweep:
-            chart.of_sweep(folders[0], x, ys, by, where, as_map, target, paper)
+            chart.of_sweep(folders[0], choice, target, options)
         else:
-            chart.of_runs(folders, x, ys, by, target, paper)
+            chart.of_runs(folders, choice, target, options)
     except OSError as error:
         raise write_error(error, target) from None

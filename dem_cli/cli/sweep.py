@@ -229,6 +229,7 @@ class SweepProgress:
         return {"run": row["run"], **{key: row[key] for key in self.sweep.plan.keys}, "reason": row["reason"]}
 
     def facts(self, status: str, found: dict[str, Any] | None = None) -> None:
+        """Write sweep.json and the case, with what was changed on the command line."""
         from dem_cli.output.atomic_file import write_text
         from dem_cli.output.store import CASE
         from dem_cli.sweep.folder import write_facts

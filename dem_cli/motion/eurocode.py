@@ -36,6 +36,7 @@ class TargetSpectrum:
     title: str
 
     def __call__(self, periods: np.ndarray | float) -> np.ndarray:
+        """Pseudo-acceleration [m/s2] at periods [s]."""
         return self.acceleration(np.asarray(periods, float))
 
     def scaled(self, factor: float) -> TargetSpectrum:

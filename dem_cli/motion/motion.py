@@ -22,9 +22,14 @@ class Waveform(Protocol):
     peak: float  # largest absolute acceleration [m/s2]
     step: float  # time step that shows it well [s]
 
-    def acceleration(self, t: np.ndarray) -> np.ndarray: ...
-    def velocity(self, t: np.ndarray) -> np.ndarray: ...
-    def displacement(self, t: np.ndarray) -> np.ndarray: ...
+    def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
 
 
 @dataclass(frozen=True)

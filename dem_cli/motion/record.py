@@ -14,7 +14,7 @@ BASELINE = 1  # order for baseline = true
 
 
 class Accelerogram:
-    """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Shape`).
+    """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Waveform`).
 
     times (n,) are the samples [s], the first one 0.
     """
@@ -27,12 +27,15 @@ class Accelerogram:
         self.peak = largest(acceleration)
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
         return self.polynomials[0](t)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
         return self.polynomials[1](t)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
         return self.polynomials[2](t)
 
 

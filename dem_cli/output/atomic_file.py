@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import secrets
 import sqlite3
 from collections.abc import Iterator
@@ -23,7 +22,7 @@ def whole(path: Path) -> Iterator[Path]:
     part = path.with_name(f"{PART}{secrets.token_hex(4)}-{path.name}")  # several may write: shards of a sweep
     try:
         yield part
-        os.replace(part, path)
+        part.replace(path)
     except (OSError, sqlite3.Error) as error:
         raise write_error(error, path) from None
     finally:

@@ -20,6 +20,7 @@ class EquilibriumMonitors:
         self._rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:
+        """Keep the row where it is one of an equilibrium."""
         if self.names and row.stage in AT_REST:
             self._rows.append(row)
 

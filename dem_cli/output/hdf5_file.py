@@ -66,23 +66,28 @@ class TransactionalFile(io.RawIOBase):
         return len(view)
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a place; returns it."""
         base = {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._size}[whence]
         self._place = base + offset
         return self._place
 
     def tell(self) -> int:
+        """The place."""
         return self._place
 
     def truncate(self, size: int | None = None) -> int:
+        """End at a size, by default at the place; returns it."""
         self._size = self._place if size is None else size
         return self._size
 
     def readable(self) -> bool:
+        """Yes, as writable and seekable."""
         return True
 
     writable = seekable = readable
 
     def close(self) -> None:
+        """Close the file; what was not committed is lost."""
         if not self.closed:
             os.close(self._disk)
         super().close()

@@ -96,10 +96,10 @@ def fitted(quantity: Quantity, values: Sequence[np.ndarray]) -> tuple[float, str
     return factor, quantity.label(unit)
 
 
-def dress(axis: Any, paper: ChartOptions) -> None:
+def dress(axis: Any, options: ChartOptions) -> None:
     """Limits and logarithms as asked for. Raises UsageError where an axis cannot be logarithmic."""
-    for name, limits in (("x", paper.x_limits), ("y", paper.y_limits)):
-        if name in paper.log:
+    for name, limits in (("x", options.x_limits), ("y", options.y_limits)):
+        if name in options.log:
             if getattr(axis, f"get_{name}lim")()[1] <= 0.0:
                 raise UsageError(f"--log {name}: there is nothing positive to draw")
             getattr(axis, f"set_{name}scale")("log", nonpositive="mask")

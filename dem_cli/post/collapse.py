@@ -150,6 +150,7 @@ def _polygons(model: Model, corners: np.ndarray) -> list[np.ndarray]:
 
 
 def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
+    """The blocks, filled; fixed ones as ground. corners: (n_vertices, 2)."""
     from matplotlib.collections import PolyCollection
 
     fixed = model.fixed[model.part_blocks]
@@ -160,6 +161,7 @@ def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
 
 
 def draw_rest(axis: Any, model: Model) -> None:
+    """Outlines of the blocks where they stood at the start."""
     from matplotlib.collections import PolyCollection
 
     rest = _polygons(model, rest_vertices(model))

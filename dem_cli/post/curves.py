@@ -43,7 +43,7 @@ def draw_curves(
     x: str,
     ys: Sequence[str],
     path: Path,
-    paper: ChartOptions,
+    options: ChartOptions,
     title: str,
     family: str = "",
 ) -> None:
@@ -54,15 +54,15 @@ def draw_curves(
     quantities, curves = _gathered(members, x, ys)
     units = list(dict.fromkeys(quantities[c.column].unit or c.column for c in curves))
     panels = [[c for c in curves if (quantities[c.column].unit or c.column) == unit] for unit in units]
-    width, height = paper.inches
-    if paper.size is None:
+    width, height = options.inches
+    if options.size is None:
         height *= 1.0 + _PANEL * (len(panels) - 1)
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         keys = chart.FamilyColours([member.value for member in members])
         factor, label = chart.fitted(quantities["x"], [curve.x for curve in curves])
         for axis, panel in zip(axes, panels):
-            _draw_panel(axis, panel, factor, quantities, keys, list(ys), paper)
+            _draw_panel(axis, panel, factor, quantities, keys, list(ys), options)
         axes[-1].set_xlabel(label)
         figure.align_ylabels(axes)
         if keys.bar:
@@ -89,7 +89,7 @@ def _gathered(members: Sequence[FamilyMember], x: str, ys: Sequence[str]) -> tup
 
 def _draw_panel(
     axis: Any, curves: Sequence[Curve], x_factor: float, quantities: dict[str, Quantity], keys: chart.FamilyColours,
-    ys: list[str], paper: ChartOptions,
+    ys: list[str], options: ChartOptions,
 ) -> None:  # fmt: skip
     columns = list(dict.fromkeys(curve.column for curve in curves))
     factor, label = chart.fitted(quantities[columns[0]], [curve.y for curve in curves])
@@ -103,12 +103,12 @@ def _draw_panel(
             x, y = thinned(x, y)
         axis.plot(x, y, color=colour, ls=dashes, lw=1.6 if len(curves) <= 12 else 1.1)
     axis.set_ylabel(label if len(columns) == 1 else _in_common([quantities[name].words for name in columns], label))
-    if paper.x_limits is not None:
-        _fit_heights(axis, paper.x_limits)
+    if options.x_limits is not None:
+        _fit_heights(axis, options.x_limits)
     low, high = axis.get_ylim()
-    if low < 0.0 < high and "y" not in paper.log:
+    if low < 0.0 < high and "y" not in options.log:
         axis.axhline(0.0, color=style.GREY, lw=0.6, zorder=1)
-    chart.dress(axis, paper)
+    chart.dress(axis, options)
 
 
 def _in_common(words: list[str], label: str) -> str:

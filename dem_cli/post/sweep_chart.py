@@ -28,7 +28,7 @@ class RunFamily(NamedTuple):
 
 
 def draw_sweep(
-    table: SweepTable, x: str, ys: Sequence[str], by: Sequence[str], path: Path, paper: ChartOptions,
+    table: SweepTable, x: str, ys: Sequence[str], by: Sequence[str], path: Path, options: ChartOptions,
     quantities: Mapping[str, Quantity],
 ) -> None:  # fmt: skip
     """ys over x, a line for each combination of the keys `by`; exact names of columns. quantities: of all columns."""
@@ -41,8 +41,8 @@ def draw_sweep(
     rests = list(dict.fromkeys(family.rest for family in families))
     units = list(dict.fromkeys(quantities[y].unit for y in ys))
     panels = [[y for y in ys if quantities[y].unit == unit] for unit in units]
-    width, height = paper.inches
-    height *= 1.0 + 0.6 * (len(panels) - 1) if paper.size is None else 1.0
+    width, height = options.inches
+    height *= 1.0 + 0.6 * (len(panels) - 1) if options.size is None else 1.0
     factor, name = _fitted(table, quantities, [x])
     at = _AxisPositions(table.columns[x], factor)
     with style.figure(path, figsize=(width, height)) as figure:
@@ -58,7 +58,7 @@ def draw_sweep(
             axis.set_ylabel(label)
             at.dress(axis, "x")
             heights[panel[0]].dress(axis, "y")
-            chart.dress(axis, paper)
+            chart.dress(axis, options)
             missing.append(_mark_missing(axis, table, at, panel[0]))
         axes[-1].set_xlabel(name)
         if keys.bar:

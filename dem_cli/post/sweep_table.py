@@ -34,6 +34,7 @@ class SweepTable:
 
     @property
     def count(self) -> int:
+        """Number of runs."""
         return len(self.columns["run"])
 
     def exact(self, name: str) -> str:

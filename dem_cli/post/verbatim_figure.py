@@ -30,5 +30,6 @@ class PowerFormatter(LogFormatterSciNotation):
     """10³ instead of a formula for it."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
+        """The number beside a tick, its exponent raised."""
         text = super().__call__(x, pos).replace(r"$\mathdefault{", "").replace("}$", "").replace(r"\times", "×")
         return re.sub(r"\^\{(-?\d+)\}", lambda found: found[1].translate(RAISED), text)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,7 +27,7 @@ def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
     """Write pictures (height, width, 3) of bytes, of equal size; the format is that of the file's name."""
     part = unfinished(path)
     {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
-    os.replace(part, path)
+    part.replace(path)
 
 
 def unfinished(path: Path) -> Path:

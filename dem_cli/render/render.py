@@ -121,7 +121,7 @@ def _write_png(page: np.ndarray, path: Path) -> None:
 
     part = movie.unfinished(path)
     Image.fromarray(page).save(part, "PNG", optimize=True)
-    os.replace(part, path)
+    part.replace(path)
 
 
 def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int) -> list[np.ndarray]:

@@ -32,7 +32,7 @@ def opened(folder: Path, fresh: bool, force: bool, shard: str = "") -> Iterator[
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"output folder {folder}: a file of that name exists")
     if folder.is_dir() and not force:
-        foreign = sorted(n for n in os.listdir(folder) if n not in OURS and not n.startswith("."))
+        foreign = sorted(p.name for p in folder.iterdir() if p.name not in OURS and not p.name.startswith("."))
         if foreign:
             raise UsageError(
                 f"output folder {folder}: holds files that a sweep did not write ({', '.join(foreign[:3])}); "
