@@ -1,4 +1,4 @@
-"""Everything that `dem` raises on purpose.
+"""Exceptions of `dem`, everything that it raises on purpose.
 
 DemError
 ├── CaseError        exit 2   the case file or an override is wrong (all problems at once)

@@ -1,4 +1,4 @@
-"""A stepping loop that can do nothing but hold a load, beside which kernels/advance.py shows what its features cost.
+"""Bare stepping loop that can do nothing but hold a load, beside which kernels/advance.py shows what its features cost.
 
 No prescribed rates, no FIRE, no tilting, no combined damping, no speed limits; the energy ledger is a choice.
 """

@@ -1,4 +1,4 @@
-"""The structures that are measured, each with the best-known load and where it comes from.
+"""Benchmark structures, each with the best-known load and where it comes from.
 
 Errors are relative to that load. Where head joints carry friction the load is not unique: loading from gravity ends
 between `load`, without friction in the head joints, and `path`, with friction that does not dilate (`dem limit`); an

@@ -1,4 +1,4 @@
-"""What optional features cost, off and on."""
+"""Cost of optional features, off and on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What joint models cost: ns per contact point and step, beside plane Coulomb joints."""
+"""Cost of joint models: ns per contact point and step, beside plane Coulomb joints."""
 
 from __future__ import annotations
 

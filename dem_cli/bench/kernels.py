@@ -1,4 +1,4 @@
-"""ns per contact point and step, for both geometries and four sizes."""
+"""Cost of a step: ns per contact point and step, for both geometries and four sizes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The same structures in pymunk and Box2D, tilted until they fall: load, error and CPU time beside dem's."""
+"""Comparison with game engines: structures in pymunk and Box2D, tilted until they fall; load, error, CPU time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""benchmarks.json, benchmarks.md and benchmarks_*.png: the page and its pictures are made from the JSON alone."""
+"""Benchmark page: benchmarks.json, benchmarks.md and benchmarks_*.png; all are made from the JSON alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a benchmark leaves: one record per measurement, as JSON; pages and pictures are made from nothing else."""
+"""Benchmark records, one per measurement, as JSON; pages and pictures are made from nothing else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From shell to shell: what a user waits for, wall clock and CPU."""
+"""Start-up time from shell to shell: what a user waits for, wall clock and CPU."""
 
 from __future__ import annotations
 

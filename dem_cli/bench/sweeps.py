@@ -1,4 +1,4 @@
-"""Many runs: runs per second over the number of processes, and what a run of a sweep costs beside its solution."""
+"""Cost of sweeps: runs per second over the number of processes, and what a run of a sweep costs beside its solution."""
 
 from __future__ import annotations
 

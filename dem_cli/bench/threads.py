@@ -1,4 +1,4 @@
-"""More cores: threads of the libraries inside one run, and runs side by side."""
+"""Gain of more cores: threads of the libraries inside one run, and runs side by side."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ TWICE = 1.1  # × friction: first load tried as the upper one, because a joint t
 
 @dataclass(frozen=True)
 class EngineSettings:
-    """How an engine is run."""
+    """Settings of a game engine: how it is run."""
 
     name: str
     edge: float  # length of the smallest edge in the engine's units

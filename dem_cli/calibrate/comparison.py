@@ -1,4 +1,4 @@
-"""What the trials of a calibration gave: distances to the measured values, and the closest of them."""
+"""Comparison of calibration trials with measured values: distances, and the closest of them."""
 
 from __future__ import annotations
 

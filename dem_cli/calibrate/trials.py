@@ -1,4 +1,4 @@
-"""The cases of a calibration: the one in the file with plane joints, and with every shape and aperture."""
+"""Trial cases of a calibration: the one in the file with plane joints, and with every shape and aperture."""
 
 from __future__ import annotations
 

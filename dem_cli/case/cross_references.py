@@ -1,4 +1,4 @@
-"""Names that refer to each other: filling in those that may be left out, and checking the rest.
+"""Cross-references between the tables of a case: names that may be left out are filled in, the rest is checked.
 
 All but `check_names` work on the tables as read, so that slips are reported along with the validator's.
 """

@@ -1,4 +1,4 @@
-"""Which keys and tables of a case file a user means: `joints.dry.friction`, `structure.arch`, `friction`."""
+"""Search for keys and tables of the case file: `joints.dry.friction`, `structure.arch`, `friction`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""[[imperfection]]: how far blocks are from what was drawn."""
+"""[[imperfection]]: geometric imperfections, how far blocks are from what was drawn."""
 
 from __future__ import annotations
 

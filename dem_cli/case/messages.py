@@ -1,4 +1,4 @@
-"""What the validator found, in the words of the case file: value found, what is allowed, the nearest name."""
+"""Validation errors in the words of the case file: value found, what is allowed, the nearest name."""
 
 from __future__ import annotations
 

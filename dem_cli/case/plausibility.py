@@ -1,4 +1,4 @@
-"""What is allowed, but looks like a slip: most often a wrong unit."""
+"""Plausibility of a case: what is allowed, but looks like a slip, most often a wrong unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a TOML file to a validated case; every mistake in it at once, each with its line and column."""
+"""Reader of case files: from TOML to a validated case; every mistake in it at once, each with its line and column."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where every key and value of a TOML text stands. The text has been parsed before: its syntax is right."""
+"""Line and column of every key and value of a TOML text. The text has been parsed before: its syntax is right."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One number of a case with another value: a key path such as structure.0.ring."""
+"""Variation of one number of a case, named by a key path such as structure.0.ring."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The words of messages about a case: what may stand somewhere, the value found, the nearest name."""
+"""Words of messages about a case: what may stand somewhere, the value found, the nearest name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several subcommands take and say."""
+"""Options and parameter types that several subcommands share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs side by side, each in a process of its own."""
+"""Process pool of a command: runs side by side, each in a process of its own."""
 
 from __future__ import annotations
 

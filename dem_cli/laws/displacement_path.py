@@ -1,4 +1,4 @@
-"""One contact point moved along a displacement path, uncompiled: what a law answers, and what becomes of the work."""
+"""Displacement path of one contact point, uncompiled: what a law answers, and what becomes of the work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the joints of all laws have in common: stiffness, and where their contact points are."""
+"""Stiffness and contact points of a joint, common to all laws."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Target spectra: the elastic ones of Eurocode 8 (EN 1998-1:2004, 3.2.2.2), and lists of points."""
+"""Eurocode 8 elastic response spectra (EN 1998-1:2004, 3.2.2.2) and target spectra through points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the [motion] tables of a case to `Motion` objects."""
+"""Ground motions of a case: from its [motion] tables to `Motion` objects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How strong a motion is, how long, and how well it fits a spectrum."""
+"""Intensity measures of a ground motion: how strong it is, how long, and how well it fits a spectrum."""
 
 from __future__ import annotations
 

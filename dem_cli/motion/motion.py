@@ -1,4 +1,4 @@
-"""A motion of the base: one scalar history along a direction, with its exact integrals."""
+"""Base motion: one scalar history along a direction, with its exact integrals."""
 
 from __future__ import annotations
 

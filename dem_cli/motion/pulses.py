@@ -1,4 +1,4 @@
-"""Motions by formula: harmonic with ramps, one cycle, half a cycle, Ricker's wavelet, rectangles.
+"""Pulses and harmonic motions by formula: harmonic with ramps, one cycle, half a cycle, Ricker's wavelet, rectangles.
 
 Accelerations are integrated by hand; every shape starts at t = 0 from rest (the contract: motion.py, `Shape`).
 """

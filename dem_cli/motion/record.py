@@ -1,4 +1,4 @@
-"""A sampled history as a piecewise polynomial: its integrals are exact."""
+"""Accelerogram as a piecewise polynomial of time: its integrals are exact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of records: columns of time and value (CSV and its kin), and the AT2, VT2, DT2 files of PEER.
+"""Accelerogram files: columns of time and value (CSV and its kin), and the AT2, VT2, DT2 files of PEER.
 
 Errors are RecordError: one message with the file, the line and what is wrong.
 """

@@ -1,4 +1,4 @@
-"""[motion]: how supports move. One table, or several [[motion]], which add up."""
+"""[motion]: ground motion, how supports move. One table, or several [[motion]], which add up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that are there whole, or as they were."""
+"""Atomic file writes: a file is there whole, or as it was."""
 
 from __future__ import annotations
 

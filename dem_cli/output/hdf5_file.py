@@ -16,7 +16,7 @@ import h5py
 
 
 class TransactionalFile(io.RawIOBase):
-    """A file whose writes reach the disk at `commit()`; the first one that fails is kept in `error`."""
+    """Transactional file, whose writes reach the disk at `commit()`; the first one that fails is kept in `error`."""
 
     def __init__(self, path: Path):
         super().__init__()

@@ -1,4 +1,4 @@
-"""Finished runs of an analysis that consists of many, one per line as they come: what a kill leaves for `--resume`.
+"""Journal of the finished runs of an analysis of many, one per line as they come: what `--resume` goes on from.
 
 The file lies beside the output folder and goes once the results are in place. Its first line says what was run; a last
 line that a kill cut short is dropped.

@@ -1,4 +1,4 @@
-"""Reads back what a run left: `read(folder)`."""
+"""Reader of results: `read(folder)` gives back what a run left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Is what was computed what the `[reference]` of the case says? One verdict per table."""
+"""Comparison with reference values: one verdict per `[reference]` table of the case."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Value = float | int | str | bool | None
 
 
 class ReferenceTable(Protocol):
-    """What this file asks of a `[reference]`."""
+    """A `[reference]` table, as far as the comparison asks it."""
 
     @property
     def path(self) -> str:

@@ -1,4 +1,4 @@
-"""Writes a run to disk as it goes: results.h5 (blocks, histories, everything) and contacts.vtkhdf.
+"""Result writer: a run on disk as it goes, in results.h5 (blocks, histories, everything) and contacts.vtkhdf.
 
 results.h5 holds `/VTKHDF` (float32, what ParaView shows) beside `/dem` (float64, what `reader.read` returns):
 

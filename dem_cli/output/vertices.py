@@ -1,4 +1,4 @@
-"""Where the corners of the blocks are and how they move, for files and pictures."""
+"""Vertices of the blocks in space and their velocities, for files and pictures."""
 
 from __future__ import annotations
 

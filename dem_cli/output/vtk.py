@@ -1,4 +1,4 @@
-"""Files for other programs: geometry of a model, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
+"""VTK export: the blocks of a model for other programs, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all charts share: panels, units that read well, limits, colours of a family, where the key to them stands."""
+"""Layout of charts: panels, units that read well, limits, colours of a family, where the key to them stands."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LONGEST_TITLE = 11.0  # letters per inch
 
 @dataclass(frozen=True)
 class ChartOptions:
-    """How a chart is asked for."""
+    """Options of a chart: size, logarithmic axes, limits."""
 
     size: tuple[int, int | None] | None = None  # pixels
     log: frozenset[str] = frozenset()  # axes: "x", "y"

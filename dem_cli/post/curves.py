@@ -1,4 +1,4 @@
-"""Any two columns of one or several runs: a curve for each, a panel for each unit."""
+"""Line charts of any two columns of one or several runs: a curve for each, a panel for each unit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class FamilyMember(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """One line."""
+    """One line of a chart."""
 
     member: FamilyMember
     column: str  # of y

@@ -1,4 +1,4 @@
-"""What pictures need to know about a frame: joints as resultants, displacements, a scale that shows them."""
+"""Joint resultants, thrust lines and displacements of a frame, and a scale that shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of columns in words that stand at an axis, with their units."""
+"""Axis labels: names of columns in words, with their units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its mea
 
 
 class Quantity(NamedTuple):
-    """What a column holds."""
+    """Quantity of a column: what it holds."""
 
     words: str
     unit: str = ""

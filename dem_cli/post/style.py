@@ -1,4 +1,4 @@
-"""How all pictures look: colours that everybody tells apart, one style, matplotlib without a display."""
+"""Plot style of all pictures: colours that everybody tells apart, one style, matplotlib without a display."""
 
 from __future__ import annotations
 

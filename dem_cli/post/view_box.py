@@ -1,4 +1,4 @@
-"""What part of space a moving picture shows, and whether the ground moves in it."""
+"""View box of an animation: what part of space it shows, and whether the ground moves in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is drawn on the blocks of a scene: joints by their state, and the forces that go through them."""
+"""Joints and forces of a rendered scene: stripes by the state of a joint, and the forces that go through it."""
 
 from __future__ import annotations
 

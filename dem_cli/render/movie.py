@@ -1,4 +1,4 @@
-"""Pictures one after the other as a GIF or an MP4 file."""
+"""GIF and MP4 movies of pictures one after the other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Can anything be rendered here? VTK without graphics libraries ends the process, so it is asked before, by ctypes.
+"""OpenGL libraries, looked for by ctypes before anything is rendered: VTK without them ends the process.
 
 To be called in a process that may die: a broken driver can take it along.
 """

@@ -35,7 +35,7 @@ _STANDALONE = ("limit", "modes")  # kinds whose frames do not follow each other
 
 @dataclass(frozen=True)
 class RenderOptions:
-    """What is drawn, and how."""
+    """Options of a rendered picture: what is drawn, and how."""
 
     frame: str = "last"  # of a still: "last", "failure", a number, or a time such as "2.5s"
     view: str = "front"

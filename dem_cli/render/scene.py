@@ -1,4 +1,4 @@
-"""Blocks in a stone look, rendered off screen by VTK: lit faces, crisp edges, joints and forces in front of them."""
+"""VTK scene of blocks in a stone look, off screen: lit faces, crisp edges, joints and forces in front of them."""
 
 from __future__ import annotations
 

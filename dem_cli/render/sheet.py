@@ -1,4 +1,4 @@
-"""What stands around a rendered picture: headline, what one sees and how large, legend, colour bar."""
+"""Headline, caption, legend and colour bar around a rendered picture."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Surface(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Where all blocks are."""
+    """Pose of all blocks: where they are, and how they are turned."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, 3)
     turns: np.ndarray  # rotation matrices, (n_blocks, 3, 3)

@@ -1,4 +1,4 @@
-"""What a page says in words: the answer in one line, how far the run can be trusted, and what the model is."""
+"""Answer, soundness and model of a report page in words: how far the run can be trusted, and what the model is."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
 
 
 class Headline(NamedTuple):
-    """The first thing that a reader sees."""
+    """Headline of a page: the first thing that a reader sees."""
 
     label: str
     value: str
@@ -34,7 +34,7 @@ class Headline(NamedTuple):
 
 
 class SoundnessCheck(NamedTuple):
-    """One thing that tells a sound run from a doubtful one."""
+    """Check of a run: one thing that tells a sound one from a doubtful one."""
 
     name: str
     value: str

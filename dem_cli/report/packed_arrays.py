@@ -1,4 +1,4 @@
-"""Arrays as text in a page: base64 of little-endian numbers."""
+"""Base64 arrays in a page: little-endian numbers as text."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _TYPES = {"f": "f4", "i": "u4", "u": "u4", "b": "u1"}  # by kind of number; what
 
 
 class PackedArray(TypedDict):
-    """What assets/page.js reads back."""
+    """An array in base64, as assets/page.js reads it back."""
 
     type: str  # "f4", "u4" or "u1"
     data: str

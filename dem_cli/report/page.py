@@ -1,4 +1,4 @@
-"""The page itself: a template, the style sheet and the scripts in one file, closed to the network.
+"""HTML page of a report: a template, the style sheet and the scripts in one file, closed to the network.
 
 The policy in its head lets the browser run the scripts of this file by their hashes, show pictures that are in it, and
 load nothing else.

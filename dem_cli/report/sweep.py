@@ -1,4 +1,4 @@
-"""The page of a sweep: a table of all runs to sort and filter, and a chart of any two of its columns."""
+"""Report page of a sweep: a table of all runs to sort and filter, and a chart of any two of its columns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the interactive view of a page draws: blocks as polyhedra, and of each frame the poses, joints and forces.
+"""Interactive view of a report page: blocks as polyhedra, and of each frame the poses, joints and forces.
 
 Everything has three columns, and hangs on blocks by arms in their own axes: the view can exaggerate displacements
 without new numbers, and 3D needs no other view.

@@ -1,4 +1,4 @@
-"""From a generator's local blocks to blocks in their final place, with full names; aliases for these."""
+"""Placement of generated blocks: from local ones to their final place, with full names; aliases for these."""
 
 from __future__ import annotations
 

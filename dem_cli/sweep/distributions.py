@@ -1,4 +1,4 @@
-"""How the values of a key are given: at even distances, or drawn from a distribution."""
+"""Sampling of the values of a swept key: at even distances, or Latin hypercube samples of a distribution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What makes two runs the same: the case, the records that it names, and the program."""
+"""Identity of a run, which tells whether two are the same: the case, the records that it names, and the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Work in processes of this machine: what kills a process does not stop the others, and nobody outlives the parent."""
+"""Process pool of this machine: what kills a process does not stop the others, and nobody outlives the parent."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ AHEAD = 2  # items handed out per process: nobody waits for the next one
 
 
 class WorkerDeath:
-    """In place of a result: the process that worked on it died, alone and for the second time."""
+    """Death of a worker process in place of a result: it died, alone and for the second time."""
 
 
 def each_done(

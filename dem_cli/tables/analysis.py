@@ -1,4 +1,4 @@
-"""The contract of an analysis kind."""
+"""[analysis] of the case file: one table per kind, and the contract of a kind."""
 
 from __future__ import annotations
 

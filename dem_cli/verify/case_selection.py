@@ -15,7 +15,7 @@ SHELVES = {"exact": "verification", "experiment": "validation", "code": "cross-c
 
 
 class CaseSelection(NamedTuple):
-    """What there is to do, and what was left out."""
+    """Selected cases: what there is to do, and what was left out."""
 
     cases: list[Path]
     without: list[Path]  # cases without [reference]

@@ -1,4 +1,4 @@
-"""What is kept of a verified case, and of all of them: verification.json."""
+"""Verification records: what is kept of a verified case, and of all of them in verification.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verdicts as people read them: values, errors, what was allowed."""
+"""Verdicts in words: values, errors, what was allowed."""
 
 from __future__ import annotations
 

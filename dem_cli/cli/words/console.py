@@ -1,4 +1,4 @@
-"""Every line that a user of `dem run` reads: progress on stderr, the answer on stdout."""
+"""Terminal output of `dem run`, every line that a user reads: progress on stderr, the answer on stdout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user of `dem run` reads of many runs: the curve of a fragility study, the spread of repeats."""
+"""Fragility curves and the spread of repeats in words: what a user of `dem run` reads of many runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user of `dem run` reads of natural frequencies: a table, and what to write into [joints]."""
+"""Natural frequencies in words: a table, and what to write into [joints]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user of `dem run` reads of a safety analysis: the factor or the value, its bracket, and what decided it."""
+"""Safety factors in words: the factor or the value, its bracket, and what decided it."""
 
 from __future__ import annotations
 
