@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).resolve().parent
 HEADS = "limit analysis, no friction in head joints"
-COURSES = "structure.0.courses={}"
-BLOCKS = "structure.0.blocks_per_course={}"
+COURSES_KEY = "structure.0.courses={}"
+BLOCKS_KEY = "structure.0.blocks_per_course={}"
 
 
 @dataclass(frozen=True)
@@ -61,12 +61,12 @@ def _t21(
 def _wall(
     courses: int, blocks: int, count: int, load: float, upper: float | None, path: float | None = None, name: str = ""
 ) -> KnownStructure:
-    sizes = (COURSES.format(courses), BLOCKS.format(blocks))
+    sizes = (COURSES_KEY.format(courses), BLOCKS_KEY.format(blocks))
     return KnownStructure(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper, path)
 
 
 SLIDES = "closed form: the top course slides at μ"
-KNOWN = {
+KNOWN_STRUCTURES = {
     known.name: known
     for known in (
         _t21(0.5, 0.5, SLIDES),
@@ -106,7 +106,7 @@ def solve(case: Case, model: Model, observer: Observer | None = None) -> dict[st
 @cache
 def compiled() -> None:
     """Have all kernels of a run compiled or loaded, so that nobody's time holds that."""
-    case, model = KNOWN["T21 μ 0.6"].build("analysis.follow=0.001", "analysis.resolution=0.1")
+    case, model = KNOWN_STRUCTURES["T21 μ 0.6"].build("analysis.follow=0.001", "analysis.resolution=0.1")
     solve(case, model)
 
 

@@ -9,9 +9,9 @@ from typing import Any
 from dem_cli.post import style
 
 COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#c51b7d", "#8250a8", "#26262b", "#b8860b", "#3aa6b9", "#c0392b", "#7c7c86")
-MARKS = "os^Dv<>Phd"
+MARKERS = "os^Dv<>Phd"
 FLOOR = 1e-5  # smaller errors are drawn here: references have six digits
-COLUMNS = 3
+PANELS_PER_ROW = 3
 
 Points = Sequence[tuple[float, float | None]]  # (CPU seconds, relative error)
 
@@ -24,7 +24,7 @@ def work_precision(
     joined: the lines whose points are connected (None: all). Settings without an answer are left out.
     """
     names = list(dict.fromkeys(line for panel in panels.values() for line in panel))
-    columns = min(COLUMNS, len(panels))
+    columns = min(PANELS_PER_ROW, len(panels))
     rows = -(-len(panels) // columns)
     with style.figure(path, figsize=(0.8 + 3.9 * columns, 0.9 + 3.1 * rows)) as figure:
         axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
@@ -47,7 +47,7 @@ def _panel(
             continue
         dashes = "-" if joined is None or name in joined else ""
         axis.plot(
-            *zip(*answered, strict=True), ls=dashes, lw=1.2, marker=MARKS[number % len(MARKS)], ms=5, mew=0.6,
+            *zip(*answered, strict=True), ls=dashes, lw=1.2, marker=MARKERS[number % len(MARKERS)], ms=5, mew=0.6,
             mec="white", color=COLOURS[number % len(COLOURS)], label=name,
         )  # fmt: skip
     axis.set(xscale="log", yscale="log", xlabel="CPU seconds")

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, SIZES, KnownStructure, solve
+from dem_cli.bench.cases import KNOWN_STRUCTURES, SIZES, KnownStructure, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
@@ -18,7 +18,7 @@ from dem_cli.output.record import Frame, HistoryRow, SilentObserver
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
-BLOCKS, QUICK_BLOCKS = (21, 231, 2275), (21,)
+BLOCK_COUNTS, QUICK_BLOCKS = (21, 231, 2275), (21,)
 CASES, QUICK_CASES = ("T21 μ 0.6", "T231"), ("T21 μ 0.6",)
 BARE, LEDGER, FULL = "nothing", "ledger", "all, unused"
 MONITORS = "monitor=[" + ", ".join('{block = "top-right", quantity = "rotation"}' for _ in range(10)) + "]"
@@ -40,7 +40,7 @@ class Feature:
         from dem_cli.errors import CaseError
 
         try:
-            KNOWN["T21 μ 0.6"].build(*self.overrides)
+            KNOWN_STRUCTURES["T21 μ 0.6"].build(*self.overrides)
         except CaseError:
             return False
         return True
@@ -94,7 +94,7 @@ def _kernels(options: BenchOptions, found: GroupResult) -> None:
     """ns per point and step of three stepping loops in turn: bare, with ledger, with everything."""
     rows: list[tuple[KnownStructure, str, str, TimedTask, int]] = []
     for known in SIZES:
-        if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
+        if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCK_COUNTS):
             for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
                 sim = simulation(known, kinematics)
                 restore, steps = partial(sim.restore, sim.save()), max(POINT_STEPS // len(sim.joints.kn), 10)
@@ -143,7 +143,7 @@ def _runs(options: BenchOptions, found: GroupResult) -> None:
         for name in QUICK_CASES if options.quick else CASES:
             for feature in features(name)[: 4 if options.quick else None]:
                 if feature.available():
-                    rows.append((name, feature, _run(KNOWN[name], feature, Path(folder) / str(len(rows)))))
+                    rows.append((name, feature, _run(KNOWN_STRUCTURES[name], feature, Path(folder) / str(len(rows)))))
                 elif name == QUICK_CASES[0]:
                     found.notes.append(f"{feature.name}: not in this version")
         in_turn([job for *_, job in rows], options.rounds(5))

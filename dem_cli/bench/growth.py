@@ -13,8 +13,8 @@ from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
 LARGE, LARGEST = 1000, 10_000  # blocks
-QUICK = 2  # sizes
-STEPS = "analysis.max_steps=1000000"  # ends the largest walls after minutes, not hours
+QUICK_SIZES = 2  # sizes
+STEP_LIMIT = "analysis.max_steps=1000000"  # ends the largest walls after minutes, not hours
 
 
 def resolution(blocks: int) -> float:
@@ -28,7 +28,7 @@ def measure(options: BenchOptions) -> GroupResult:
     sizes = [k for k in SIZES if options.long or blocks_of(k) < LARGEST]
     if not options.long:
         found.notes.append(f"walls of more than {LARGEST:,} blocks were left out (`--long` measures them)")
-    rows = [(known, _job(known)) for known in (sizes[:QUICK] if options.quick else sizes)]
+    rows = [(known, _job(known)) for known in (sizes[:QUICK_SIZES] if options.quick else sizes)]
     in_turn([job for _, job in rows], options.rounds(3))
     for known, job in rows:
         blocks = blocks_of(known)
@@ -38,7 +38,7 @@ def measure(options: BenchOptions) -> GroupResult:
 
 
 def _job(known: KnownStructure) -> TimedTask:
-    case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEPS)
+    case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEP_LIMIT)
 
     def run() -> dict[str, Any]:
         summary = solve(case, model)

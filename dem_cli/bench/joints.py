@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, KnownStructure
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure
 from dem_cli.bench.kernels import simulation, stepping
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import in_turn
 
 PICTURES: dict[str, Any] = {}
-CASE, QUICK_CASE = "T231", "T21 μ 0.6"
+MEASURED_CASE, QUICK_CASE = "T231", "T21 μ 0.6"
 PLANE = "coulomb"
 BONDED = "friction = 0.6, cohesion = 1e3, tension = 1e3"
 ENERGIES = "fracture_energy_tension = 10.0, fracture_energy_shear = 10.0"
@@ -45,7 +45,7 @@ def with_joint(known: KnownStructure, table: str, other: str = "") -> KnownStruc
 
 def measure(options: BenchOptions) -> GroupResult:
     """One record per joint model and geometry; unit: ns per point and step."""
-    known = KNOWN[QUICK_CASE if options.quick else CASE]
+    known = KNOWN_STRUCTURES[QUICK_CASE if options.quick else MEASURED_CASE]
     rows = []
     for kinematics in ("fixed", "large"):
         for name, table in [*VARIANTS.items(), (MIXED, VARIANTS[PLANE])]:

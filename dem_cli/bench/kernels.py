@@ -13,7 +13,7 @@ PICTURES: dict[str, Any] = {}
 LOAD = 0.3  # multiplier at which the walls stand, with sticking, sliding and open points
 POINT_STEPS = 2_000_000  # points × steps of one timing, about 20 ms
 FIRST_STEPS = 300
-BLOCKS = (21, 231, 2275, 20100)
+BLOCK_COUNTS = (21, 231, 2275, 20100)
 QUICK_BLOCKS = (21,)
 
 
@@ -42,7 +42,7 @@ def stepping(sim: Any) -> tuple[TimedTask, int]:
 
 def measure(options: BenchOptions) -> GroupResult:
     """One record per size and geometry; unit: ns per point and step, ledger on."""
-    wanted = QUICK_BLOCKS if options.quick else BLOCKS
+    wanted = QUICK_BLOCKS if options.quick else BLOCK_COUNTS
     rows, jobs = [], []
     for known in SIZES:
         for kinematics in ("fixed", "large"):

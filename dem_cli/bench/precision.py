@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench import constants, diagrams
-from dem_cli.bench.cases import KNOWN, KnownStructure, answer, solve
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure, answer, solve
 from dem_cli.bench.points import points_per_joint
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
-CASES = tuple(KNOWN)
+CASES = tuple(KNOWN_STRUCTURES)
 NOT_DRAWN = ("T21 μ 0.6", "T21 μ 0.7")  # in the tables only: enough lines
 FIRST_INSIDE = "2 inside"
 DEAR = "T231"  # of some knobs only the cheaper values
@@ -121,7 +121,7 @@ def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[KnownStructure, Any, TimedT
         for name in QUICK_CASES if quick else CASES:
             if name == DEAR and axis.cheap is not None and value not in axis.cheap:
                 continue
-            yield KNOWN[name], value, _job(KNOWN[name], axis, value)
+            yield KNOWN_STRUCTURES[name], value, _job(KNOWN_STRUCTURES[name], axis, value)
 
 
 def _job(known: KnownStructure, axis: Axis, value: Any) -> TimedTask:

@@ -11,7 +11,7 @@ from typing import Any
 
 from dem_cli.errors import UsageError
 
-FORMAT = 1
+RECORD_FORMAT = 1
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def as_json(groups: dict[str, dict[str, Any]]) -> str:
         parts = (f'"machine": {text(group["machine"])}', f'"notes": {text(group["notes"])}')
         lines.append(f"  {text(name)}: {{\n   " + ",\n   ".join((*parts, f'"records": [\n   {records}\n   ]')) + "}")
     body = "{\n" + ",\n".join(lines) + "\n }" if lines else "{}"
-    return f'{{"format": {FORMAT},\n "groups": {body}}}\n'
+    return f'{{"format": {RECORD_FORMAT},\n "groups": {body}}}\n'
 
 
 def group_table(found: GroupResult, machine: dict[str, Any]) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
     """Groups of a results file. Raises UsageError where it is none of ours."""
     try:
         tables = json.loads(path.read_text(encoding="utf-8"))
-        if tables["format"] != FORMAT:
+        if tables["format"] != RECORD_FORMAT:
             raise UsageError(f"{path}: written by another version of dem bench; remove it and measure again")
         return dict(tables["groups"])
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -16,7 +16,7 @@ from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
-FIRST = "first run of T21, nothing compiled"
+FIRST_RUN = "first run of T21, nothing compiled"
 
 
 def shell(words: list[str], cache: str) -> tuple[float, float]:
@@ -44,7 +44,7 @@ def measure(options: BenchOptions) -> GroupResult:
         if options.quick:
             commands = {"`dem --help`": ["--help"]}
         else:
-            times[FIRST] = [shell(run, folder)]
+            times[FIRST_RUN] = [shell(run, folder)]
         for _ in range(options.rounds(5)):
             for name, words in commands.items():
                 times.setdefault(name, []).append(shell(words, folder))

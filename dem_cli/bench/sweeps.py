@@ -11,13 +11,13 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from dem_cli.bench.cases import KNOWN
+from dem_cli.bench.cases import KNOWN_STRUCTURES
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 
 PICTURES: dict[str, Any] = {}
 WORKERS = "processes"
-RUNS, FEW = 1000, 20
+MANY_RUNS, FEW_RUNS = 1000, 20
 FRICTIONS = 'sweep."joints.dry.friction" = {{ from = 0.5, to = 0.7, count = {count} }}\n'
 
 
@@ -33,7 +33,7 @@ class SweepTiming(NamedTuple):
 def measure(options: BenchOptions) -> GroupResult:
     """`dem sweep` of COL14 over its friction, which does not change its failure load, from shell to shell."""
     found = GroupResult()
-    known, count = KNOWN["COL14"], FEW if options.quick else RUNS
+    known, count = KNOWN_STRUCTURES["COL14"], FEW_RUNS if options.quick else MANY_RUNS
     cores = os.cpu_count() or 1
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)

@@ -17,7 +17,7 @@ SETTLE, RAMP, HOLD = 10.0, 30.0, 30.0  # in √(h/g)
 RAMP_STEPS, LOOKS = 50, 20
 MOVED = 0.1  # smallest edges; an excess of 2.2e-4 g along a plane covers that in HOLD
 COLLAPSED = 1.0  # smallest edges during the ramp
-LOWEST = 0.01  # a structure that does not even stand at this load counts as falling by itself
+LOWEST_LOAD = 0.01  # a structure that does not even stand at this load counts as falling by itself
 TWICE = 1.1  # × friction: first load tried as the upper one, because a joint that lies flat slides at μ
 
 
@@ -77,7 +77,7 @@ def failure_load(
     low, high, trials = 0.0, TWICE * friction, 1
     while stands(make(), setting, high):
         low, high, trials = high, 2.0 * high, trials + 1
-    while high - low > resolution * max(low, LOWEST):
+    while high - low > resolution * max(low, LOWEST_LOAD):
         middle = 0.5 * (low + high)
         trials += 1
         if stands(make(), setting, middle):

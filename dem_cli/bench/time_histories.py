@@ -20,15 +20,15 @@ from dem_cli.output.record import Samples, SilentObserver
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
 FINEST = 0.02  # of the runs that errors of shaken structures refer to
-QUICK = (0.5, USUAL)
+QUICK_MARGINS = (0.5, USUAL)
 LONG = 0.5  # s: what takes longer is measured once
 LANDINGS = (0.39088807, 0.79862462, 1.06101466)  # s, of Housner's block 0.5 m × 1 m let go at 0.25 rad
 STIFFNESS = (2e8, 2e9, 2e10, 2e11)  # Pa/m, of the block
 WEIGHT_OVER_AREA = 2000.0 * 9.81 * 1.0  # Pa, of the block on its joint
 EDGE = 0.5  # m, its smallest edge
 EVERY = 0.01  # s, between the instants at which histories are compared
-DAMPING = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
-BLOCK, SHAKEN = "block", {"column": "shaken_column", "arch": "shaken_arch"}
+DASHPOTS = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
+BLOCK, SHAKEN_FILES = "block", {"column": "shaken_column", "arch": "shaken_arch"}
 
 
 class FirstMonitor(SilentObserver):
@@ -80,8 +80,8 @@ def lines(quick: bool) -> Iterator[StepStudy]:
     for kn in STIFFNESS[1:2] if quick else STIFFNESS:
         yield StepStudy(BLOCK, f"kn·h/W {kn * EDGE / WEIGHT_OVER_AREA:.0e}", "rocking", (f"joints.dry.kn={kn!r}",))
     shorter = ("analysis.duration=1.5",) if quick else ()
-    for axis, file in SHAKEN.items():
-        for name, overrides in DAMPING.items():
+    for axis, file in SHAKEN_FILES.items():
+        for name, overrides in DASHPOTS.items():
             yield StepStudy(axis, name, file, (*overrides, *shorter))
 
 
@@ -89,7 +89,7 @@ def measure(options: BenchOptions) -> GroupResult:
     """One record per line and step."""
     found = GroupResult()
     wanted = list(lines(options.quick))
-    margins = QUICK if options.quick else MARGINS
+    margins = QUICK_MARGINS if options.quick else MARGINS
     jobs = [(line, margin, line.job(margin)) for line in wanted for margin in margins]
     for line in wanted:
         line.job(MARGINS[0]).run()  # kernels compiled or loaded, so that nobody's time holds that

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
-from dem_cli.case.keys import NAME, CaseKey, CaseTable, tables
+from dem_cli.case.keys import NAME_PLACEHOLDER, CaseKey, CaseTable, tables
 from dem_cli.errors import UsageError
 
 CLOSE = 0.75  # a name that is so near to a key is a slip, not a material or a joint of that name
-PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
+DOC_PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
     "joints": "docs/laws/{kind}.md",
     "joints.NAME.profile": "docs/profile.md",
     "joints.NAME.softening": "docs/laws/friction-softening.md",
@@ -48,8 +48,8 @@ class CaseEntry(NamedTuple):
         """The page of the documentation that says most about it."""
         steps, page = list(self.table.path), ""
         while steps and not page:
-            page = PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
-            page = page or PAGES.get(".".join(steps), "")
+            page = DOC_PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
+            page = page or DOC_PAGES.get(".".join(steps), "")
             steps.pop()
         if "{kind}" in page:
             return page.format(kind=self.kinds[0]) if len(self.kinds) == 1 else "docs/laws/README.md"
@@ -81,14 +81,14 @@ def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tup
     """How badly words name an entry: whether its path is cut in front, words that are a user's own names; or None."""
     steps: list[Any] = list(entry.table.path)
     if entry.kinds:
-        steps.insert(2 if steps[1:2] == [NAME] else 1, set(entry.kinds))
+        steps.insert(2 if steps[1:2] == [NAME_PLACEHOLDER] else 1, set(entry.kinds))
     if entry.key:
         steps.append(entry.key.name)
     own = _own_names(words, steps, names)
     if own is not None:
         return 0, own
     for left_out in range(1, len(steps)):
-        if isinstance(steps[left_out], str) and steps[left_out] != NAME:
+        if isinstance(steps[left_out], str) and steps[left_out] != NAME_PLACEHOLDER:
             own = _own_names(words, steps[left_out:], names)
             if own is not None:
                 return 1, own
@@ -104,7 +104,7 @@ def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str
     if not steps:
         return None if words else 0
     step, rest = steps[0], steps[1:]
-    if isinstance(step, set) or step == NAME:  # may be left out
+    if isinstance(step, set) or step == NAME_PLACEHOLDER:  # may be left out
         found = _own_names(words, rest, names)
         if found is not None or not words:
             return found
@@ -134,7 +134,7 @@ def unknown(model: type[BaseModel], query: str, words: Sequence[str]) -> str:
     """What to say about a key that does not exist: the nearest ones, best first."""
     full: dict[str, str] = {}
     for entry in entries(model):
-        steps = [step for step in entry.path.split(".") if step != NAME]
+        steps = [step for step in entry.path.split(".") if step != NAME_PLACEHOLDER]
         for short in (".".join(steps), steps[-1], *(".".join((steps[0], kind, *steps[1:])) for kind in entry.kinds)):
             full.setdefault(short, ".".join(steps))
     without_names = [word for i, word in enumerate(words) if not (i == 1 and words[0] in ("joints", "materials"))]

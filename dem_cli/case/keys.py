@@ -20,14 +20,14 @@ from pydantic.fields import FieldInfo
 from dem_cli.case.base import OneOrMoreSchema
 from dem_cli.case.wording import DeclaredType, allowed, is_table, kind_of
 
-NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
-NOTHING: tuple[Any, ...] = (None, (), {}, "")
+NAME_PLACEHOLDER = "NAME"  # stands for a name of the user's choice: [materials.NAME]
+EMPTY_VALUES: tuple[Any, ...] = (None, (), {}, "")
 TAGS = ("kind", "law")  # keys that say which kind of table it is
-UNITS = (
+KNOWN_UNITS = (
     "-", "m", "s", "kg", "N", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m", "J/m2",
     "deg per decade of stress", "unit of the key", "unit of the quantity",
 )  # fmt: skip
-BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, UNITS)) + r")\]")
+BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, KNOWN_UNITS)) + r")\]")
 # Of a docstring: `[materials.NAME]`, `[analysis] with kind = "modes": `, `damping.rayleigh: `.
 HEADING = re.compile(r"^(\[[\w.*\[\]]+\.?$|[\[a-z][^:\n]*: )")
 DEFAULT = re.compile(r"[;,]? ?\bdefault: (.*)$")
@@ -121,7 +121,7 @@ class CaseKey(NamedTuple):
         if said:
             return said[1]
         value = self._default
-        return "" if value in NOTHING else toml(value)
+        return "" if value in EMPTY_VALUES else toml(value)
 
     @property
     def _default(self) -> Any:
@@ -143,7 +143,7 @@ class CaseKey(NamedTuple):
     def example(self) -> str:
         """A line with it, without the table; empty for a table of tables that has sections of its own."""
         value = self.field.examples[0] if self.field.examples else self._default
-        return "" if value in NOTHING else f"{self.name} = {toml(value)}"
+        return "" if value in EMPTY_VALUES else f"{self.name} = {toml(value)}"
 
 
 def tables(model: type[BaseModel]) -> list[CaseTable]:
@@ -176,7 +176,7 @@ def _inside(
         if is_table(choice.type):
             yield choice.type, steps, several
         elif origin is dict:
-            yield from _inside(kind_of(arguments[1]), (*steps, NAME), several)
+            yield from _inside(kind_of(arguments[1]), (*steps, NAME_PLACEHOLDER), several)
         elif origin is tuple and arguments[-1] is Ellipsis:
             one_will_do = any(isinstance(limit, OneOrMoreSchema) for limit in choice.limits)
             yield from _inside(kind_of(arguments[0]), steps, not one_will_do)

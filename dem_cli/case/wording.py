@@ -11,12 +11,12 @@ import annotated_types as limits
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-MANY = 24  # names beyond this are not listed
+MOST_NAMES = 24  # names beyond this are not listed
 # Kinds that are part of the format, but not of this version.
-LATER = ("coursed-wall", "voronoi-wall")
-NUMBERS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
-WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
-SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
+FUTURE_KINDS = ("coursed-wall", "voronoi-wall")
+NUMBER_WORDS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
+TEXT_WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
+LIMIT_SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
 
 
 class DeclaredType(NamedTuple):
@@ -63,15 +63,15 @@ def allowed(kinds: Iterable[DeclaredType], many: bool = False) -> str:
 def allowed_one(kind: DeclaredType, many: bool = False) -> str:
     """The words for one kind; `many` for the plural."""
     declared, arguments, origin = kind.type, get_args(kind.type), get_origin(kind.type)
-    pairs = [(limit, sign) for sign in SIGNS for limit in kind.limits if isinstance(limit, sign)]
-    bounds = [f"{SIGNS[sign][1]} {show(getattr(limit, SIGNS[sign][0]))}" for limit, sign in pairs]
+    pairs = [(limit, sign) for sign in LIMIT_SIGNS for limit in kind.limits if isinstance(limit, sign)]
+    bounds = [f"{LIMIT_SIGNS[sign][1]} {show(getattr(limit, LIMIT_SIGNS[sign][0]))}" for limit, sign in pairs]
     least = next((limit.min_length for limit in kind.limits if isinstance(limit, limits.MinLen)), 0)
-    if declared in NUMBERS:
-        return " ".join([NUMBERS[declared][many], " and ".join(bounds)]).strip()
+    if declared in NUMBER_WORDS:
+        return " ".join([NUMBER_WORDS[declared][many], " and ".join(bounds)]).strip()
     if declared is str and least:
         return "non-empty strings" if many else "a non-empty string"
-    if declared in WORDS:
-        return WORDS[declared][many]
+    if declared in TEXT_WORDS:
+        return TEXT_WORDS[declared][many]
     if origin is Literal:
         return either(arguments)
     if origin is dict or is_table(declared):
@@ -99,7 +99,7 @@ def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
 
 def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
     """`unknown law 'colomb', did you mean 'coulomb'? (allowed: 'coulomb')`"""
-    if value in LATER:
+    if value in FUTURE_KINDS:
         return f"{show(value)} is not available yet in this version (allowed: {listing(names)})"
     hint = nearest(value, names)
     return f"unknown {what} {show(value)}{hint and ', ' + hint} (allowed: {listing(names)})"
@@ -114,7 +114,7 @@ def nearest(value: Any, names: Iterable[Any]) -> str:
 def listing(names: Iterable[Any]) -> str:
     """Names to choose from; of very many the first few."""
     words = [show(name) for name in names]
-    if len(words) > MANY:
+    if len(words) > MOST_NAMES:
         return f"{', '.join(words[:6])}, ... {len(words)} in all"
     return ", ".join(words) or "none"
 

@@ -46,13 +46,13 @@ def command(
     Groups: kernels, joints, precision, time_histories, growth, threads, sweeps, features, others, startup.
     """
     one_thread()
-    from dem_cli.bench.page import NAME, keep, render, write
+    from dem_cli.bench.page import PAGE_NAME, keep, render, write
     from dem_cli.bench.record import BenchOptions, as_json, read
 
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
     check_places(folder, json_file)
-    found = read(folder / f"{NAME}.json") if redraw and folder is not None else {}
+    found = read(folder / f"{PAGE_NAME}.json") if redraw and folder is not None else {}
     for name in [] if redraw else checked(groups):
         found[name] = measured(name, BenchOptions(quick, long, repeats))
         if folder is not None:

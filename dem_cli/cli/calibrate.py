@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.record import HistoryRow
 
-CASE, TABLE, PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
+CALIBRATED_CASE, TRIALS_TABLE, TRIALS_PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
 
 
 @click.command("calibrate", short_help="Find the joint profile that comes closest to a test.")
@@ -144,7 +144,7 @@ def solved(text: str) -> TrialAnswer:
     from dem_cli.analyses.solve import solve
     from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
 
-    source = CaseSource(Path(CASE), text)
+    source = CaseSource(Path(CALIBRATED_CASE), text)
     loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
     case = loaded.case
     only_failure = case.analysis.model_copy(update={"follow": 0.0, "limit": False})
@@ -228,15 +228,15 @@ def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Calibrat
 
     best = summary["trials"].index(summary["closest"])
     try:
-        (folder.path / TABLE).write_text(as_csv(summary["trials"]), encoding="utf-8", newline="\n")
-        (folder.path / CASE).write_text(case_text(plan[best].case), encoding="utf-8", newline="\n")
+        (folder.path / TRIALS_TABLE).write_text(as_csv(summary["trials"]), encoding="utf-8", newline="\n")
+        (folder.path / CALIBRATED_CASE).write_text(case_text(plan[best].case), encoding="utf-8", newline="\n")
         write_summary(folder.path, summary)
     except OSError as error:
         raise write_error(error, folder.final) from None
     try:
         from dem_cli.post.calibration import draw_calibration
 
-        draw_calibration(summary, folder.path / PICTURE)
+        draw_calibration(summary, folder.path / TRIALS_PICTURE)
     except (DemError, OSError) as error:
         if isinstance(error, OutputError):
             raise

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from dem_cli.post.labels import Quantity
     from dem_cli.post.sweep_table import SweepTable
 
-LONGEST = 60  # letters of a cell of a listing
+LONGEST_CELL = 60  # letters of a cell of a listing
 
 
 @cache
@@ -227,7 +227,7 @@ def _laid_out(groups: Sequence[tuple[str, Sequence[tuple[str, ...]]]]) -> Iterat
     for title, rows in groups:
         if rows:
             yield title
-            widths = [min(LONGEST, max(len(row[i]) for row in rows)) for i in range(len(rows[0]))]
+            widths = [min(LONGEST_CELL, max(len(row[i]) for row in rows)) for i in range(len(rows[0]))]
             for row in rows:
-                row = tuple(cell if len(cell) <= LONGEST else cell[: LONGEST - 1] + "…" for cell in row)
+                row = tuple(cell if len(cell) <= LONGEST_CELL else cell[: LONGEST_CELL - 1] + "…" for cell in row)
                 yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()

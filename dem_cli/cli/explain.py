@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from dem_cli.case.explain import CaseEntry
     from dem_cli.case.keys import CaseTable
 
-MANY = 3  # more matches than this are listed, one line each
+MOST_ENTRIES = 3  # more matches than this are listed, one line each
 WIDEST = 110  # columns of a terminal that are used
 
 
@@ -35,7 +35,7 @@ def command(key: str | None, as_json: bool) -> None:
         click.echo(json.dumps([facts(entry) for entry in found], indent=2, ensure_ascii=False))
     elif key is not None and several_kinds(found):
         click.echo(about_kinds(found), nl=False)
-    elif key is not None and len(found) <= MANY:
+    elif key is not None and len(found) <= MOST_ENTRIES:
         click.echo("\n".join(about_key(entry) if entry.key else about_table(entry) for entry in found), nl=False)
     else:
         click.echo(listing(found))

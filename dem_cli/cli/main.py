@@ -35,7 +35,7 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "export": "Write results in other formats.",
     "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }
-INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
+INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 
 class LazyGroup(click.Group):
@@ -76,7 +76,7 @@ class LazyGroup(click.Group):
             code = error.exit_code
         except (click.Abort, KeyboardInterrupt):
             click.echo("interrupted", err=True)
-            code = INTERRUPTED
+            code = INTERRUPTED_CODE
         except BrokenPipeError:
             code = quiet_pipe()
         except DemError as error:

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from dem_cli.motion.intensity_measures import SpectrumFit
     from dem_cli.motion.motion import Motion
 
-RECORDS, SPECTRA, PICTURE = "records", "spectra.png", "motion.png"
-COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
-SHAKEN = ("time-history", "fragility")  # kinds of runs that motions go into
+RECORDS, SPECTRA, MOTION_PICTURE = "records", "spectra.png", "motion.png"
+MOTION_COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
+SHAKEN_KINDS = ("time-history", "fragility")  # kinds of runs that motions go into
 HEADINGS = ("record", "duration", "acceleration", "velocity", "displacement", "Arias", "5–95 %", "spectrum/target")
 
 
@@ -153,7 +153,7 @@ def draw(folder: Path, groups: Sequence[RecordGroup], title: str) -> None:
     suites = [MotionSuite(group.motions, group.target, group.chosen) for group in groups]
     try:
         draw_spectra(suites, folder / SPECTRA, title)
-        draw_motions(suites, folder / PICTURE, title)
+        draw_motions(suites, folder / MOTION_PICTURE, title)
     except DemError as error:
         console.note(f"no picture: {error}")
 
@@ -163,7 +163,7 @@ def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
     from dem_cli.output.reader import read
 
     kind = read(folder).kind
-    return draw_spectra_of_case(folder / "case.toml", kind, output) if kind in SHAKEN else []
+    return draw_spectra_of_case(folder / "case.toml", kind, output) if kind in SHAKEN_KINDS else []
 
 
 def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
@@ -192,7 +192,7 @@ def as_csv(motion: Motion) -> str:
     times = motion.samples()
     columns = (times, motion.acceleration(times), motion.velocity(times), motion.displacement(times))
     lines = [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns))]
-    return "\n".join([",".join(COLUMNS), *lines, ""])
+    return "\n".join([",".join(MOTION_COLUMNS), *lines, ""])
 
 
 def answer(summary: dict[str, Any], folder: Path) -> str:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from dem_cli.post.chart import ChartOptions
 
 CHART, SWEEP = "plot.png", "sweep.png"
-FORMATS = (".png", ".svg", ".pdf")
-NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
+PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
 
 
 @click.command("plot", short_help="Draw the results of runs and sweeps.")
@@ -28,7 +27,7 @@ NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "e
 @click.option("--by", metavar="KEY", multiple=True, help="A curve for each value of this key of the case; colours it.")
 @click.option("--where", metavar="KEY=VALUE", multiple=True, help="Of a sweep: only runs that have this value.")
 @click.option("--map", "as_map", is_flag=True, help="Of a sweep: a heat map of -y over two keys (-x, --by).")
-@click.option("--picture", type=click.Choice(NAMES), help="Only this one of all pictures of a run.")
+@click.option("--picture", type=click.Choice(PICTURE_NAMES), help="Only this one of all pictures of a run.")
 @click.option("--list", "listed", is_flag=True, help="Print the columns that there are; draw nothing.")
 @click.option(
     "-o", "--output", metavar="PATH", type=click.Path(path_type=Path),
@@ -65,7 +64,7 @@ def command(
     dem plot SWEEP -x displacement -y load        a curve for each of its runs (dem sweep --keep all)
     """
     from dem_cli.cli import chart
-    from dem_cli.post.chart import ChartOptions
+    from dem_cli.post.chart import CHART_FORMATS, ChartOptions
 
     sweep = holds_sweep(folders)
     if (where or as_map) and not sweep:
@@ -78,7 +77,7 @@ def command(
         draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
         return
     if not sweep and not asked:
-        if options != ChartOptions() or (output is not None and output.suffix.lower() in FORMATS):
+        if options != ChartOptions() or (output is not None and output.suffix.lower() in CHART_FORMATS):
             raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
         draw_pictures(folders[0], output, animate)
         return

@@ -12,12 +12,12 @@ import click
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
-NAME = "report.html"
+PAGE_FILE = "report.html"
 
 
 @click.command("report", short_help="Write one page of HTML with all results.")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help=f"Default: DIR/{NAME}.")
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help=f"Default: DIR/{PAGE_FILE}.")
 @click.option("--open", "show", is_flag=True, help="Open it in the browser.")
 def command(folder: Path, output: Path | None, show: bool) -> None:
     """Write one page of HTML with everything that `dem run` or `dem sweep` left in DIR.
@@ -31,7 +31,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
 
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder")
-    target = output or folder / NAME
+    target = output or folder / PAGE_FILE
     if target.is_dir():
         raise UsageError(f"{target}: a folder; -o takes the name of a file")
     if is_sweep(folder):

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from dem_cli.sweep.run import PlannedSweep, Spread, Summary, SweepJob
 
 TABLE_EVERY = 15.0  # s between two states of sweep.csv while runs go on
-LISTED = 8  # failed runs that are shown
-LONGEST = 40  # letters of a value
+MOST_FAILURES = 8  # failed runs that are shown
+LONGEST_VALUE = 40  # letters of a value
 SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 
 
@@ -245,7 +245,7 @@ def brief(value: Any) -> str:
     from dem_cli.sweep.plan import show_value
 
     text = f"{value:.6g}" if isinstance(value, float) else show_value(value)
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 1] + "…"
 
 
 def told(found: dict[str, Any], folder: Path) -> str:
@@ -255,11 +255,11 @@ def told(found: dict[str, Any], folder: Path) -> str:
     lines = [found["title"] or "sweep"]
     lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved, {found['failed']:,} failed"
                  + (f", {found['waiting']:,} not done yet" if found["waiting"] else ""))  # fmt: skip
-    for row in found["failures"][:LISTED]:
+    for row in found["failures"][:MOST_FAILURES]:
         values = ", ".join(f"{key} = {brief(row[key])}" for key in found["keys"])
         lines.append(f"  failed    {row['run']} ({values}): {row['reason']}")
-    if found["failed"] > LISTED:
-        lines.append(f"            and {found['failed'] - LISTED:,} more in sweep.csv")
+    if found["failed"] > MOST_FAILURES:
+        lines.append(f"            and {found['failed'] - MOST_FAILURES:,} more in sweep.csv")
     where = shown(folder.resolve())
     lines.append(f"  results   {where}/sweep.csv, sweep.sqlite, runs/ ({console.seconds(found['wall_seconds'])})")
     return "\n".join(lines)

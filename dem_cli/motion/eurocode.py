@@ -23,7 +23,7 @@ SOILS = {  # type -> ground type -> S, TB, TC, TD [s]: EN 1998-1, tables 3.2 and
         "E": (1.6, 0.05, 0.25, 1.2),
     },
 }
-LONGEST = 4.0  # s: up to here EN 1998-1 3.2.2.2 gives the spectrum; beyond, its last branch goes on
+LONGEST_PERIOD = 4.0  # s: up to here EN 1998-1 3.2.2.2 gives the spectrum; beyond, its last branch goes on
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from dem_cli.motion.table import (
     PulseTable,
     RecordTable,
 )
-from dem_cli.motion.units import STANDARD_GRAVITY, UNITS
+from dem_cli.motion.units import SI_FACTORS, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -121,7 +121,7 @@ def _record(table: RecordTable, i_table: int) -> Accelerogram:
     except RecordError as error:
         raise CaseError([CaseProblem(("motion", i_table, "file"), str(error))]) from None
     unit = _unit_of(table, series.quantity, series.unit, i_table)
-    made = record(series.times, UNITS[table.quantity][unit] * series.values, table.quantity, table.baseline_order)
+    made = record(series.times, SI_FACTORS[table.quantity][unit] * series.values, table.quantity, table.baseline_order)
     if made.peak == 0.0:
         message = f"{Path(table.file).name}: no motion, every {table.quantity} is the same"
         raise CaseError([CaseProblem(("motion", i_table, "file"), message)])
@@ -131,14 +131,14 @@ def _record(table: RecordTable, i_table: int) -> Accelerogram:
 
 def _unit_of(table: RecordTable, quantity: str | None, unit: str | None, i_table: int) -> str:
     """The unit of a record, as the case or else the file says. Raises CaseError where they disagree or are silent."""
-    name, allowed = Path(table.file).name, ", ".join(f"'{unit}'" for unit in UNITS[table.quantity])
+    name, allowed = Path(table.file).name, ", ".join(f"'{unit}'" for unit in SI_FACTORS[table.quantity])
     if quantity is not None and quantity != table.quantity:
         message = f"'{table.quantity}' is not allowed; {name} says that it holds {quantity}"
         raise CaseError([CaseProblem(("motion", i_table, "quantity"), message)])
     if (found := table.unit or unit) is None:
         message = f"missing; {name} does not say what its values are in (allowed: {allowed})"
         raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
-    factors = UNITS[table.quantity]
+    factors = SI_FACTORS[table.quantity]
     if table.unit is not None and unit is not None and factors[table.unit] != factors[unit]:
         message = f"'{table.unit}' is not allowed; {name} says that its values are in {unit}"
         raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
@@ -150,7 +150,7 @@ def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> Non
     if table.scale is not None or table.peak is not None or WEAKEST <= peak <= STRONGEST:
         return
     message = f"'{unit}' gives a peak acceleration of {peak:.3g} g"
-    factors = UNITS[table.quantity]
+    factors = SI_FACTORS[table.quantity]
     others = {other: peak * factor / factors[unit] for other, factor in factors.items()}
     likely = [f"'{other}' would give {g:.3g} g" for other, g in others.items() if LIKELY[0] <= g <= LIKELY[1]]
     message += f"; {' and '.join(likely)}" if likely else ""

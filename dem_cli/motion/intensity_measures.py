@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.motion.eurocode import LONGEST, TargetSpectrum
+from dem_cli.motion.eurocode import LONGEST_PERIOD, TargetSpectrum
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
 from dem_cli.motion.units import STANDARD_GRAVITY
@@ -16,7 +16,7 @@ SIGNIFICANT = (0.05, 0.95)  # shares of the Arias intensity between which the st
 SHORTEST = 0.04  # s: where a comparison with a spectrum begins when T1 is not known
 PERIODS = 100  # of a comparison
 LEAST_MEAN = 0.90  # EN 1998-1 3.2.3.1.2(4)c
-MOST = 100_000  # samples
+MOST_SAMPLES = 100_000  # samples
 
 
 class IntensityMeasures(NamedTuple):
@@ -42,7 +42,7 @@ class SpectrumFit(NamedTuple):
 
 def strength(motion: Motion) -> IntensityMeasures:
     """Measures of a motion, from samples as close as it is made of."""
-    times = motion.times(MOST)
+    times = motion.times(MOST_SAMPLES)
     acceleration = motion.acceleration(times)
     growth = np.diff(times) * 0.5 * (acceleration[1:] ** 2 + acceleration[:-1] ** 2)
     energy = np.concatenate(([0.0], np.cumsum(growth)))
@@ -59,7 +59,7 @@ def strength(motion: Motion) -> IntensityMeasures:
 
 def compared_periods(first_period: float | None = None) -> np.ndarray:
     """Periods at which Eurocode 8 compares, 0.2 T1 to 2 T1; where T1 is not known, 0.04 s to 4 s, (n,)."""
-    low, high = (SHORTEST, LONGEST) if first_period is None else (0.2 * first_period, 2.0 * first_period)
+    low, high = (SHORTEST, LONGEST_PERIOD) if first_period is None else (0.2 * first_period, 2.0 * first_period)
     return np.geomspace(low, high, PERIODS)
 
 
@@ -77,7 +77,7 @@ def spectra(motions: Sequence[Motion], periods: np.ndarray, damping: float) -> n
     """Pseudo-acceleration of each motion [m/s2], (n_motions, n_periods)."""
     found = []
     for motion in motions:
-        times = motion.times(MOST)
+        times = motion.times(MOST_SAMPLES)
         history = motion.acceleration(times)
         found.append(response_spectrum(history, times[1] - times[0], periods, damping).pseudo_acceleration)
     return np.array(found)

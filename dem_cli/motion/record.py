@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-QUANTITIES = ("acceleration", "velocity", "displacement")
+MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 BASELINE = 1  # order for baseline = true
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-POINTS = 60  # samples per period at least; crests between them are found by a cubic
+SAMPLES_PER_PERIOD = 60  # samples per period at least; crests between them are found by a cubic
 
 TERMS = 16  # of the series of exp(x), |x| ≤ 0.5: the next one is below 1e-18
 
@@ -40,7 +40,7 @@ def periods(shortest: float = 0.02, longest: float = 4.0, count: int = 120) -> n
 
 
 def response_spectrum(
-    accelerations: np.ndarray, step: float, periods: np.ndarray, damping: float = 0.05, points: int = POINTS
+    accelerations: np.ndarray, step: float, periods: np.ndarray, damping: float = 0.05, points: int = SAMPLES_PER_PERIOD
 ) -> ResponseSpectrum:
     """Spectrum of one or several records: while they last, and in the free vibration after them.
 
@@ -60,7 +60,7 @@ def response_spectrum(
         u, v = responses(finer[division], oscillator(omega, damping, step / division))
         after = free_vibration(u[..., -1:], v[..., -1:], omega, damping)
         during = _peaks(u, v, finer[division], omega, damping, step / division)
-        peaks[..., k] = np.maximum(during, _peaks(*after, 0.0, omega, damping, period / POINTS))
+        peaks[..., k] = np.maximum(during, _peaks(*after, 0.0, omega, damping, period / SAMPLES_PER_PERIOD))
     frequencies = 2.0 * np.pi / np.asarray(periods)
     return ResponseSpectrum(np.asarray(periods), peaks[0], peaks[1], peaks[2], frequencies**2 * peaks[0])
 
@@ -151,7 +151,7 @@ def responses(accelerations: np.ndarray, one: OscillatorFilter) -> tuple[np.ndar
 def free_vibration(u: np.ndarray, v: np.ndarray, omega: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacement and velocity over the period after a state (..., 1), without acceleration, (..., POINTS + 1)."""
     damped, rate = omega * np.sqrt(1.0 - damping * damping), damping * omega
-    times = np.linspace(0.0, 2.0 * np.pi / omega, POINTS + 1)
+    times = np.linspace(0.0, 2.0 * np.pi / omega, SAMPLES_PER_PERIOD + 1)
     decay, cosine, sine = np.exp(-rate * times), np.cos(damped * times), np.sin(damped * times)
     return (
         decay * (u * cosine + (v + rate * u) / damped * sine),

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dem_cli.motion.table import ArtificialTable
 
 Return = Callable[[np.ndarray], np.ndarray]  # of histories (..., n) to rest
-LOWEST, HIGHEST = 0.10, 35.0  # Hz: sines of the motion
+LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 0.10, 35.0  # Hz: sines of the motion
 EQUIVALENT = 10.0  # s: of stationary motion that the power spectrum is for
 QUANTILE = 0.5  # chance that the peak response stays below the spectrum
 CONTROLLED = (0.03, 4.0)  # s: periods at which the spectrum is corrected
@@ -87,7 +87,7 @@ def accelerograms(
     and where its peak is below that of the target it is raised to it by a short wavelet.
     """
     step, n = times[1] - times[0], len(times) - 1
-    orders = np.arange(int(np.ceil(LOWEST * times[-1])), int(HIGHEST * times[-1]) + 1)
+    orders = np.arange(int(np.ceil(LOWEST_FREQUENCY * times[-1])), int(HIGHEST_FREQUENCY * times[-1]) + 1)
     orders = orders[orders <= n // 2 - 1]
     omegas = 2.0 * np.pi / times[-1] * orders
     amplitudes = np.sqrt(2.0 * power_spectrum(target, omegas) * (omegas[1] - omegas[0]))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dem_cli.output.record import HistoryRow
-from dem_cli.output.series import UNITS
+from dem_cli.output.series import MONITOR_UNITS
 
 PARTS = ("value", "load", "unit")  # what is said of a monitor
 AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium
@@ -16,7 +16,7 @@ class EquilibriumMonitors:
     """Remembers the monitors of a run, equilibrium by equilibrium."""
 
     def __init__(self, names: Sequence[str], quantities: Sequence[str]):
-        self.names, self.units = tuple(names), [UNITS[quantity] for quantity in quantities]
+        self.names, self.units = tuple(names), [MONITOR_UNITS[quantity] for quantity in quantities]
         self._rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:

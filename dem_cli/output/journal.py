@@ -16,7 +16,7 @@ from typing import Any
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import JOURNAL, locked, write_error
 
-FORMAT = 1
+JOURNAL_FORMAT = 1
 Key = tuple[Any, ...]
 Values = tuple[Any, ...]
 
@@ -58,7 +58,7 @@ class Journal:
             self._begin()
             return
         changed = [word for word in self.what if header.get("what", {}).get(word) != self.what[word]]
-        if header.get("format") != FORMAT or changed:
+        if header.get("format") != JOURNAL_FORMAT or changed:
             if resume:
                 words = " and ".join(changed) or "the format of the journal"
                 raise UsageError(
@@ -82,7 +82,7 @@ class Journal:
         self._ours = True
         os.ftruncate(self._file, 0)
         os.lseek(self._file, 0, os.SEEK_SET)
-        self._write({"format": FORMAT, "what": self.what})
+        self._write({"format": JOURNAL_FORMAT, "what": self.what})
 
     def known(self) -> Mapping[Key, Values]:
         """Runs that were finished before."""

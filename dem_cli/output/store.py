@@ -33,7 +33,7 @@ from dem_cli.output.summary import write_summary
 from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
-FORMAT = 1
+RESULTS_FORMAT = 1
 RESULTS, CONTACTS, CASE, HISTORY = "results.h5", "contacts.vtkhdf", "case.toml", "history.csv"
 ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time")
 FRAME_SCALARS = ("step", "load", "displacement", "time")
@@ -77,7 +77,7 @@ class ResultWriter:
         (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
         file = self._open(RESULTS)
         self.dem = dem = file.create_group("dem")
-        dem.attrs["format"] = FORMAT
+        dem.attrs["format"] = RESULTS_FORMAT
         dem.attrs["kind"] = self.kind
         dem.attrs["status"] = "running"
         dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)

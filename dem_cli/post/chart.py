@@ -17,7 +17,7 @@ from dem_cli.post.labels import Quantity
 COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#8250a8", "#c51b7d", "#5aa0d8", "#a6761d", "#7c7c86")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)))
 MARKERS = "osD^vPX"
-FORMATS = (".png", ".svg", ".pdf")
+CHART_FORMATS = (".png", ".svg", ".pdf")
 SIZE = (7.4, 4.6)  # inches
 MOST_NAMES = 8  # in a legend: more numbers become a colour bar
 _PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
@@ -119,5 +119,7 @@ def title(figure: Any, text: str) -> None:
 
 def check_format(path: Path) -> None:
     """UsageError where matplotlib would not know what to write."""
-    if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"-o {path}: the name of a chart has to end in {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    if path.suffix.lower() not in CHART_FORMATS:
+        raise UsageError(
+            f"-o {path}: the name of a chart has to end in {', '.join(CHART_FORMATS[:-1])} or {CHART_FORMATS[-1]}"
+        )

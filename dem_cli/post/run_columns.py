@@ -9,11 +9,11 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
-from dem_cli.output.series import BASE, UNITS, HistorySeries
+from dem_cli.output.series import BASE, MONITOR_UNITS, HistorySeries
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post.labels import KNOWN, Quantity, nearest, unknown
+from dem_cli.post.labels import KNOWN_QUANTITIES, Quantity, nearest, unknown
 
-DAMPING = 0.05  # of response spectra
+SPECTRUM_DAMPING = 0.05  # of response spectra
 PERIOD, SPECTRAL = "period", "spectral acceleration"
 _HISTORY = ("load", "displacement", "time", "step", "unbalanced", "overlap")
 _AXES = "xyz"
@@ -51,11 +51,11 @@ def tables(results: Results) -> list[ColumnTable]:
 def _history(results: Results) -> ColumnTable:
     history = results.history
     held = {name: history[name] for name in _HISTORY if name in history and history[name].any()}
-    quantities = {name: KNOWN[name] for name in held}
+    quantities = {name: KNOWN_QUANTITIES[name] for name in held}
     said = results.summary.get("monitors") or {}
     series = results.series.quantities if results.series is not None else {}
     for name, values in results.monitors.items():
-        unit = str((said.get(name) or {}).get("unit", "")) or UNITS.get(series.get(name, ""), "")
+        unit = str((said.get(name) or {}).get("unit", "")) or MONITOR_UNITS.get(series.get(name, ""), "")
         held[name], quantities[name] = values, Quantity(name, unit)
     for name, values in results.energy.items():
         if values.any():
@@ -67,11 +67,11 @@ def _history(results: Results) -> ColumnTable:
 
 def _series(series: HistorySeries) -> ColumnTable:
     held = {"time": series.time}
-    quantities = {"time": KNOWN["time"]}
+    quantities = {"time": KNOWN_QUANTITIES["time"]}
     for name, (i, k) in _base(series).items():
-        held[name], quantities[name] = series.base[:, i, k], Quantity(name, UNITS[BASE[i]])
+        held[name], quantities[name] = series.base[:, i, k], Quantity(name, MONITOR_UNITS[BASE[i]])
     for name, values in series.monitors.items():
-        held[name], quantities[name] = values, Quantity(name, UNITS[series.quantities[name]])
+        held[name], quantities[name] = values, Quantity(name, MONITOR_UNITS[series.quantities[name]])
     return ColumnTable("time history", quantities, held.__getitem__, np.zeros(0, dtype=int))
 
 
@@ -89,7 +89,7 @@ def _spectra(series: HistorySeries) -> ColumnTable:
     for name, kind in series.quantities.items():
         if kind == "absolute acceleration" and series.monitors[name].min(initial=0.0) < 0.0:  # no magnitude
             sources[f"{SPECTRAL} of {name}"] = series.monitors[name]
-    words = f"{100 * DAMPING:g} % damping"
+    words = f"{100 * SPECTRUM_DAMPING:g} % damping"
     quantities = {PERIOD: Quantity("period", "s")}
     quantities |= {name: Quantity(f"pseudo-{name.replace('spectral ', '')}, {words}", "m/s2") for name in sources}
     step = float(series.time[1] - series.time[0])
@@ -101,7 +101,7 @@ def _spectra(series: HistorySeries) -> ColumnTable:
         if name == PERIOD:
             return at
         whole = np.where(np.isfinite(sources[name]), sources[name], 0.0)
-        return response_spectrum(whole, step, at, DAMPING).pseudo_acceleration.ravel()
+        return response_spectrum(whole, step, at, SPECTRUM_DAMPING).pseudo_acceleration.ravel()
 
     return ColumnTable("response spectra", quantities if sources else {}, values, np.zeros(0, dtype=int))
 

@@ -15,8 +15,8 @@ from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import periods
 from dem_cli.post import style
 
-DAMPING = 0.05  # of spectra without a target
-POINTS = 4000  # of a curve
+SPECTRUM_DAMPING = 0.05  # of spectra without a target
+CURVE_POINTS = 4000  # of a curve
 _WIDTH = 7.4  # inch
 _TITLE: dict[str, Any] = {"x": 0.01, "ha": "left", "fontsize": 12, "fontweight": "bold"}
 _ROWS = (("acceleration", "m/s²"), ("velocity", "m/s"), ("displacement", "m"))
@@ -43,7 +43,7 @@ def draw_spectra(suites: Sequence[MotionSuite], path: Path, title: str = "") -> 
 
 def _draw_suite(axis: Any, suite: MotionSuite) -> None:
     motions, target = suite.motions, suite.target
-    at, damping = periods(), DAMPING if target is None else target.damping
+    at, damping = periods(), SPECTRUM_DAMPING if target is None else target.damping
     values = spectra(motions, at, damping)
     alone = len(motions) == 1
     for i, row in enumerate(values):
@@ -96,7 +96,7 @@ def _fitted(text: str) -> str:
 def _times(motion: Motion, end: float) -> np.ndarray:
     """Samples close enough for the picture, and the end of the longest motion."""
     own = motion.times()
-    many = own if len(own) >= POINTS else np.linspace(motion.start, motion.duration, POINTS)
+    many = own if len(own) >= CURVE_POINTS else np.linspace(motion.start, motion.duration, CURVE_POINTS)
     before = [0.0, motion.start * (1.0 - 1e-9)] if motion.start > 0.0 else []  # so that a jump is upright
     after = [motion.duration * (1.0 + 1e-9), end] if end > motion.duration else []
     return np.concatenate((before, many, after))

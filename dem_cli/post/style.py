@@ -72,7 +72,7 @@ def canvas() -> Iterator[Callable[..., Any]]:
         FigureCanvasAgg(drawn)
         return drawn
 
-    with matplotlib.rc_context(_STYLE | verbatim_figure.STYLE), warnings.catch_warnings():
+    with matplotlib.rc_context(_STYLE | verbatim_figure.VERBATIM_STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # in the font: a box stands there
         yield make
 

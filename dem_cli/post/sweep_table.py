@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
-from dem_cli.output.sweep_files import CSV, FACTS, FIRST
+from dem_cli.output.sweep_files import CSV, FACTS, IDENTITY_COLUMNS
 from dem_cli.post.labels import nearest, plain, unknown
 
-ANSWERS = (  # what is drawn where nobody says: the first of these that has values
+ANSWER_COLUMNS = (  # what is drawn where nobody says: the first of these that has values
     "failure_load", "safety_factor", "critical_value", "median", "collapsed", "collapse_time",
 )  # fmt: skip
 
@@ -30,7 +30,7 @@ class SweepTable:
     @property
     def names(self) -> list[str]:
         """All columns but those that only tell runs apart."""
-        return [name for name in self.columns if name not in FIRST]
+        return [name for name in self.columns if name not in IDENTITY_COLUMNS]
 
     @property
     def count(self) -> int:
@@ -62,7 +62,7 @@ class SweepTable:
         """The column that matters most. Raises UsageError."""
         peaks = [name for name in self.names if name.startswith("peaks.") and name.endswith(".peak")]
         values = [name for name in self.names if name.startswith("monitors.") and name.endswith(".value")]
-        for name in (*ANSWERS, *peaks, *values):
+        for name in (*ANSWER_COLUMNS, *peaks, *values):
             if any(value is not None for value in self.columns.get(name, ())):
                 return name
         why = "no column is the answer; choose one with -y (--list shows all)" if "ok" in self.columns["status"] else (

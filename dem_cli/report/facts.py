@@ -14,7 +14,7 @@ from dem_cli.output.store import IN_SECONDS
 from dem_cli.output.vertices import rest_vertices
 from dem_cli.post import style
 
-KINDS = {
+KIND_TITLES = {
     "pushover": "Pushover", "gravity": "Own weight", "settlement": "Settlement", "cycle": "Load path",
     "time-history": "Time history", "fragility": "Fragility", "modes": "Natural modes", "safety": "Factor of safety",
     "limit": "Limit analysis",

@@ -13,7 +13,7 @@ from dem_cli.output.reader import Results, read
 from dem_cli.output.store import CASE, RESULTS
 from dem_cli.post.run_pictures import PICTURES, has_data
 from dem_cli.report.charts import charts
-from dem_cli.report.facts import KINDS, all_numbers, answer, audit, model_rows
+from dem_cli.report.facts import KIND_TITLES, all_numbers, answer, audit, model_rows
 from dem_cli.report.page import render
 from dem_cli.report.view import view
 
@@ -39,7 +39,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
     return render(
         {"view": scene, "charts": drawn},
         title=str(summary.get("title") or folder.resolve().name),
-        kind=KINDS.get(str(summary.get("kind")), "Run"),
+        kind=KIND_TITLES.get(str(summary.get("kind")), "Run"),
         answer=answer(summary),
         verdicts=said.verdicts,
         warnings=[str(text) for text in summary.get("warnings") or ()],

@@ -25,7 +25,7 @@ from dem_cli.report.packed_arrays import pack
 MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
 MODE = "mode"  # stage of frames that show natural modes
-SHAPES = frozenset(("modes", "limit"))  # kinds whose displacements have no size
+SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no size
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _FAINT = len(STATES)  # the code of these
 _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
@@ -60,7 +60,7 @@ def view(results: Results) -> dict[str, Any]:
         "start": _first_shown(chosen, results.summary),
         "in_seconds": results.kind in IN_SECONDS,
         "modes": chosen[0].stage == MODE,
-        "of_any_size": results.kind in SHAPES,
+        "of_any_size": results.kind in SHAPE_KINDS,
         "still": chosen[0].stage == AS_BUILT,
         "ground": in_space(np.stack([stage.ground(series, frame) for frame in chosen])).tolist(),
         "ground_moves": series is not None and bool(series.base[:, 2].any()),
@@ -147,7 +147,7 @@ def _says(frame: Frame, results: Results) -> str:
         return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
     if results.kind in IN_SECONDS:
         return f"{frame.time:.3f} s"
-    loaded = results.history.get("load", np.zeros(0)).any() or results.kind in SHAPES
+    loaded = results.history.get("load", np.zeros(0)).any() or results.kind in SHAPE_KINDS
     return f"λ = {frame.load:.4g}".replace("-", "−") if loaded else ""
 
 

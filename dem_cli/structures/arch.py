@@ -96,14 +96,14 @@ class Arch(StructureBase):
                 raise KeyProblem(f"not used by a {self.shape} arch, which is given by {', '.join(keys)}", key)
         if self.columns and self.buttresses:
             raise KeyProblem("an arch stands on columns or on buttresses, not on both", "buttresses")
-        SHAPES[self.shape](self)
+        SHAPE_JOINTS[self.shape](self)
         if self.piers:
             _check_piers(self, self.piers)
         return self
 
 
 def _check_piers(arch: Arch, piers: Pier) -> None:
-    (inner, outer), key = SHAPES[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
+    (inner, outer), key = SHAPE_JOINTS[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
     if outer[1] < inner[1] - 1e-9 * arch.ring:
         message = f"{arch.included_angle_deg:g} is not allowed; must be at most 180 for an arch on piers"
         raise KeyProblem(message, "included_angle_deg")
@@ -190,7 +190,7 @@ def _flat(arch: Arch) -> np.ndarray:
     return joints
 
 
-SHAPES: dict[str, Callable[[Arch], np.ndarray]] = {
+SHAPE_JOINTS: dict[str, Callable[[Arch], np.ndarray]] = {
     "circular": _circular,
     "segmental": _segmental,
     "pointed": _pointed,
@@ -200,7 +200,7 @@ SHAPES: dict[str, Callable[[Arch], np.ndarray]] = {
 
 def build(arch: Arch) -> list[Block]:
     """Blocks in local coordinates: fixed ones, piers left and right from below, voussoirs left to right."""
-    joints = SHAPES[arch.shape](arch)
+    joints = SHAPE_JOINTS[arch.shape](arch)
     if arch.piers:
         joints[:, :, 1] += arch.piers.height
     blocks = _bases(arch, joints) + (_pier_blocks(arch, arch.piers, joints) if arch.piers else [])

@@ -14,7 +14,7 @@ from dem_cli.sweep.identity import program
 from dem_cli.sweep.pool import WorkerDeath
 from dem_cli.sweep.run import Summary, SweepJob
 
-GONE = "the cluster went away; what was done is kept, run the same command again"
+CLUSTER_GONE = "the cluster went away; what was done is kept, run the same command again"
 PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
 
 
@@ -100,12 +100,12 @@ def _asked_for(
             if isinstance(future.exception() if future.status == "error" else None, KilledWorker):
                 yield numbers[future.key], WorkerDeath()
             elif future.cancelled():
-                raise SolverError(GONE)
+                raise SolverError(CLUSTER_GONE)
             else:
                 yield numbers[future.key], future.result()
             future.release()
     except CancelledError:
-        raise SolverError(GONE) from None
+        raise SolverError(CLUSTER_GONE) from None
     except BaseException:
         client.cancel(futures)
         raise

@@ -11,8 +11,8 @@ import numpy as np
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 
-MOST = 1_000_000  # runs: more are a slip, or a case for several sweeps
-EVEN = frozenset(("from", "to", "count", "log"))
+MOST_RUNS = 1_000_000  # runs: more are a slip, or a case for several sweeps
+EVEN_KEYS = frozenset(("from", "to", "count", "log"))
 Fractions = np.ndarray  # (n,), in (0, 1)
 
 
@@ -28,7 +28,7 @@ def _lognormal(median: float, deviation: float, q: Fractions) -> np.ndarray:
     return median * np.exp(deviation * ndtri(q))
 
 
-DRAWN: dict[str, Callable[[float, float, Fractions], np.ndarray]] = {  # quantile functions
+QUANTILES: dict[str, Callable[[float, float, Fractions], np.ndarray]] = {  # quantile functions
     "uniform": lambda low, high, q: low + (high - low) * q,
     "loguniform": lambda low, high, q: low * (high / low) ** q,
     "integers": lambda first, last, q: np.minimum(first + np.floor((last - first + 1) * q), last).astype(np.int64),
@@ -39,7 +39,7 @@ DRAWN: dict[str, Callable[[float, float, Fractions], np.ndarray]] = {  # quantil
 
 def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
     """`{ from = 0.5, to = 1.0, count = 6 }`: both ends are in. Raises CaseError."""
-    for key in form.keys() - EVEN:
+    for key in form.keys() - EVEN_KEYS:
         raise _wrong((*path, key), "unknown key; values at even distances have 'from', 'to', 'count' and 'log'")
     for key in ("from", "to"):
         if not _is_number(form.get(key)):
@@ -47,8 +47,8 @@ def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
     low, high, count, log = form["from"], form["to"], form.get("count"), form.get("log", False)
     if not isinstance(count, int) or isinstance(count, bool) or count < 2:
         raise _wrong(path, "'count' must be a whole number ≥ 2")
-    if count > MOST:
-        raise _wrong(path, f"count = {count} is not allowed; at most {MOST:,}")
+    if count > MOST_RUNS:
+        raise _wrong(path, f"count = {count} is not allowed; at most {MOST_RUNS:,}")
     if not isinstance(log, bool):
         raise _wrong(path, f"log = {show(log)} is not allowed; must be true or false")
     if log and not (low > 0 and high > 0):
@@ -73,7 +73,7 @@ def drawn(path: KeyPath, form: Mapping[str, Any], fractions: Fractions) -> list[
             ", and both > 0" if name == "loguniform" else ""))  # fmt: skip
     if name == "integers" and not all(isinstance(number, int) for number in numbers):
         raise _wrong((*path, name), "must be two whole numbers")
-    return DRAWN[name](a, b, fractions).tolist()
+    return QUANTILES[name](a, b, fractions).tolist()
 
 
 def latin_hypercube(dimensions: int, count: int, seed: int) -> np.ndarray:

@@ -21,7 +21,7 @@ from dem_cli.sweep.plan import SweepPlan, SweepRun
 from dem_cli.sweep.pool import WorkerDeath
 
 FAILED, WAITING = "failed", "waiting"
-FEW = 5  # mistakes that are listed
+MOST_MISTAKES = 5  # mistakes that are listed
 LIGHT = (("output.frames", 0), ("analysis.follow", 0.0))  # what a table of answers does not need
 DIED = "its process died, twice; perhaps for want of memory"
 Summary = Mapping[str, Any]
@@ -70,7 +70,7 @@ def prepared(loaded: LoadedCase, plan: SweepPlan, folder: Path, given: Sequence[
     _buildable(loaded, next(job for job in jobs if job is not None) if len(wrong) < len(jobs) else None)
     mistaken = _mistaken(plan.runs, wrong)
     if mistaken:
-        raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
+        raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:MOST_MISTAKES]])
     return PlannedSweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-DIGITS = 5
-NOTHING = 1e-12  # of the expected value: round-off
+SHOWN_DIGITS = 5
+ROUND_OFF = 1e-12  # of the expected value: round-off
 VERDICTS = {"passed": "passed", "missed": "missed, as known", "failed": "FAILED", "met": "FAILED: met"}
 
 
-def shown(value: Any, digits: int = DIGITS) -> str:
+def shown(value: Any, digits: int = SHOWN_DIGITS) -> str:
     """A number, word, truth or interval."""
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "–"}[value]
@@ -33,7 +33,7 @@ def off(answer: Mapping[str, Any]) -> str:
     if isinstance(answer["value"], list) and value == 0.0:
         return "inside"
     size = max(map(abs, answer["value"])) if isinstance(answer["value"], list) else abs(answer["value"])
-    return "0" if abs(value) <= NOTHING * size else number(value, 2, "+")
+    return "0" if abs(value) <= ROUND_OFF * size else number(value, 2, "+")
 
 
 def share(answer: Mapping[str, Any]) -> float | None:

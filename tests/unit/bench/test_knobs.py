@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dem_cli.bench import constants
-from dem_cli.bench.cases import KNOWN, solve
+from dem_cli.bench.cases import KNOWN_STRUCTURES, solve
 from dem_cli.bench.points import points_per_joint, refined, shares
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation
@@ -23,7 +23,7 @@ def test_tolerance_reaches_names_and_defaults_and_is_given_back():
 
 def test_a_loose_tolerance_overrates_a_column():
     """A claimed equilibrium that is none: the higher the unbalanced force, the higher the load."""
-    known = KNOWN["COL14"]
+    known = KNOWN_STRUCTURES["COL14"]
     case, model = known.build()
     with constants.tolerance(1e-2):
         loose = solve(case, model)["failure_load"]
@@ -32,7 +32,7 @@ def test_a_loose_tolerance_overrates_a_column():
 
 
 def test_shorter_time_steps_need_more_of_them():
-    case, model = KNOWN["T21 μ 0.5"].build()
+    case, model = KNOWN_STRUCTURES["T21 μ 0.5"].build()
     usual = solve(case, model)["steps"]
     with constants.time_step(0.5):
         assert solve(case, model)["steps"] > 1.3 * usual
@@ -58,7 +58,7 @@ def test_places_of_points(layout, places):
 
 
 def test_refined_joints_have_the_same_stiffness_and_ends():
-    case, model = KNOWN["T21 μ 0.6"].build()
+    case, model = KNOWN_STRUCTURES["T21 μ 0.6"].build()
     sim = Simulation(model, law_of(case), joint_properties(case, model))
     joints, contacts = refined(sim.joints, sim.contacts, shares("5"))
     n = len(sim.joints.blocks)
@@ -73,7 +73,7 @@ def test_refined_joints_have_the_same_stiffness_and_ends():
 
 def test_points_at_the_ends_are_exact_and_points_inside_are_not():
     """A wall that rocks about the ends of its joints; two points in the quarters halve its width."""
-    known = KNOWN["T21 μ 1"]
+    known = KNOWN_STRUCTURES["T21 μ 1"]
     case, model = known.build("analysis.resolution=0.01")
     with points_per_joint("3"):
         assert abs(known.error(solve(case, model)["failure_load"])) < 0.01
