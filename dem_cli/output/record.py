@@ -114,44 +114,35 @@ def distinct(names: Iterable[str]) -> list[str]:
 
 
 class Observer(Protocol):
-    """Who a solver reports to while it runs; all return at once and never change the state."""
+    """Who a solver reports to while it runs; all return at once and never change the state.
+
+    What a subclass does not override is let go: each method has a body, so that none of them is abstract.
+    """
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""
+        return
 
     def row(self, row: HistoryRow) -> None:
         """A row of the history to keep."""
+        return
 
     def samples(self, samples: Samples) -> None:
         """A stretch of a time history to keep; follows the one before."""
+        return
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
+        return
 
     def structure(self, model: Model) -> None:
         """The structure that all frames show, where it is another one than that of the case; before any of them."""
+        return
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """All runs of an analysis that consists of many, at its end."""
+        return
 
 
-class SilentObserver:
+class SilentObserver(Observer):
     """An observer that keeps nothing; a subclass overrides what it listens to."""
-
-    def frame(self, frame: Frame) -> None:
-        """Let a snapshot go."""
-
-    def row(self, row: HistoryRow) -> None:
-        """Let a row of the history go."""
-
-    def samples(self, samples: Samples) -> None:
-        """Let a stretch of a time history go."""
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Say nothing of where the run stands."""
-
-    def structure(self, model: Model) -> None:
-        """Let another structure go."""
-
-    def runs(self, rows: Sequence[RunRow]) -> None:
-        """Let the runs go."""
