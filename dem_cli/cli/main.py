@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -65,11 +64,11 @@ class LazyGroup(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 
-    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> None:  # type: ignore[override]
+    def main(self, *args: Any, **options: Any) -> Any:
         """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
-        extra["standalone_mode"] = False
+        options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
         try:
-            code = super().main(args=args, prog_name=prog_name or "dem", **extra)
+            code = super().main(*args, **options)
             sys.stdout.flush()
         except click.ClickException as error:
             error.show()
