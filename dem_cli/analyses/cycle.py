@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
@@ -37,7 +38,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         found["status"] = "not converged"
         job.warnings.append(str(error))
     track.flush()
-    return job.outcome([sim], found | {"largest_displacement": sim.largest_displacement()})
+    return job.outcome([sim], found | {"largest_displacement": measures.largest_displacement(sim)})
 
 
 def loads_between(start: float, end: float, step: float) -> np.ndarray:
@@ -54,7 +55,9 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     for turn, target in enumerate(analysis.path):
         for next_load in loads_between(load, target / sim.live_scale, step):
             share = turn / len(analysis.path)
-            track.observer.progress("on the path", next_load * sim.live_scale, sim.largest_displacement(), share)
+            track.observer.progress(
+                "on the path", next_load * sim.live_scale, measures.largest_displacement(sim), share
+            )
             verdict = settle_or_fail(sim, next_load, job.budget, elastic * max(abs(next_load), step))
             if verdict.state != "equilibrium":
                 found |= {"status": FAILS, "failure_load": next_load * sim.live_scale}
@@ -64,5 +67,5 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
             track.write("loading")
             load = next_load
         track.frame("loading")
-        found["turning_points"].append({"load": target, "displacement": sim.largest_displacement()})
+        found["turning_points"].append({"load": target, "displacement": measures.largest_displacement(sim)})
     found["status"] = "ok"

@@ -146,7 +146,7 @@ def _time_step(sim: Simulation) -> str:
     inverse = sim.loads.inverse_masses[:, 0]
     ratio = np.where(model.fixed, 0.0, 1.0 / np.where(inverse > 0.0, inverse, 1.0)) / model.masses
     block = _largest(ratio)
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     touching = np.flatnonzero((joints.blocks[owner] == block).any(axis=1))
     text = "1 (quasi-static, fictitious masses: no block limits it)"
     if not len(touching):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
@@ -25,4 +26,4 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
         status = "not converged"
         job.warnings.append(str(error))
     track.flush()
-    return job.outcome([sim], {"status": status, "largest_displacement": sim.largest_displacement()})
+    return job.outcome([sim], {"status": status, "largest_displacement": measures.largest_displacement(sim)})

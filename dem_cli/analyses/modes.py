@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.simulation import Simulation
@@ -116,7 +117,7 @@ def touching_points(sim: Simulation) -> np.ndarray:
 def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
     """Whether a point that is not pressed carries tension when it is pulled a little, (n_points,) bool."""
     joints, contacts, memory = sim.joints, sim.measured(), sim.contacts.memory.copy()
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     still = (0.0,) * (sim.model.dimension - 1)
     holds = np.zeros(len(joints.kn), bool)
     for i in points:
@@ -136,7 +137,7 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
     turn = float(np.abs(shape[:, d:]).max())
     amplitude = min(VISIBLE * size / reach.max(), LARGEST_TURN / turn if turn > 0.0 else math.inf)
-    rest = sim.frame("mode")
+    rest = measures.frame(sim, "mode")
     return rest._replace(
         step=number,
         displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
@@ -170,7 +171,7 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
     """
     wanted = job.case.analysis
     tried: list[float] = []
-    factor, found, sinks = 1.0, computed, sim.largest_overlap() / sim.smallest
+    factor, found, sinks = 1.0, computed, measures.largest_overlap(sim) / sim.smallest
     while len(tried) < ROUNDS and abs(found / wanted.measured - 1.0) > AGREES:
         factor *= (wanted.measured / found) ** 2
         frequency = _frequency_with(job, sim, factor) if sinks / factor < SINKS else None

@@ -160,7 +160,7 @@ def _fall(job: Job, sim: Simulation, search: FailureSearch) -> tuple[Simulation,
     if not by_load:
         ratio, softer = post_peak.softness(job.case, search.elastic, load, sim.smallest, until)
     falling = job.simulation("large", ratio)
-    falling.steps = sim.steps
+    falling.count_from(sim.steps)
     fast = search.compliance * softer / post_peak.STEPS
     rate = min(fast, search.compliance / search.elastic * until / post_peak.FEWEST)
     try:

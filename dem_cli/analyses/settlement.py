@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.assembly.assemble import assembly
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.simulation import Simulation
@@ -45,7 +45,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
     except SolverError as error:
         status = "not converged"
         job.warnings.append(str(error))
-    return job.outcome([sim], {"status": status, "largest_displacement": sim.largest_displacement()})
+    return job.outcome([sim], {"status": status, "largest_displacement": measures.largest_displacement(sim)})
 
 
 def stiffness_ratio(model: Model) -> float:
@@ -55,7 +55,7 @@ def stiffness_ratio(model: Model) -> float:
 
 def _motions(case: Case, sim: Simulation) -> np.ndarray:
     """Whole movement of every block, zero but for the settling supports, (n_blocks, n_dof) [m, rad]."""
-    names = assembly(case).block_map
+    names = sim.model.numbers
     motion = np.zeros_like(sim.bodies.velocities)
     for table in case.settlement:
         motion[names[table.block]] += [*table.displacement, table.rotation]
@@ -67,13 +67,13 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     motion = _motions(case, sim)
     reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
     largest = float(np.abs(motion * reach).max())
-    elastic = max(sim.largest_displacement(), 1e-9 * sim.smallest)
+    elastic = max(measures.largest_displacement(sim), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (PER_STEP * elastic), FEWEST) / ROWS)), 1)
     every = max(ROWS // max(case.output.frames - 2, 1), 1)
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
     sim.limit_speed(max(FALL * sim.smallest, 20.0 * largest / (chunk * ROWS)))
-    sim.bodies.velocities[sim.model.fixed] = (motion / (chunk * ROWS))[sim.model.fixed]
+    sim.move_supports(motion / (chunk * ROWS))
     for number in range(1, ROWS + 1):
         sim.advance(chunk, slot.HOLD_LOAD)
         budget.spend(chunk, "moving the supports")
@@ -81,9 +81,9 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
         track.write("settlement")
         if number % every == 0:
             track.frame("settlement")
-        track.observer.progress("settlement", number / ROWS, sim.largest_displacement(), 0.95 * number / ROWS)
-    sim.bodies.velocities[sim.model.fixed] = 0.0
-    verdict = settle_or_fail(sim, 0.0, budget, sim.dead_scale())
+        track.observer.progress("settlement", number / ROWS, measures.largest_displacement(sim), 0.95 * number / ROWS)
+    sim.move_supports(np.zeros_like(motion))
+    verdict = settle_or_fail(sim, 0.0, budget, measures.dead_scale(sim))
     track.write("settlement")
     track.frame("settlement")
     return "ok" if verdict.state == "equilibrium" else "collapsed under the settlement"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from dem_cli.case.base import KeyProblem
 from dem_cli.case.cross_references import check_names
 from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry import polygon
+from dem_cli.geometry.rotation import cross
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
@@ -26,7 +27,6 @@ class Assembly(NamedTuple):
 
     model: Model
     blocks: tuple[Block, ...]  # in the order of the model
-    block_map: dict[str, int]  # id or alias ("top-right") -> number of the block
     doubts: tuple[CaseProblem, ...] = ()  # what is allowed, but looks like a slip
 
 
@@ -47,18 +47,16 @@ def assemble(case: Case) -> Model:
 def assembly(case: Case) -> Assembly:
     """Model, blocks and names of a case. Raises CaseError: impossible shapes, names twice, unknown blocks."""
     blocks, names = case_blocks(case)
-    number = {block.id: i for i, block in enumerate(blocks)}
-    block_map = number | {alias: number[name] for alias, name in names.items() if alias not in number}
-    problems = check_names(case, block_map, [block.fixed for block in blocks])
+    body = _bodies(case, blocks, names)
+    problems = check_names(case, body.numbers, [block.fixed for block in blocks])
     if problems:
         raise CaseError(problems)
-    body = _bodies(case, blocks)
     doubts: list[CaseProblem] = []
     if case.imperfection:  # names and numbers are those of the blocks as drawn
-        blocks, doubts = imperfect(case, body, blocks, block_map)
-        body = _bodies(case, blocks)
-    loads = _point_loads(case, block_map, body.centroids)
-    return Assembly(_with_loads(case, body, loads), tuple(blocks), block_map, tuple(doubts))
+        blocks, doubts = imperfect(case, body, blocks)
+        body = _bodies(case, blocks, names)
+    loads = _point_loads(case, body)
+    return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts))
 
 
 def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
@@ -131,8 +129,8 @@ def _sorted(blocks: list[Block]) -> list[Block]:
     return [blocks[i] for i in order]
 
 
-def _bodies(case: Case, blocks: Sequence[Block]) -> Model:
-    """The model with its masses, still without loads."""
+def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Model:
+    """The model with its masses, still without loads; names: aliases of blocks."""
     n = len(blocks)
     parts = [part for block in blocks for part in block.parts]
     part_blocks = np.repeat(np.arange(n), [len(block.parts) for block in blocks])
@@ -160,14 +158,15 @@ def _bodies(case: Case, blocks: Sequence[Block]) -> Model:
         vertices=vertices - areas.centroid[vertex_blocks],
         dead_loads=np.zeros((n, 3)),
         live_loads=np.zeros((n, 3)),
+        aliases=tuple(names.items()),
     )
 
 
-def _point_loads(case: Case, block_map: dict[str, int], centroids: np.ndarray) -> list[PointLoad]:
+def _point_loads(case: Case, model: Model) -> list[PointLoad]:
     loads = []
     for load in case.load:
-        block = block_map[load.block]
-        arm = np.zeros(2) if load.at is None else np.array(load.at) - centroids[block]
+        block = model.numbers[load.block]
+        arm = np.zeros(2) if load.at is None else np.array(load.at) - model.centroids[block]
         loads.append(PointLoad(block, np.array(load.force), arm, load.kind == "dead"))
     return loads
 
@@ -209,6 +208,5 @@ def _resultants(n_blocks: int, loads: Sequence[PointLoad]) -> np.ndarray:
     """Forces and moments about the centroids, (n_blocks, 3) [N, N m]."""
     total = np.zeros((n_blocks, 3))
     for load in loads:
-        moment = load.arm[0] * load.force[1] - load.arm[1] * load.force[0]
-        total[load.block] += [load.force[0], load.force[1], moment]
+        total[load.block] += [*load.force, cross(load.arm, load.force)]
     return total

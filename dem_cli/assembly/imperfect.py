@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +14,7 @@ from dem_cli.case.imperfection import drawn
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry import polygon
+from dem_cli.geometry.rotation import turned
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 
@@ -42,7 +43,6 @@ class Site(NamedTuple):
 
     case: Case
     blocks: Sequence[Block]
-    numbers: Mapping[str, int]  # block by id or alias
     model: Model  # of the blocks as drawn
     corners: np.ndarray  # of all blocks as drawn [m], (n_vertices, 2)
     owner: np.ndarray  # block of every corner, (n_vertices,)
@@ -51,18 +51,17 @@ class Site(NamedTuple):
     level: np.ndarray  # blocks that stand upright, (n_blocks,) bool
 
 
-class Result(NamedTuple):
+class Imperfect(NamedTuple):
     blocks: list[Block]  # with errors, in the same order
     doubts: list[CaseProblem]  # what looks like a slip
 
 
-def imperfect(case: Case, model: Model, blocks: Sequence[Block], numbers: Mapping[str, int]) -> Result:
+def imperfect(case: Case, model: Model, blocks: Sequence[Block]) -> Imperfect:
     """The blocks with all errors of the case. Raises CaseError: errors that leave nothing of a block, and the like.
 
-    model    of the blocks as drawn: their order, corners and parts
-    numbers  number of a block by its id or alias
+    model: of the blocks as drawn, their order, names, corners and parts
     """
-    site = _site(case, model, blocks, numbers)
+    site = _site(case, model, blocks)
     problems = [problem for i in range(len(case.imperfection)) for problem in _misplaced(site, i)]
     if problems:
         raise CaseError(problems)
@@ -80,22 +79,21 @@ def imperfect(case: Case, model: Model, blocks: Sequence[Block], numbers: Mappin
     if left:
         corners = _misshapen(site, corners, _sum(site, left))
     parts = iter(np.split(corners, model.part_starts[1:-1]))
-    return Result([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
+    return Imperfect([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
 
 
-def _site(case: Case, model: Model, blocks: Sequence[Block], numbers: Mapping[str, int]) -> Site:
+def _site(case: Case, model: Model, blocks: Sequence[Block]) -> Site:
     structure = np.array([block.path[1] if block.path[0] == "structure" else -1 for block in blocks])
     turns = np.array([*(parameters.rotation for parameters in case.structure), 0.0])
     level = np.array([*(parameters.kind in LEVEL for parameters in case.structure), True])
     corners = np.concatenate([part for block in blocks for part in block.parts])
-    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
-    return Site(case, blocks, numbers, model, corners, owner, structure, turns[structure], level[structure])
+    return Site(case, blocks, model, corners, model.vertex_blocks, structure, turns[structure], level[structure])
 
 
 def _chosen(site: Site, table: Imperfection) -> np.ndarray:
     """Numbers of the blocks that a table is about."""
     if table.block is not None:
-        return np.array([site.numbers[table.block]])
+        return np.array([site.model.numbers[table.block]])
     chosen = ~site.model.fixed
     if table.structure is not None:
         chosen &= site.structure == [parameters.id for parameters in site.case.structure].index(table.structure)
@@ -141,7 +139,7 @@ def _lean(site: Site, low: np.ndarray, blocks: np.ndarray, i: int) -> np.ndarray
     shift = np.zeros(len(blocks))
     for s, structure in enumerate(site.case.structure):
         some = site.structure[blocks] == s
-        heights = low[blocks[some], 1] - _turned(np.array([structure.origin]), -structure.rotation)[0, 1]
+        heights = low[blocks[some], 1] - turned(np.array([structure.origin]), -structure.rotation)[0, 1]
         if structure.kind == "wall":  # pieces beside an opening belong to their course
             levels = structure.levels
             heights = levels[np.searchsorted(levels, heights + 1e-6 * np.diff(levels).min(), "right") - 1]
@@ -160,16 +158,9 @@ def _sum(site: Site, tables: Sequence[Errors]) -> Errors:
     return total
 
 
-def _turned(corners: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
-    """Corners (n, 2) turned about the origin, each by its own angle [rad] or all by one; 0 is exact."""
-    c, s = np.cos(angles), np.sin(angles)
-    x, y = corners.T
-    return np.stack([c * x - s * y, s * x + c * y], axis=1)
-
-
 def _boxes(site: Site, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower left corners and sizes of the boxes around all blocks, in the axes of their structures, (n_blocks, 2)."""
-    local = _turned(corners, -site.turns[site.owner])
+    local = turned(corners, -site.turns[site.owner])
     first = np.searchsorted(site.owner, np.arange(len(site.blocks)))
     low, high = np.minimum.reduceat(local, first), np.maximum.reduceat(local, first)
     return low, high - low
@@ -226,12 +217,12 @@ def _misshapen(site: Site, corners: np.ndarray, errors: Errors) -> np.ndarray:
     row[errors.blocks] = np.arange(len(errors.blocks))
     which = np.flatnonzero(row[site.owner] >= 0)
     k, block = row[site.owner[which]], site.owner[which]
-    local = _turned(corners[which], -site.turns[block])
+    local = turned(corners[which], -site.turns[block])
     right, up = ((local - low[block]) / size[block]).T  # 0 at the left and the foot, 1 opposite
     local[:, 0] += errors.length[k] * (right - 0.5)
     local[:, 1] += up * (errors.height[k] + errors.wedge[k] * right)
     changed = corners.copy()
-    changed[which] = _turned(local + errors.shift[k], site.turns[block])
+    changed[which] = turned(local + errors.shift[k], site.turns[block])
     return changed
 
 
@@ -242,14 +233,14 @@ def _laid(site: Site, corners: np.ndarray, tables: Sequence[Errors]) -> np.ndarr
     largest = max(float(np.abs(field).max(initial=0.0)) for t in tables for field in (t.height, t.length, t.wedge))
     pairs = neighbours(site.model, max(REACH * float(sides.min(initial=1e300)), 4.0 * largest))
     for turn in np.unique(site.turns[free]):
-        order = order_of(site.model, _turned(site.corners, -turn), pairs)
+        order = order_of(site.model, turned(site.corners, -turn), pairs)
         try:
-            moves = lay(site.model, _turned(corners, -turn), order, free & (site.turns == turn))
+            moves = lay(site.model, turned(corners, -turn), order, free & (site.turns == turn))
         except Interlocked as error:
             names = ", ".join(f"'{site.blocks[k].id}'" for k in error.blocks[:3])
             message = f"blocks {names} hold each other and cannot be laid one after the other; give restack = false"
             first = next(i for i, table in enumerate(site.case.imperfection) if table.restack)
             raise CaseError([CaseProblem(("imperfection", first), message)]) from None
         moved = (moves != 0.0).any(axis=1)[site.owner]
-        corners = np.where(moved[:, None], corners + _turned(moves, turn)[site.owner], corners)
+        corners = np.where(moved[:, None], corners + turned(moves, turn)[site.owner], corners)
     return corners

@@ -67,10 +67,9 @@ def lay(model: Model, corners: np.ndarray, order: Order, movable: np.ndarray) ->
     is lifted or lowered until it rests on the highest point of what lies below; without anything below it stays.
     Raises Interlocked.
     """
-    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
     moves = np.zeros((model.n_blocks, 2))
     moves[:, 0] = np.maximum(_moves(model, corners @ MIRROR, order.beside, movable, 0.0), 0.0)
-    pushed = corners + moves[owner]
+    pushed = corners + moves[model.vertex_blocks]
     moves[:, 1] = _moves(model, pushed, order.above, movable, -np.inf)
     return moves
 
@@ -99,5 +98,5 @@ def _moves(model: Model, corners: np.ndarray, pairs: np.ndarray, movable: np.nda
 
 def _small(model: Model, later: np.ndarray, earlier: np.ndarray) -> np.ndarray:
     """What counts as nothing between two parts [m], (n,)."""
-    sizes = polygon.sizes(model.vertices, model.part_starts)
+    sizes = model.parts.sizes
     return polygon.TOLERANCE * np.minimum(sizes[later], sizes[earlier])

@@ -11,6 +11,7 @@ from dem_cli.contact.detect import block_shape, find_joints, world_corners
 from dem_cli.contact.layout import PointLayout, steepest
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
+from dem_cli.geometry.rotation import unturned
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
@@ -71,10 +72,9 @@ def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
     wanted = [(i, monitor.between) for i, monitor in enumerate(case.monitor) if monitor.between is not None]
     if not wanted:
         return []
-    from dem_cli.assembly.assemble import assembly
     from dem_cli.contact.between import StartJoints
 
-    joints, blocks, found = StartJoints(model), assembly(case).block_map, []
+    joints, blocks, found = StartJoints(model), model.numbers, []
     for i, (a, b) in wanted:
         near = joints.neighbours(blocks[a])
         if blocks[b] not in near:
@@ -92,8 +92,7 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     from dem_cli.contact.assemble import END_TO_END, STEEP, overlap_lengths
 
     corners = undeformed(model)
-    sides = polygon.sizes(model.vertices, model.part_starts)
-    faces = find_joints(model, corners, TOUCH * float(sides.min()))
+    faces = find_joints(model, corners, TOUCH * float(model.parts.sizes.min()))
     along = corners[faces.edges[:, 1]] - corners[faces.edges[:, 0]]
     beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
     blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(faces.edges, corners)
@@ -122,8 +121,7 @@ def warnings(model: Model) -> list[str]:
     if not free.any():
         return ["every block is fixed: nothing can move"]
     part = np.nonzero(free[model.part_blocks])[0]
-    sizes = polygon.sizes(model.vertices, model.part_starts)[part]
-    areas = polygon.properties_of_all(model.vertices, model.part_starts).area[part]
+    sizes, areas = model.parts.sizes[part], model.parts.volumes[part]
     names = [model.block_ids[i] for i in model.part_blocks[part]]
     block = np.nonzero(free)[0]
     return [
@@ -169,11 +167,9 @@ def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """Parts without area or not convex."""
-    starts = model.part_starts
-    areas = polygon.properties_of_all(model.vertices, starts).area
-    least = polygon.TOLERANCE * polygon.sizes(model.vertices, starts) ** 2
-    flat = areas <= least
-    bent = ~polygon.are_convex(model.vertices, starts) & ~flat
+    least = polygon.TOLERANCE * model.parts.sizes**2
+    flat = model.parts.volumes <= least
+    bent = ~polygon.are_convex(model.vertices, model.part_starts) & ~flat
     found = []
     for wrong, what in ((flat, "has no area, or its corners run clockwise"), (bent, "is not convex")):
         hit = np.unique(model.part_blocks[wrong])
@@ -236,14 +232,11 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
 
 
 def _neighbours(model: Model) -> Neighbours:
-    parts_alone = model._replace(
-        part_blocks=np.arange(model.n_parts), fixed=np.zeros(model.n_parts, bool)
-    )  # so that parts of one block and fixed blocks are compared as well
-    corners = world_corners(block_shape(model), model.centroids, np.zeros((model.n_blocks, 1)))
-    sizes = polygon.sizes(model.vertices, model.part_starts)
+    corners = world_corners(block_shape(model), model.centroids, unturned(model.n_blocks, model.dimension))
+    sizes = model.parts.sizes
     free = ~model.fixed[model.part_blocks]
     reach = TOUCH * float(sizes[free].max() if free.any() else sizes.max())
-    faces = find_joints(parts_alone, corners, reach)
+    faces = find_joints(model.parts_alone(), corners, reach)  # parts of one block and fixed blocks as well
     return Neighbours(faces.parts, model.part_blocks[faces.parts], faces.separation, sizes[faces.parts].min(axis=1))
 
 
@@ -262,9 +255,8 @@ def _components(n: int, pairs: np.ndarray) -> np.ndarray:
 
 def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
     """Lowest block inside the group, the nearest block outside, and the distance of their boxes [m]."""
-    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
-    corners = model.vertices + model.centroids[owner]
-    starts = np.searchsorted(owner, np.arange(model.n_blocks))
+    corners = undeformed(model)
+    starts = np.searchsorted(model.vertex_blocks, np.arange(model.n_blocks))
     low = np.minimum.reduceat(corners, starts, axis=0)
     high = np.maximum.reduceat(corners, starts, axis=0)
     i = int(np.nonzero(inside)[0][0])

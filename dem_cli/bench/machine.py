@@ -20,7 +20,7 @@ def one_thread() -> None:
 
 def describe() -> dict[str, Any]:
     """Cores, processor, versions, load."""
-    from dem_cli import __version__
+    from dem_cli.version import __version__
 
     found: dict[str, Any] = {"cores": os.cpu_count(), "processor": processor(), "system": platform.system()}
     found["load"] = round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None

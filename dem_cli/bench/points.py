@@ -13,6 +13,7 @@ from dem_cli.kernels.records import Contacts, Joints
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.tracking import JointTracking
 
 
 def shares(layout: str) -> np.ndarray:
@@ -58,12 +59,11 @@ def points_per_joint(layout: str) -> Iterator[None]:
     class Refined(plain):  # type: ignore[misc, valid-type]
         """A simulation whose first joints have other points."""
 
-        def _detect_first(self: Simulation) -> None:
-            super()._detect_first()  # type: ignore[misc]
-            if layout != "2" and self.kinematics == "fixed":
-                self.joints, self.contacts = refined(self.joints, self.contacts, places)
-                self._after_detection()
-                self.detections -= 1
+        def _track(self: Simulation, n_memory: int, reach: float) -> JointTracking:
+            tracking = super()._track(n_memory, reach)  # type: ignore[misc]
+            if layout != "2" and not tracking.moves:
+                tracking.joints, tracking.contacts = refined(tracking.joints, tracking.contacts, places)
+            return tracking
 
     job.Simulation = Refined  # type: ignore[misc]
     pushover.describe = lambda *_: {}  # the mechanism is told by the two ends of a joint

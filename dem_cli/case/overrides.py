@@ -1,8 +1,9 @@
-"""`--set KEY=VALUE`: one value of a case changed from the command line, before anything is checked."""
+"""Overrides, `--set KEY=VALUE` and `set={KEY: value}`: one value of a case changed before anything is checked."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import tomli
@@ -21,6 +22,7 @@ class Override(NamedTuple):
     path: KeyPath
     value: Any
     place: KeyPath = ()
+    origin: str = "--set"  # what messages call it where it stands in no file
 
 
 def parse(text: str) -> Override:
@@ -33,6 +35,29 @@ def parse(text: str) -> Override:
     if not path:
         raise UsageError(f"--set {text}: '{key}' is not a key path, such as structure.0.courses")
     return Override(key, path, literal(value.strip()))
+
+
+def override_of(key: str, value: Any) -> Override:
+    """A key path and a Python value -> an Override. Raises UsageError for what is no key path or no value of TOML."""
+    path = key_path(key) if isinstance(key, str) else ()
+    if not path:
+        raise UsageError(f"set: {key!r} is not a key path, such as 'joints.dry.friction' or 'structure.0.courses'")
+    return Override(key, path, plain_value(value, f"set {key}"), origin="set")
+
+
+def plain_value(value: Any, where: str) -> Any:
+    """A Python value as TOML has it: tuples and arrays as lists, paths as text. Raises UsageError for what has none."""
+    if isinstance(value, Mapping):
+        return {str(key): plain_value(item, f"{where}.{key}") for key, item in value.items()}
+    if hasattr(value, "tolist"):  # an array or a number of numpy
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [plain_value(item, where) for item in value]
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    raise UsageError(f"{where}: {value!r} is no value of a case file: give a number, truth, text, list or table")
 
 
 def key_path(text: str) -> KeyPath:

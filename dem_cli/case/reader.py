@@ -59,7 +59,7 @@ class CaseSource:
     def asked(self, override: Override) -> str:
         """Where a value was asked for."""
         if not override.place:
-            return "--set "
+            return f"{override.origin} "
         line, column = self.locate(override.place)
         return f"{self.path}:{line}:{column}: {dotted(override.place[:1])}: "
 
@@ -93,6 +93,9 @@ class LoadedCase(CaseSource):
         super().__init__(source.path, source.text, source.overrides)
         self.case = case
         self.warnings = [self.render(doubt) for doubt in doubts(case)]
+
+    def __repr__(self) -> str:
+        return f"<case {self.case.title or self.path.stem!r} of {self.path}>"
 
 
 def read_case(

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import tomli_w
 from pydantic import ValidationError
 
-from dem_cli import __version__
 from dem_cli.case.base import CaseModel
+from dem_cli.case.overrides import plain_value
 from dem_cli.case.schema import Case
+from dem_cli.version import __version__
 
 HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
 NUMBER_LISTS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
@@ -39,6 +41,11 @@ def case_text(case: Case) -> str:
         else:
             data[key] = value
     return HEADER + on_one_line(tomli_w.dumps(data))
+
+
+def text_of_tables(tables: Mapping[str, Any]) -> str:
+    """TOML text of a case given as tables, as a case file would have them. Raises UsageError."""
+    return on_one_line(tomli_w.dumps(plain_value(tables, "case")))
 
 
 def on_one_line(text: str) -> str:

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli import __version__
 from dem_cli.calibrate.comparison import OK, TrialAnswer
-from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
-from dem_cli.cli.workers import side_by_side, usable_cores
+from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
 from dem_cli.output.record import SilentObserver
+from dem_cli.pipeline.batches import usable_cores
+from dem_cli.pipeline.interrupts import Interrupts
+from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.calibrate.table import NamedShape

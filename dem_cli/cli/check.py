@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 def command(case: str, overrides: tuple[str, ...]) -> None:
     """Validate CASE and print its model: blocks, joints, mass, time step and estimated cost."""
     from dem_cli import api
-    from dem_cli.cli.run import monitor_names
-    from dem_cli.cli.words.reference import check_quantities
+    from dem_cli.pipeline.monitor_names import check_quantities, monitor_names
 
     loaded = api.load_case(case, overrides)
     model = api.build_model(loaded)

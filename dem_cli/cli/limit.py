@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli import __version__
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
+from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase

@@ -13,8 +13,8 @@ from typing import Any
 
 import click
 
-from dem_cli import __version__
 from dem_cli.errors import DemError
+from dem_cli.version import __version__
 
 COMMANDS = {  # name -> the line that `dem --help` shows
     "run": "Solve a case and write its results.",

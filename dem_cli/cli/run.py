@@ -1,80 +1,53 @@
-"""`dem run`: validate, build, solve, write; print the failure load and how sure it is."""
+"""`dem run`: solve a case with a bar that shows how far it is; print the failure load and how sure it is."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from contextlib import contextmanager
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli import __version__
-from dem_cli.cli.interrupt import Interrupts
-from dem_cli.cli.many import Wish, batch_of, check, finish, with_names
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
-from dem_cli.cli.words.reference import check_quantities
-from dem_cli.errors import CaseProblem, DemError, SolverError
+from dem_cli.errors import DemError
+from dem_cli.pipeline.batches import BatchOptions, check
+from dem_cli.pipeline.listener import RunListener
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
-    from dem_cli.case.schema import Case, Monitor
-    from dem_cli.ensembles.batch import Batch
     from dem_cli.model.model import Model
-    from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
-    from dem_cli.output.store import ResultWriter
+    from dem_cli.pipeline.execution import RunOutcome, Solve
 
 
-class Outcome(Protocol):
-    """What a solver returns."""
+class TerminalListener(RunListener):
+    """Shows a bar, says what is left where, draws the pictures that are asked for."""
 
-    summary: dict[str, Any]
-
-
-# What a run that was stopped does not know, by kind.
-ANSWERS = {
-    "pushover": ("failure_load", "failure_load_bracket", "failure_mode", "displacement_at_failure"),
-    "time-history": ("collapsed", "collapse_time"),
-    "safety": ("safety_factor", "safety_factor_bracket", "critical_value", "critical_value_bracket"),
-    "fragility": ("median", "dispersion", "collapse_intensities"),
-}
-
-ONE_OF_MANY = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
-Solve = Callable[["Case", "Model", "Observer"], Outcome]
-
-
-class Recorder:
-    """The observer of a run: keeps what comes, says where it stands, lets nothing interrupt a write."""
-
-    def __init__(self, writer: ResultWriter, progress: console.Progress, interrupts: Interrupts):
-        self.writer, self.bar, self.interrupts = writer, progress, interrupts
-
-    def frame(self, frame: Frame) -> None:
-        with self.interrupts.shielded():
-            self.writer.frame(frame)
-
-    def row(self, row: HistoryRow) -> None:
-        with self.interrupts.shielded():
-            self.writer.row(row)
-
-    def samples(self, samples: Samples) -> None:
-        with self.interrupts.shielded():
-            self.writer.samples(samples)
-
-    def structure(self, model: Model) -> None:
-        with self.interrupts.shielded():
-            self.writer.structure(model)
-
-    def runs(self, rows: Sequence[RunRow]) -> None:
-        with self.interrupts.shielded():
-            self.writer.runs(rows)
+    def __init__(self, bar: console.Progress, quiet: bool, plot: bool):
+        self.bar, self.quiet, self.plot = bar, quiet, plot
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """On the bar."""
         self.bar.update(stage, load, displacement, fraction)
+
+    def solved(self) -> None:
+        """The bar goes."""
+        self.bar.stop()
+
+    def written(self, folder: Path) -> None:
+        """The pictures, where they were asked for."""
+        if self.plot:
+            draw(folder, self.quiet)
+
+    def earlier_kept(self, folder: Path) -> None:
+        """A line on stderr."""
+        console.note(f"the earlier, complete results stay in {shown(folder)}", self.quiet)
+
+    def runs_kept(self, count: int) -> None:
+        """A line on stderr."""
+        self.bar.stop()
+        console.note(f"{count:,} runs are kept; go on with --resume", self.quiet)
 
 
 @click.command("run")
@@ -110,13 +83,13 @@ def command(
     """Solve CASE and write its results to DIR."""
     from dem_cli import api
     from dem_cli.output.summary import exit_code, to_json
+    from dem_cli.pipeline.execution import one_of_many
 
     started = time.perf_counter()
     loaded = api.load_case(case, overrides)
-    if loaded.case.sweep is not None:
-        loaded.warnings.append(loaded.render(CaseProblem(("sweep",), ONE_OF_MANY)))
-    wish = Wish(threads, resume)
-    check(loaded.case, wish)
+    one_of_many(loaded)
+    options = BatchOptions(threads, resume)
+    check(loaded.case, options)
     model = api.build_model(loaded)
     summary, folder = execute(
         loaded,
@@ -126,7 +99,7 @@ def command(
         force=force,
         quiet=quiet,
         plot=plot,
-        wish=wish,
+        options=options,
     )
     if as_json:
         console.show(to_json(summary).rstrip())
@@ -145,110 +118,16 @@ def execute(
     quiet: bool = False,
     plot: bool = False,
     solve: Solve | None = None,
-    wish: Wish | None = None,
-    recover: bool = True,
-) -> tuple[dict[str, Any], Path]:
-    """Solve and write; returns the summary and where the results are. Nothing is left where it fails."""
-    from dem_cli.case.writer import case_text
-    from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.provenance import provenance
-    from dem_cli.output.store import ResultWriter
+    options: BatchOptions | None = None,
+) -> RunOutcome:
+    """As pipeline.execution.execute, with words for the terminal and pictures."""
+    from dem_cli.pipeline import execution
 
-    case, names = loaded.case, monitor_names(loaded.case.monitor)
-    with loaded.located():
-        check_quantities(case, names)
-    with Interrupts() as interrupts, OutputFolder(output, force=force, recover=recover) as folder:
-        with interrupts.shielded():
-            text, kind = case_text(case), case.analysis.kind
-            quantities = [("absolute " if m.absolute else "") + m.quantity for m in case.monitor]
-            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
-        with (
-            abandoning(writer),
-            loaded.located(),
-            batch_of(case, text, folder, wish or Wish(), quiet) as batch,
-            console.Progress(quiet) as bar,
-        ):
-            recorder = Recorder(writer, bar, interrupts)
-            found = solved(solve or load_solver(batch), case, model, recorder)
-            interrupts.ignore()
-            bar.stop()
-            if batch is not None:
-                found = with_names(found, names, quantities)
-            summary = completed(found | writer.measured(found), loaded, model, started)
-            writer.close(summary)
-            if plot:
-                draw(folder.path, quiet)
-            place = put_in_place(folder, summary, quiet)
-            if batch is not None:
-                finish(batch, summary, quiet)
-            return summary, place
-
-
-def load_solver(batch: Batch | None) -> Solve:
-    """The solver, imported only when a case is ready to be solved."""
-    from dem_cli.analyses.solve import solve
-
-    return solve if batch is None else partial(solve, batch=batch)
-
-
-def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:
-    """The solver's summary; where it was interrupted or gave up, how far it came."""
-    writer = recorder.writer
-    try:
-        return solve(case, model, recorder).summary
-    except KeyboardInterrupt:
-        if writer.last_row is None and writer.last_frame is None:
-            raise
-        return stopped("interrupted", writer, ["interrupted: the results end at the state in 'reached'"])
-    except SolverError as error:
-        return stopped("not converged", writer, [str(error)])
-
-
-def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str, Any]:
-    """Summary of a run that did not reach its end."""
-    last = writer.last_row or writer.last_frame
-    reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
-    if last and writer.kind == "time-history":
-        reached = {"stage": last.stage, "time": last.time, "displacement": last.displacement}
-    points = writer.last_frame.contacts.joint if writer.last_frame else None
-    unknown = ANSWERS.get(writer.kind, ANSWERS["pushover"])
-    return {
-        "status": status,
-        **dict.fromkeys(unknown),
-        "reached": reached,
-        "joints": None if points is None else len(set(points.tolist())),
-        "contacts": None if points is None else len(points),
-        "steps": last.step if last else 0,
-        "time_step": None,
-        "solve_seconds": None,
-        "energy_closure": None,
-        "warnings": warnings,
-    }
-
-
-def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: float) -> dict[str, Any]:
-    """The solver's summary with everything that is not the solver's."""
-    from dem_cli.output.reference import in_summary, verdicts
-    from dem_cli.output.summary import ordered
-
-    case = loaded.case
-    summary = dict(found)
-    summary |= {"title": case.title or loaded.path.stem, "kind": case.analysis.kind, "version": __version__}
-    summary["blocks"] = model.n_blocks
-    summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
-    if case.reference and found["status"] != "interrupted":
-        summary["reference"] = in_summary(verdicts(summary, case.reference))
-    summary["wall_seconds"] = time.perf_counter() - started
-    return ordered(summary)
-
-
-@contextmanager
-def abandoning(writer: ResultWriter):  # type: ignore[no-untyped-def]
-    """Close the files of a run that ends without results."""
-    try:
-        yield
-    finally:
-        writer.abandon()
+    with console.Progress(quiet) as bar:
+        listener = TerminalListener(bar, quiet, plot)
+        return execution.execute(
+            loaded, model, output, started, force=force, solve=solve, options=options, listener=listener
+        )
 
 
 def draw(folder: Path, quiet: bool) -> None:
@@ -261,28 +140,6 @@ def draw(folder: Path, quiet: bool) -> None:
         console.note(f"no pictures: {error}", quiet)
     except Exception as error:  # a fault of the program in a picture does not cost hours of solving
         console.note(f"no pictures: internal error: {type(error).__name__}: {error}", quiet)
-
-
-def put_in_place(folder: OutputFolder, summary: dict[str, Any], quiet: bool) -> Path:
-    """Commit; an interrupted run goes beside earlier complete results, not over them."""
-    from dem_cli.output.folder import INTERRUPTED_SUFFIX, is_complete
-
-    if summary["status"] != "interrupted" or not is_complete(folder.final):
-        return folder.commit()
-    place = folder.commit(folder.final.name + INTERRUPTED_SUFFIX)
-    console.note(f"the earlier, complete results stay in {shown(folder.final)}", quiet)
-    return place
-
-
-def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
-    """A different name for each, such as "top-right displacement x"."""
-    from dem_cli.output.record import distinct
-
-    def told(monitor: Monitor) -> str:
-        words = (monitor.place, "absolute" if monitor.absolute else "", monitor.quantity, monitor.component)
-        return monitor.name or " ".join(filter(None, words))
-
-    return distinct(map(told, monitors))
 
 
 def file_names(folder: Path) -> list[str]:

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli import __version__
-from dem_cli.cli.interrupt import Interrupts
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
+from dem_cli.pipeline.interrupts import Interrupts
+from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
@@ -130,7 +130,7 @@ def spread(
     scheduler: str | None, processes: int | None, folder: Path, jobs: Sequence[SweepJob]
 ) -> Iterator[tuple[int, Any]]:
     """Do jobs on a cluster, or in processes of this machine."""
-    from dem_cli.cli.one import do_job
+    from dem_cli.pipeline.jobs import do_job
 
     if scheduler is not None:
         from dem_cli.sweep.cluster import connected, on_cluster
@@ -138,8 +138,8 @@ def spread(
         with connected(scheduler, folder) as client:
             yield from on_cluster(client, do_job, jobs)
         return
-    from dem_cli.cli.workers import usable_cores
     from dem_cli.kernels.jit import cache_is_cold
+    from dem_cli.pipeline.batches import usable_cores
     from dem_cli.sweep.pool import each_done
 
     yield from each_done(do_job, jobs, processes or usable_cores(), first_alone=cache_is_cold())

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli import __version__
 from dem_cli.cli.words import console
 from dem_cli.cli.words.console import seconds
 from dem_cli.errors import UsageError
+from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.verify.records import Record
@@ -117,8 +117,8 @@ def left_out(without: int, slow: Sequence[Path]) -> list[str]:
 def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, quiet: bool) -> Iterator[Record]:
     """Records of all cases as they come, the longest first."""
     from dem_cli.cli.words.run_counter import RunCounter
-    from dem_cli.cli.workers import usable_cores
     from dem_cli.kernels.jit import cache_is_cold
+    from dem_cli.pipeline.batches import usable_cores
     from dem_cli.sweep.pool import WorkerDeath, each_done
     from dem_cli.verify.case_selection import longest_first
     from dem_cli.verify.records import failed
@@ -135,8 +135,8 @@ def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, qu
 def verified(path: Path) -> Record:
     """One case, solved and compared; importable by other processes. Raises KeyboardInterrupt where it is stopped."""
     from dem_cli import api
-    from dem_cli.cli.one import solve_one
     from dem_cli.errors import DemError
+    from dem_cli.pipeline.jobs import solve_one
     from dem_cli.verify.records import failed, record
 
     try:

@@ -9,7 +9,8 @@ import numpy as np
 
 from dem_cli.contact.detect import Faces
 from dem_cli.contact.layout import PointLayout, draw
-from dem_cli.geometry import polygon, profile
+from dem_cli.geometry import profile
+from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import Bodies, Contacts, Joints
@@ -124,11 +125,11 @@ def build_joints(
 
 def _cotangents(model: Model) -> np.ndarray:
     """Cotangent of the inner angle at each corner, (n_vertices,); 2D."""
-    after = polygon.following(model.part_starts)
-    leaving = model.vertices[after] - model.vertices
+    first, after = model.topology.ends.T
+    leaving = model.vertices[after] - model.vertices[first]
     arriving = np.empty_like(leaving)
     arriving[after] = leaving
-    turn = arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0]
+    turn = cross(arriving, leaving)
     size = np.sqrt((arriving**2).sum(axis=1) * (leaving**2).sum(axis=1))
     return -(arriving * leaving).sum(axis=1) / np.maximum(turn, 1e-9 * size)
 
@@ -215,7 +216,7 @@ def share_frames(joints: Joints, source: np.ndarray, positions: np.ndarray) -> N
     normals = joints.frames[:, :2]
     for side in (0, 1):
         arms = joints.points - positions[joints.blocks[:, side]].repeat(counts, axis=0)
-        joints.levers[:, 2 * side] = arms[:, 0] * normals[:, 1] - arms[:, 1] * normals[:, 0]
+        joints.levers[:, 2 * side] = cross(arms, normals)
         joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
 
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry import polygon
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.records import BlockShapes
 from dem_cli.model.model import Model
@@ -24,12 +23,7 @@ class Faces(NamedTuple):
 
 def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
-    sizes = np.diff(model.part_starts)
-    corner_blocks = np.repeat(model.part_blocks, sizes)
-    distance = np.sqrt((model.vertices**2).sum(axis=1))
-    radii = np.zeros(model.n_blocks)
-    np.maximum.at(radii, corner_blocks, distance)
-    return BlockShapes(corner_blocks, np.ascontiguousarray(model.vertices), radii)
+    return BlockShapes(model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii)
 
 
 def world_corners(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
@@ -44,14 +38,12 @@ def inner_edges(model: Model) -> np.ndarray:
     inner = np.zeros(len(model.vertices), bool)
     if model.n_parts == model.n_blocks:
         return inner
-    starts, after = model.part_starts, polygon.following(model.part_starts)
-    part = np.repeat(np.arange(model.n_parts), np.diff(starts))
-    sizes = polygon.sizes(model.vertices, starts)
+    after, part = model.topology.ends[:, 1], model.topology.face_parts
     block = model.part_blocks[part]
     for i in np.flatnonzero(np.bincount(model.part_blocks)[block] > 1):
         others = np.flatnonzero((block == block[i]) & (part != part[i]))
         inner[i] = _covered(model.vertices[[i, after[i]]], model.vertices[np.stack([others, after[others]])],
-                            INNER * sizes[part[i]])  # fmt: skip
+                            INNER * model.parts.sizes[part[i]])  # fmt: skip
     return inner
 
 
@@ -96,6 +88,6 @@ def find_joints(model: Model, corners: np.ndarray, reach: float, inner: np.ndarr
     by_part = np.lexsort((edges[:n, 1], edges[:n, 0], parts[:n, 1], parts[:n, 0]))
     by_part = by_part[~inner[edges[by_part]].any(axis=1)]
     parts, edges = parts[by_part], edges[by_part]
-    following = polygon.following(starts)
-    four = np.column_stack([edges[:, 0], following[edges[:, 0]], edges[:, 1], following[edges[:, 1]]])
+    ends = model.topology.ends
+    four = np.column_stack([ends[edges[:, 0]], ends[edges[:, 1]]])
     return Faces(parts, four, separation[by_part])

@@ -6,6 +6,7 @@ import numpy as np
 
 from dem_cli.contact.assemble import JointProperties, build_joints, overlap_lengths, share_frames
 from dem_cli.contact.detect import Faces, block_shape, find_joints, world_corners
+from dem_cli.geometry.rotation import cross, unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
@@ -15,9 +16,8 @@ PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 
 def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
     """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,)."""
-    d, n_dof = model.dimension, model.dimension + model.inertias.shape[1]
-    n = model.n_blocks
-    positions, orientations = model.centroids - origin, np.zeros((n, 1 if d == 2 else 4))
+    n, n_dof = model.n_blocks, model.dimension + model.inertias.shape[1]
+    positions, orientations = model.centroids - origin, unturned(n, model.dimension)
     corners = world_corners(block_shape(model), positions, orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,
@@ -33,9 +33,8 @@ def close_touching(contacts: Contacts, smallest: float) -> None:
 def bond_touching(model: Model, joints: Joints, contacts: Contacts, properties: JointProperties) -> None:
     """Points without a gap start intact: they remember what their law says of a young joint."""
     count = min(properties.intact.shape[1], contacts.memory.shape[1])  # limit analysis remembers nothing
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
     touching = contacts.gaps <= 0.0
-    named = properties.between(model, joints.blocks)[owner]
+    named = properties.between(model, joints.blocks)[joints.owners]
     contacts.memory[touching, :count] = properties.intact[named[touching], :count]
 
 
@@ -62,6 +61,6 @@ def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np
     """Edges under an angle that meet with an end each, closer than `reach` [m], (n,) bool; 2D."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     a, b = ((end - start) / np.hypot(*(end - start).T)[:, None] for start, end in ((a0, a1), (b0, b1)))
-    angled = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > PARALLEL
+    angled = np.abs(cross(a, b)) > PARALLEL
     apart = np.minimum(np.hypot(*(a0 - b1).T), np.hypot(*(a1 - b0).T))
     return angled & (apart <= reach)

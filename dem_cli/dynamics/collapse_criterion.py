@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
 
@@ -44,9 +45,9 @@ def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock 
 
 def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:
     """Raises SolverError where the motion makes energy."""
-    sim.most_kinetic = max(sim.most_kinetic, sim.centred_kinetic_energy())
+    sim.note_kinetic_energy()
     error = closure(sim)
-    if abs(error) > BLOW_UP and sim.energy().kinetic > sim.noticeable_energy:
+    if abs(error) > BLOW_UP and measures.energy(sim).kinetic > sim.noticeable_energy:
         block = sim.model.block_ids[_fastest(sim)]
         raise SolverError(
             f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "

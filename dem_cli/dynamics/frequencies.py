@@ -2,8 +2,8 @@
 
     K = Bᵀ diag(k) B + G,   K φ = ω² M φ
 
-B: relative motion at every contact point (limit.matrices), k: its normal and shear stiffness; free blocks only. G, on
-request: the geometric stiffness of the contact forces (solve.geometric), a share W/(kn h) of the rest.
+B: relative motion at every contact point (contact.compatibility), k: its normal and shear stiffness; free blocks only.
+G, on request: the geometric stiffness of the contact forces (dynamics.geometric_stiffness), W/(kn h) of the rest.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.compatibility import compatibility
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
 from dem_cli.errors import SolverError
-from dem_cli.limit.matrices import compatibility
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -113,7 +113,7 @@ def limiting(sim: Simulation) -> Highest:
         vector = np.zeros(len(found.masses))
         vector[_gershgorin(found.matrix).argmax()] = 1.0
     block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1))]
-    owner = np.repeat(np.arange(len(sim.joints.blocks)), np.diff(sim.joints.starts))
+    owner = sim.joints.owners
     energy = ((found.rows @ vector).reshape(len(owner), -1) ** 2).sum(axis=1)
     strained = np.bincount(owner, energy, len(sim.joints.blocks))
     strained[~(sim.joints.blocks == block).any(axis=1)] = -1.0

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.limit.matrices import directions
+from dem_cli.contact.compatibility import directions, free_columns
+from dem_cli.geometry.rotation import across
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -29,27 +30,23 @@ def geometric_stiffness(model: Model, joints: Joints, contacts: Contacts, bodies
     """Of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be current."""
     from scipy.sparse import coo_array
 
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
-    blocks = joints.blocks[owner]
+    blocks = joints.blocks[joints.owners]
     frames = directions(joints, 2)
     forces = np.column_stack([contacts.normal, contacts.shear])
     along = np.einsum("pd,pdk->pk", forces, frames)  # force on b [N], (n_points, 2)
-    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    normal = across(along)
     share = shares(joints, bodies)[:, None]
     arms = joints.points[:, None] - bodies.positions[blocks]
     lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
     one, two = share[:, 0], 1.0 - share[:, 0]
-    local = np.zeros((len(owner), 6, 6))  # second derivatives times forces: x, y, θ of a, then of b
+    local = np.zeros((len(blocks), 6, 6))  # second derivatives times forces: x, y, θ of a, then of b
     for k in (0, 1):
-        local[:, 2, k], local[:, 2, 3 + k] = -one * across[:, k], one * across[:, k]
-        local[:, 5, k], local[:, 5, 3 + k] = -two * across[:, k], two * across[:, k]
+        local[:, 2, k], local[:, 2, 3 + k] = -one * normal[:, k], one * normal[:, k]
+        local[:, 5, k], local[:, 5, 3 + k] = -two * normal[:, k], two * normal[:, k]
     local[:, 2, 5] = one * lever_b - two * lever_a
     local += local.swapaxes(1, 2)
     local[:, 2, 2], local[:, 5, 5] = (two - one) * lever_a, (two - one) * lever_b
-    numbers = np.full(model.n_blocks, -1)
-    numbers[~model.fixed] = np.arange(int((~model.fixed).sum())) * 3
-    first = numbers[blocks]
-    dofs = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(3)).reshape(-1, 6)
+    dofs = free_columns(model, joints).reshape(-1, 6)
     rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
     used = (rows >= 0) & (columns >= 0)
     n = 3 * int((~model.fixed).sum())

@@ -14,6 +14,7 @@ from dem_cli.dynamics.damping import damping_of
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.job import Job, Outcome
@@ -136,7 +137,9 @@ class TimeHistory:
                     frames = SnapshotTimes(sim.time, end, max(output.frames // 2, 2))
             if frames.due(sim.time + 0.5 * dt):
                 self.track.frame("collapse" if fallen else "shaking")
-            self.track.observer.progress("shaking", sim.load, sim.largest_displacement(), min(sim.time / end, 1.0))
+            self.track.observer.progress(
+                "shaking", sim.load, measures.largest_displacement(sim), min(sim.time / end, 1.0)
+            )
         found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
         found["collapse_time"] = None if fallen is None else fallen.time
         if fallen is not None:
@@ -164,13 +167,13 @@ class TimeHistory:
         """The books of this instant; stops a run that makes energy."""
         sim = self.sim
         self.track.write("shaking")
-        self.overlap = max(self.overlap, sim.largest_overlap())
+        self.overlap = max(self.overlap, measures.largest_overlap(sim))
         check_energy(sim, self.step)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """The summary, audited."""
         sim = self.sim
-        shares = energy_shares(sim.energy())
+        shares = energy_shares(measures.energy(sim))
         if shares.get("local", 0.0) > GOVERNS:
             self.job.warnings.append(
                 f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "
@@ -183,7 +186,7 @@ class TimeHistory:
             "peak_ground_acceleration": self.ground.peak,
             "damping": self.damping.words,
             "energy_shares": shares,
-            "largest_displacement": sim.largest_displacement(),
+            "largest_displacement": measures.largest_displacement(sim),
             "largest_overlap": self.overlap,
             "unbalanced_force": None,
         })  # fmt: skip

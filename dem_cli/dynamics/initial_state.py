@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.contact.detect import find_joints, world_corners
 from dem_cli.contact.start import TOUCH
+from dem_cli.engine import measures
 from dem_cli.errors import CaseError, CaseProblem
 
 if TYPE_CHECKING:
@@ -21,35 +20,27 @@ INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
 
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
-    names, rest = assembly(case).block_map, sim.largest_overlap()
+    names, rest = sim.model.numbers, measures.largest_overlap(sim)
     for table in case.initial:
         chosen = np.array([names[name] for name in table.names])
         if table.tilt:
-            _turn(sim, chosen, table.tilt, _pivot(sim, chosen, table.tilt))
-        sim.bodies.positions[chosen] += table.displacement
-        sim.bodies.velocities[chosen] = table.velocity
-        _find_faces(sim)
+            sim.turn(chosen, table.tilt, _pivot(sim, chosen, table.tilt))
+        sim.displace(chosen, np.array(table.displacement))
+        sim.throw(chosen, np.array(table.velocity))
+        sim.find_faces()
     _check_apart(case, sim, rest)
 
 
 def tilt(sim: Simulation, chosen: np.ndarray, angle: float) -> None:
     """Turns blocks as one about the corner on which they then stand, counter-clockwise [rad]."""
-    _turn(sim, chosen, angle, _pivot(sim, chosen, angle))
-    _find_faces(sim)
-
-
-def _find_faces(sim: Simulation) -> None:
-    """Corners and faces where the blocks are now."""
-    bodies = sim.bodies
-    bodies.corners[:] = world_corners(sim.shape, bodies.positions, bodies.orientations)
-    bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
-    sim.detect()
+    sim.turn(chosen, angle, _pivot(sim, chosen, angle))
+    sim.find_faces()
 
 
 def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
-    model, names = sim.model, assembly(case).block_map
-    faces = find_joints(model, sim.bodies.corners, 0.0, sim.inner)
+    model, names = sim.model, sim.model.numbers
+    faces = sim.tracking.faces_within(sim.bodies, 0.0)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - INSIDE * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
         tables = [i for i, t in enumerate(case.initial) if {names[name] for name in t.names} & set(pair)]
@@ -65,7 +56,7 @@ def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
 
 def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
     """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
-    record = sim.contact_record()
+    record = measures.contact_record(sim)
     ours = np.isin(record.blocks, chosen)
     between = (ours.sum(axis=1) == 1) & (record.gap <= TOUCH * sim.smallest)
     points = record.points[between] - sim.origin
@@ -74,11 +65,3 @@ def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
         corners = sim.bodies.corners[mine]
         points = corners[corners[:, 1] <= corners[:, 1].min() + 1e-9]
     return points[(points[:, 0] * np.sign(tilt)).argmin()]
-
-
-def _turn(sim: Simulation, chosen: np.ndarray, angle: float, about: np.ndarray) -> None:
-    """Turns the chosen blocks as one."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    arms = sim.bodies.positions[chosen] - about
-    sim.bodies.positions[chosen] = about + arms @ np.array([[cosine, sine], [-sine, cosine]])
-    sim.bodies.orientations[chosen] += angle

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from dem_cli.assembly.assemble import assembly
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.kernels.records import Joints, Watch
 from dem_cli.model.model import Model
@@ -40,7 +39,7 @@ class RockingBlock(NamedTuple):
 def reference_block(case: Case, model: Model, joints: Joints, table: DampingTable) -> RockingBlock:
     """The block that [damping] names, else the heaviest free one on a support. Raises CaseError where there is none."""
     if table.block is not None:
-        chosen = assembly(case).block_map[table.block]
+        chosen = model.numbers[table.block]
         mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
         path, what = ("damping", "block"), f"block '{table.block}' rests on nothing"
     else:
@@ -104,7 +103,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float) -
     from dem_cli.engine.viscous import Damping
     from dem_cli.statics.equilibrium import stand
 
-    pair = only(model, [reference.support, reference.block])
+    pair = model.only([reference.support, reference.block], fixed=np.array([True, False]))
     properties = joint_properties(case, model, DYNAMIC_RATIO)
     sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction))
     stand(sim, Budget(200_000))
@@ -129,28 +128,3 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float) -
         if (beyond & (speed[:, pair.dimension] > 0.0)).any():
             break
     return float(np.sqrt(highest / start))
-
-
-def only(model: Model, blocks: list[int]) -> Model:
-    """The model with these blocks alone, in this order, the first of them fixed."""
-    parts = [np.flatnonzero(model.part_blocks == block) for block in blocks]
-    corners = [
-        np.concatenate([np.arange(model.part_starts[p], model.part_starts[p + 1]) for p in of_block])
-        for of_block in parts
-    ]
-    sizes = np.diff(model.part_starts)[np.concatenate(parts)]
-    pick = np.array(blocks)
-    return model._replace(
-        block_ids=tuple(model.block_ids[i] for i in blocks),
-        block_material=model.block_material[pick],
-        fixed=np.arange(len(blocks)) == 0,
-        thickness=model.thickness[pick],
-        masses=model.masses[pick],
-        inertias=model.inertias[pick],
-        centroids=model.centroids[pick],
-        part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in parts]),
-        part_starts=np.concatenate([[0], np.cumsum(sizes)]),
-        vertices=model.vertices[np.concatenate(corners)],
-        dead_loads=model.dead_loads[pick],
-        live_loads=model.live_loads[pick],
-    )

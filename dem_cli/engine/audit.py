@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.measures import closure, free_falls
 from dem_cli.model.scales import CLOSURE, OVERLAP, WEIGHTLESS, own_weights
 
@@ -22,7 +23,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
     """Doubts about the answer `found`, the worst first; where there is none, how to get one."""
     said = []
     worst = max((closure(sim) for sim in sims), key=abs)
-    overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
+    overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
     if abs(worst) > CLOSURE:
         advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 
@@ -37,18 +38,13 @@ def open_gaps(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
     along, across = a1 - a0, b0 - b1
     length = np.hypot(*along.T)
     along /= length[:, None]
-    start, run, rise = ((b1 - a0) * along).sum(axis=1), (across * along).sum(axis=1), _cross(across, along)
+    start, run, rise = ((b1 - a0) * along).sum(axis=1), (across * along).sum(axis=1), cross(across, along)
     facing = (run > 0.0) & (np.abs(rise) < STEEPEST * run)  # rise: of b's face from b1 to b0, away from a
     run = np.where(facing, run, 1.0)
     low, high = np.maximum(start, 0.0), np.minimum(start + run, length)
-    first = _cross(b1 - a0, along)
+    first = cross(b1 - a0, along)  # to the right of a: outside, as corners go counter-clockwise
     gaps = [first + rise * (place - start) / run for place in (low, high)]
     return np.where(facing & (high - low > BARE * np.minimum(run, length)), np.maximum(*gaps), 0.0).clip(0.0)
-
-
-def _cross(arms: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Distance to the right of directions: outside of a polygon whose corners go counter-clockwise, (n,)."""
-    return arms[:, 0] * along[:, 1] - arms[:, 1] * along[:, 0]
 
 
 def gap_play(gaps: np.ndarray, width: float, n_blocks: int) -> Play:
@@ -70,8 +66,7 @@ def joint_angles(joints: Joints) -> np.ndarray:
     sides = np.diff(joints.profile, axis=0)
     inner = np.ones(len(sides), bool)
     inner[joints.starts[1:-1] - 1] = False  # from the last point of a joint to the first of the next
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))[:-1]
-    np.maximum.at(angles, owner[inner], np.abs(sides[inner, 1] / sides[inner, 0]))
+    np.maximum.at(angles, joints.owners[:-1][inner], np.abs(sides[inner, 1] / sides[inner, 0]))
     return angles
 
 
@@ -84,7 +79,7 @@ def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
     angles = joint_angles(joints)
     if not angles.any():
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     reach = np.zeros(joints.blocks.shape)  # from the centroids of both blocks to the farthest point of the joint
     for side in (0, 1):
         arms = joints.points - positions[joints.blocks[owner, side]]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.assemble import JointProperties
-from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.simulation import Books, Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.drift import drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
@@ -17,7 +17,6 @@ from dem_cli.kernels.records import Dampers, Ground, Watch
 from dem_cli.kernels.shake import make_shake
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.output.record import Energy, Frame
 
 if TYPE_CHECKING:
     from dem_cli.engine.viscous import Damping
@@ -76,8 +75,8 @@ class DynamicSimulation(Simulation):
         if not self.real:
             super().set_masses()
 
-    def _after_detection(self) -> None:
-        super()._after_detection()
+    def _take_joints(self) -> None:
+        super()._take_joints()
         if self.real:
             self._new_dampers()
 
@@ -128,7 +127,7 @@ class DynamicSimulation(Simulation):
             if last:
                 self.centred = 0.5 * (before + self.ledger)
                 self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]
-            if self._detection_due():
+            if self.tracking.due(self.bodies):
                 self.detect()
         self.steps += n_steps
         self.time = self.dt * (round(self.time / self.dt) + n_steps)
@@ -145,7 +144,7 @@ class DynamicSimulation(Simulation):
             self.control, self.ledger, ground, self.dampers, watch, self.like, self.like_rotation,
         )  # fmt: skip
 
-    # -- measures ----------------------------------------------------------------------------------
+    # -- energy ------------------------------------------------------------------------------------
 
     def centred_kinetic_energy(self) -> float:
         """Of the mean velocities of the last step [J]."""
@@ -153,27 +152,16 @@ class DynamicSimulation(Simulation):
         moving = inverse > 0.0
         return 0.5 * float((self.bodies.means[moving] ** 2 / inverse[moving]).sum())
 
-    def energy(self) -> Energy:
-        """The ledger since `begin` [J], one step back from the positions; external: base and loads, without gravity."""
+    def note_kinetic_energy(self) -> None:
+        """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""
+        self.most_kinetic = max(self.most_kinetic, self.centred_kinetic_energy())
+
+    def books(self) -> Books:
+        """The energy ledger since `begin`, one step back from the positions."""
         if not self.real:
-            return super().energy()
-        d, free, ledger = self.model.dimension, self.free, self.centred
-        weight = -self.loads.dead[free, d - 1]
-        height = self.displacement()[free, d - 1] - self.dt * self.bodies.velocities[free, d - 1]
-        gravity = float((weight * height).sum())
-        held = self._held_by_elements()
-        return Energy(
-            kinetic=self.centred_kinetic_energy(),
-            elastic=self.elastic_energy() + held,
-            gravity=gravity,
-            external=float(ledger[slot.EXTERNAL]) + gravity,
-            friction=float(ledger[slot.FRICTION]),
-            damping=float(ledger[slot.DAMPING]),
-            supports=float(ledger[slot.SUPPORT]),
-            dashpots=float(ledger[slot.DASHPOT]),
-            mass_damping=float(ledger[slot.MASS]),
-            maxwell=float(ledger[slot.MAXWELL]) - held,
-        )
+            return super().books()
+        kinetic, elastic = self.centred_kinetic_energy(), self.elastic_energy()
+        return Books(self.centred, kinetic, elastic, self._held_by_elements(), self.dt)
 
     def _held_by_elements(self) -> float:
         """Energy in the springs of Maxwell elements [J]."""
@@ -199,10 +187,6 @@ class DynamicSimulation(Simulation):
         """Of the last step, relative to the base [m/s², rad/s²], (..., n_dof)."""
         means = self.bodies.means.reshape(self.bodies.velocities.shape)
         return 2.0 * (self.bodies.velocities[blocks] - means[blocks]) / self.dt
-
-    def frame(self, stage: str) -> Frame:
-        """A snapshot."""
-        return super().frame(stage)._replace(time=self.time)
 
 
 def _masses(model: Model) -> np.ndarray:

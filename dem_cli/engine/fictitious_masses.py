@@ -4,20 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.contact.compatibility import relative_motion
 from dem_cli.kernels.records import BlockShapes, Bodies, Joints
 from dem_cli.model.model import Model
 
 SLOW_FALL = 1e-4  # acceleration of a structure without any contact, in radii of its blocks per step²
-
-
-def contact_rows(joints: Joints) -> np.ndarray:
-    """|∂(relative displacement)/∂(dof)| of all points, (n_points, d directions, 2 blocks, n_dof); 2D."""
-    normals = np.abs(joints.frames[:, :2])
-    rows = np.empty((len(normals), 2, 2, 3))
-    rows[:, 0, :, :2] = normals[:, None, :]
-    rows[:, 1, :, :2] = normals[:, None, ::-1]
-    rows[..., 2] = np.abs(joints.levers).reshape(-1, 2, 2).swapaxes(1, 2)
-    return rows
 
 
 def fictitious_masses(
@@ -28,15 +19,15 @@ def fictitious_masses(
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety).
     """
-    rows = contact_rows(joints)
-    blocks = np.repeat(joints.blocks, np.diff(joints.starts), axis=0)
+    rows = np.abs(relative_motion(joints, model.dimension))
+    blocks = joints.blocks[joints.owners]
     weights = np.ones(inverse_out.shape)
     weights[:, model.dimension :] = 1.0 / shape.radii[:, None]
     free = ~model.fixed
     reach = np.zeros(rows.shape[:2])
     for side in (0, 1):
         reach += (rows[:, :, side] * (weights * free[:, None])[blocks[:, side]][:, None, :]).sum(axis=2)
-    stiffness = np.stack([joints.kn, joints.ks], axis=1)
+    stiffness = np.stack([joints.kn, *[joints.ks] * (model.dimension - 1)], axis=1)
     masses = np.zeros(inverse_out.shape)
     for side in (0, 1):
         share = (rows[:, :, side] * (stiffness * reach)[:, :, None]).sum(axis=1)

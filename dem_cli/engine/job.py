@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
@@ -76,7 +77,7 @@ class Job:
     def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
         """The summary of all simulations of this job, audited."""
         worst = max((closure(sim) for sim in sims), key=abs)
-        overlap = max(sim.largest_overlap() / sim.smallest for sim in sims)
+        overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
         self.warnings += doubts(self.case, sims, found)
         summary = {
             "joints": sims[0].first_joints,

@@ -1,15 +1,56 @@
-"""Measures of a simulation: how far its blocks may fall by themselves, whether its energy balances."""
+"""Measures of a simulation: energies, displacements, overlaps, frames and contact records of this instant."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
+from dem_cli.output.record import ContactRecord, Energy, Frame
 
-if TYPE_CHECKING:
-    from dem_cli.engine.simulation import Simulation
+
+class EnergySums(NamedTuple):
+    """Work since the start [J]."""
+
+    given: float  # by dead and live loads
+    taken: float  # by friction and by the joints' springs
+
+
+def displacements(sim: Simulation) -> np.ndarray:
+    """Displacement of all centroids [m], (n_blocks, d)."""
+    return sim.bodies.positions - sim.reference_positions
+
+
+def largest_displacement(sim: Simulation) -> float:
+    """Largest displacement of a centroid [m]."""
+    return float(np.sqrt((displacements(sim)[sim.free] ** 2).sum(axis=1)).max(initial=0.0))
+
+
+def live_displacement(sim: Simulation) -> float:
+    """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
+    d = sim.model.dimension
+    live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
+    travel = (live[free, :d] * displacements(sim)[free]).sum()
+    if d == 2:
+        travel += (live[free, 2] * sim.bodies.orientations[free, 0]).sum()
+    return float(travel)
+
+
+def dead_scale(sim: Simulation) -> float:
+    """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
+    joints = sim.joints
+    total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
+    if not len(joints.kn):
+        return sim.smallest
+    stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
+    return float(total / stiffness.min())
+
+
+def largest_overlap(sim: Simulation) -> float:
+    """Deepest penetration of a contact point [m]."""
+    return float(max(0.0, -sim.contacts.gaps.min(initial=0.0)))
 
 
 def free_falls(sim: Simulation) -> np.ndarray:
@@ -21,10 +62,66 @@ def free_falls(sim: Simulation) -> np.ndarray:
     return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
 
 
+def energy_sums(sim: Simulation) -> EnergySums:
+    """What the loads gave since the start, and what friction and joints took [J]."""
+    given = float(sim.ledger[slot.EXTERNAL])
+    return EnergySums(given, float(sim.ledger[slot.FRICTION]) + sim.elastic_energy())
+
+
+def energy(sim: Simulation) -> Energy:
+    """The energy ledger since the start [J]; external: applied loads and base without gravity."""
+    books, d, free = sim.books(), sim.model.dimension, sim.free
+    weight, height = -sim.loads.dead[free, d - 1], displacements(sim)[free, d - 1]
+    if books.lag > 0.0:
+        height = height - books.lag * sim.bodies.velocities[free, d - 1]
+    gravity = float((weight * height).sum())
+    return Energy(
+        kinetic=books.kinetic,
+        elastic=books.elastic + books.in_dampers,
+        gravity=gravity,
+        external=float(books.ledger[slot.EXTERNAL]) + gravity,
+        friction=float(books.ledger[slot.FRICTION]),
+        damping=float(books.ledger[slot.DAMPING]),
+        supports=float(books.ledger[slot.SUPPORT]),
+        dashpots=float(books.ledger[slot.DASHPOT]),
+        mass_damping=float(books.ledger[slot.MASS]),
+        maxwell=float(books.ledger[slot.MAXWELL]) - books.in_dampers,
+    )
+
+
 def closure(sim: Simulation) -> float:
     """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance."""
-    e = sim.energy()
+    e = energy(sim)
     taken = e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
     error = e.kinetic + e.elastic + e.gravity + taken - e.external - e.supports
     largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken, sim.most_kinetic)
     return float(error / largest) if largest > 0.0 else 0.0
+
+
+def contact_record(sim: Simulation) -> ContactRecord:
+    """All contact points now."""
+    joints, contacts = sim.joints, sim.measured()
+    owner = joints.owners
+    friction = np.sqrt((contacts.shear**2).sum(axis=1))
+    limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
+    state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
+    return ContactRecord(
+        joint=owner,
+        blocks=joints.blocks[owner],
+        points=joints.points + sim.origin,
+        normals=joints.frames[:, : sim.model.dimension].copy(),
+        normal_force=contacts.normal,
+        shear_force=contacts.shear,
+        gap=contacts.gaps,
+        slip=contacts.slip,
+        state=state.astype(np.int8),
+    )
+
+
+def frame(sim: Simulation, stage: str) -> Frame:
+    """A snapshot."""
+    bodies = sim.bodies
+    return Frame(
+        stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
+        bodies.orientations.copy(), bodies.velocities.copy(), contact_record(sim), sim.time,
+    )  # fmt: skip

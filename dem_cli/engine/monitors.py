@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import across, swept, turned_by
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -42,9 +43,7 @@ class PointMotion:
 
     def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
-        c, s = self.cosines[:, which], self.sines[:, which]
-        x, y = vectors[:, 0], vectors[:, 1]
-        return np.stack([c * x - s * y, s * x + c * y], axis=2)
+        return turned_by(vectors, self.cosines[:, which], self.sines[:, which])
 
     @cached_property
     def displacement(self) -> np.ndarray:
@@ -55,13 +54,13 @@ class PointMotion:
     def velocity(self) -> np.ndarray:
         """v + ω × r, (n, n_points, d)."""
         motion = self.samples[:, :, 1]
-        return motion[:, :, :2] + motion[:, :, 2:] * across(self.arms)
+        return motion[:, :, :2] + swept(motion[:, :, 2:], self.arms)
 
     @cached_property
     def acceleration(self) -> np.ndarray:
         """a + α × r − ω² r, (n, n_points, d)."""
         spins, change = self.samples[:, :, 1, 2:], self.samples[:, :, 2]
-        return change[:, :, :2] + change[:, :, 2:] * across(self.arms) - spins**2 * self.arms
+        return change[:, :, :2] + swept(change[:, :, 2:], self.arms) - spins**2 * self.arms
 
 
 class JointMonitors(NamedTuple):
@@ -115,7 +114,7 @@ class Monitors:
 
     def __init__(self, case: Case, model: Model):
         self.tables, self.model = case.monitor, model
-        blocks = self._blocks(case)
+        blocks = self._blocks()
         self.watched = np.unique(np.array([b for pair in blocks for b in pair], np.int64))
         self.origin = origin_of(model)
         self._joints: StartJoints | None = None
@@ -159,12 +158,9 @@ class Monitors:
                 self._at_joints.fill(out, motion)
         return out
 
-    def _blocks(self, case: Case) -> list[tuple[int, ...]]:
+    def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
-        from dem_cli.assembly.assemble import assembly
-
-        names = assembly(case).block_map if any(monitor.point is None for monitor in self.tables) else {}
-        found: list[tuple[int, ...]] = []
+        names, found = self.model.numbers, list[tuple[int, ...]]()
         for monitor in self.tables:
             if monitor.point is None:
                 found.append(tuple(names[name] for name in monitor.between or (monitor.block,) if name is not None))
@@ -205,8 +201,3 @@ class Monitors:
         blocks = np.array([block for block, _ in self._places], np.int64)
         arms = np.array([arm for _, arm in self._places]).reshape(-1, d)
         return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms)
-
-
-def across(vectors: np.ndarray) -> np.ndarray:
-    """Vectors turned by +90°, (..., 2): velocities of their tips at unit spin."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

@@ -1,4 +1,4 @@
-"""A structure in motion: the arrays, the compiled loop that fits them, and what can be asked of them."""
+"""Simulation of a structure: the arrays, the compiled loop that fits them, its loads, states to save and restore."""
 
 from __future__ import annotations
 
@@ -10,28 +10,24 @@ import numpy as np
 from dem_cli.contact.assemble import (
     LIKE,
     LIKE_ROTATION,
-    Chains,
     JointProperties,
-    build_joints,
-    carry_memory,
-    chains_of_start,
-    measure_points,
 )
-from dem_cli.contact.detect import block_shape, find_joints, inner_edges
-from dem_cli.contact.start import TOUCH, bodies_at_rest, bond_touching, close_touching, joints_of_start
+from dem_cli.contact.detect import block_shape, world_corners
+from dem_cli.contact.start import TOUCH, bodies_at_rest
 from dem_cli.engine.clearances import WIDEST, Play, gap_play, open_gaps, play
 from dem_cli.engine.fictitious_masses import fictitious_masses
+from dem_cli.engine.tracking import JointTracking
+from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
 from dem_cli.kernels.drift import drift_centroids, drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
-from dem_cli.kernels.records import Bodies, Contacts, Loads
+from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge, widths
-from dem_cli.output.record import ContactRecord, Energy, Frame
+from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge
 
 SKIN = 0.05  # detection reach as a share of the smallest edge
 SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
@@ -49,11 +45,26 @@ def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
     return make_advance(make(law.function, law.bonded), drift_corners)
 
 
-class EnergySums(NamedTuple):
-    """Work since the start [J]."""
+class SavedState(NamedTuple):
+    """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
 
-    given: float  # by dead and live loads
-    taken: float  # by friction and by the joints' springs
+    bodies: Bodies
+    contacts: Contacts
+    joints: Joints
+    control: np.ndarray  # as kernels.records
+    ledger: np.ndarray  # as kernels.records
+    inverse_masses: np.ndarray  # as Loads.inverse_masses
+    safety: float  # of the fictitious masses
+
+
+class Books(NamedTuple):
+    """The energy ledger of one instant, and what belongs to it [J]."""
+
+    ledger: np.ndarray  # as kernels.records
+    kinetic: float
+    elastic: float  # in the springs of the joints
+    in_dampers: float = 0.0  # in the springs of Maxwell elements
+    lag: float = 0.0  # how far the positions are ahead of it [s]
 
 
 class Simulation:
@@ -78,13 +89,12 @@ class Simulation:
         skin: float = SKIN,
     ):
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
-        self.n_memory = law.n_memory(model.dimension) + n_damped
-        self.skin, self.time = skin, 0.0
+        self.time = 0.0
         self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
         d, r = model.dimension, model.inertias.shape[1]
         n = model.n_blocks
         self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
-        self.shape, self.inner = block_shape(model), inner_edges(model)
+        self.shape = block_shape(model)
         self.origin = origin_of(model)
         self.bodies = bodies_at_rest(model, self.origin)
         self.smallest = smallest_edge(model)
@@ -95,7 +105,7 @@ class Simulation:
         live[model.fixed] = 0.0
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
-        self.widths = widths(model)
+        self.widths = model.shapes.widths
         arms = np.clip(self.widths, SLIVER * self.shape.radii, self.shape.radii)  # small moments turn a needle over
         force_scales[:, d:] /= arms[:, None]
         self.loads = Loads(
@@ -110,37 +120,44 @@ class Simulation:
         self.control[slot.DAMP] = ALPHA
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
-        self.detections = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
-        self._detect_first()
+        self.tracking = self._track(law.n_memory(model.dimension) + n_damped, skin * self.smallest)
+        self.control[slot.TRAVEL_LIMIT] = 0.5 * self.tracking.reach
+        self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = self._play()
-        self.first_places = self.save_places()
+        self.first_places = self.places()
 
-    # -- detection ---------------------------------------------------------------------------------
+    def _track(self, n_memory: int, reach: float) -> JointTracking:
+        """The joints of the blocks where they start."""
+        moves = self.kinematics == "large"
+        return JointTracking(self.model, self.bodies, self.properties, moves, n_memory, self.smallest, reach)
 
-    def _detect_first(self) -> None:
-        model, n_memory = self.model, self.n_memory
-        self.chains: Chains | None = None
-        if self.kinematics == "fixed":
-            self.joints, self.contacts = joints_of_start(model, self.bodies, self.properties, self.smallest, n_memory)
-        else:
-            faces = find_joints(model, self.bodies.corners, self.skin * self.smallest, self.inner)
-            if self.properties.profiled:
-                self.chains = chains_of_start(model, faces, self.bodies, self.properties)
-            self.joints, self.contacts = build_joints(model, faces, self.bodies, self.properties, n_memory, self.chains)
-            close_touching(self.contacts, self.smallest)
-            bond_touching(model, self.joints, self.contacts, self.properties)
-        self._after_detection()
+    # -- joints ------------------------------------------------------------------------------------
+
+    @property
+    def joints(self) -> Joints:
+        """The joints that there are now."""
+        return self.tracking.joints
+
+    @property
+    def contacts(self) -> Contacts:
+        """Their contact points."""
+        return self.tracking.contacts
+
+    @property
+    def detections(self) -> int:
+        """How often joints were looked for."""
+        return self.tracking.detections
 
     def _play(self) -> Play:
         """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
         found = play(self.model, self.joints, self.bodies.positions)
         if self.kinematics == "fixed":
             return found
-        faces = find_joints(self.model, self.bodies.corners, WIDEST * self.smallest, self.inner)
+        faces = self.tracking.faces_within(self.bodies, WIDEST * self.smallest)
         gaps = open_gaps(self.bodies.corners, faces.edges)
         gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= WIDEST * self.smallest)]
         if not len(gaps):
@@ -151,31 +168,18 @@ class Simulation:
 
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""
-        old, memory = self.joints, self.contacts
-        self.measured()  # the points of the old joints, for those that move on
-        faces = find_joints(self.model, self.bodies.corners, self.skin * self.smallest, self.inner)
-        joints, contacts = build_joints(self.model, faces, self.bodies, self.properties, self.n_memory, self.chains)
-        carry_memory(old, memory, joints, contacts)
-        if self.bodies.travel.max(initial=0.0) < 0.01 * self.skin * self.smallest:
-            # Still the same faces though nothing moved: do not ask again at every step.
-            asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
-            contacts.stale[:-1] |= np.array([tuple(row) in asked for row in joints.edges.tolist()], bool)
-        self.joints, self.contacts = joints, contacts
-        self._after_detection()
-
-    def _after_detection(self) -> None:
-        self.detections += 1
-        self.longest = max(100, LONGEST_CALL // max(1, len(self.joints.kn)))
-        self.bodies.travel[:] = 0.0
-        self.control[slot.TRAVEL_LIMIT] = 0.5 * self.skin * self.smallest
-        self.set_masses()
+        self.tracking.detect(self.bodies)
+        self._take_joints()
 
     def measured(self) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
-        contacts = Contacts(*(a.copy() for a in self.contacts))
-        if self.kinematics == "large":
-            measure_points(self.joints, contacts, self.bodies)
-        return contacts
+        return self.tracking.measured(self.bodies)
+
+    def _take_joints(self) -> None:
+        """What follows from other joints: masses, and how long a compiled call may be."""
+        self.longest = max(100, LONGEST_CALL // max(1, len(self.joints.kn)))
+        self.bodies.travel[:] = 0.0
+        self.set_masses()
 
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
@@ -198,7 +202,7 @@ class Simulation:
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
-            if self.kinematics == "large" and self._detection_due():
+            if self.kinematics == "large" and self.tracking.due(self.bodies):
                 self.detect()
         self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
 
@@ -214,14 +218,6 @@ class Simulation:
     def accelerations(self, block: int) -> np.ndarray:
         """Of the last step, per unit of the solver's time, (n_dof,)."""
         return self.bodies.unbalanced[block] * self.loads.inverse_masses[block]
-
-    def largest_overlap(self) -> float:
-        """Deepest penetration of a contact point [m]."""
-        return float(max(0.0, -self.contacts.gaps.min(initial=0.0)))
-
-    def _detection_due(self) -> bool:
-        moved = self.bodies.travel.max(initial=0.0) > self.control[slot.TRAVEL_LIMIT]
-        return bool(moved or self.contacts.stale[-1])
 
     def rest(self) -> None:
         """Stop all free blocks; their kinetic energy goes to damping."""
@@ -239,6 +235,21 @@ class Simulation:
     def load(self) -> float:
         """Internal load multiplier (times live_scale: the one users know)."""
         return self.control[slot.LIVE_FACTOR] / self.control[slot.DEAD_FACTOR]
+
+    @property
+    def mean_load(self) -> float:
+        """Internal load multiplier, mean over the last call of `advance`, times the share of the dead loads."""
+        return self.control[slot.MEAN_LOAD]
+
+    @property
+    def dead_share(self) -> float:
+        """Share of the dead loads that is on; a tilted table has less of all loads."""
+        return self.control[slot.DEAD_FACTOR]
+
+    @property
+    def rate(self) -> float:
+        """Prescribed rate of a creep [J per step]."""
+        return self.control[slot.RATE]
 
     @property
     def creep_mode(self) -> int:
@@ -261,11 +272,72 @@ class Simulation:
         self.loads.speed_limits[:] = limit
         self.loads.speed_limits[:, self.model.dimension :] /= self.shape.radii[:, None]
 
+    # -- what analyses write -----------------------------------------------------------------------
+
+    def set_dead_share(self, share: float) -> None:
+        """Dead loads times a share, while they are put on."""
+        self.control[slot.DEAD_FACTOR] = share
+
+    def prescribe_rate(self, rate: float) -> None:
+        """Rate of the live load's own displacement in a creep [J per step]."""
+        self.control[slot.RATE] = rate
+
+    def restart_relaxation(self, mix: float) -> None:
+        """FIRE from its beginning: the share of velocity that turns into the direction of force, no step uphill yet."""
+        self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = mix, 0.0
+
+    def move_supports(self, velocities: np.ndarray) -> None:
+        """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""
+        self.bodies.velocities[self.model.fixed] = velocities[self.model.fixed]
+
+    def displace(self, blocks: np.ndarray, displacement: np.ndarray) -> None:
+        """Moves blocks where they are put [m], (d,); `find_faces` when all are in place."""
+        self.bodies.positions[blocks] += displacement
+
+    def turn(self, blocks: np.ndarray, angle: float, about: np.ndarray) -> None:
+        """Turns blocks as one about a point (d,), counter-clockwise [rad]; 2D."""
+        arms = self.bodies.positions[blocks] - about
+        self.bodies.positions[blocks] = about + turned_as_one(arms, angle)
+        self.bodies.orientations[blocks] += angle
+
+    def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
+        """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""
+        self.bodies.velocities[blocks] = velocity
+
+    def find_faces(self) -> None:
+        """Corners and joints of blocks that were displaced or turned."""
+        bodies = self.bodies
+        bodies.corners[:] = world_corners(self.shape, bodies.positions, bodies.orientations)
+        bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
+        self.detect()
+
+    def place(self, normal: np.ndarray, shear: np.ndarray, gaps: np.ndarray, displacements: np.ndarray) -> None:
+        """A state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all blocks.
+
+        displacements: (n_blocks, n_dof) [m, rad]. The books start anew with `open_books`.
+        """
+        d = self.model.dimension
+        self.contacts.normal[:], self.contacts.shear[:], self.contacts.gaps[:] = normal, shear, gaps
+        self.bodies.positions[:] = self.reference_positions + displacements[:, :d]
+        self.bodies.orientations[:] = displacements[:, d:]
+        self.bodies.velocities[:] = 0.0
+
+    def open_books(self, friction: float) -> None:
+        """A new ledger, in which the springs' energy and what friction took [J] were given from outside."""
+        self.ledger[:] = 0.0
+        self.ledger[slot.FRICTION] = friction
+        self.ledger[slot.EXTERNAL] = friction + self.elastic_energy()
+        self.ledger[slot.CONTACT] = -self.ledger[slot.EXTERNAL]
+
+    def count_from(self, steps: int) -> None:
+        """Steps that were done before this simulation took over."""
+        self.steps = steps
+
     # -- state -------------------------------------------------------------------------------------
 
-    def save(self) -> tuple:
+    def save(self) -> SavedState:
         """A copy of everything that changes, for `restore`."""
-        return (
+        return SavedState(
             Bodies(*(a.copy() for a in self.bodies)),
             Contacts(*(a.copy() for a in self.contacts)),
             self.joints,
@@ -275,105 +347,34 @@ class Simulation:
             self.safety,
         )
 
-    def restore(self, saved: tuple) -> None:
+    def restore(self, saved: SavedState) -> None:
         """Back to a saved state (steps go on counting)."""
-        bodies, contacts, joints, control, ledger, inverse_masses, self.safety = saved
-        for target, source in zip(self.bodies, bodies, strict=True):
+        for target, source in zip(self.bodies, saved.bodies, strict=True):
             target[...] = source
-        self.contacts = Contacts(*(a.copy() for a in contacts))
-        self.joints = joints
-        self.control[:], self.ledger[:] = control, ledger
-        self.loads.inverse_masses[:] = inverse_masses
+        self.tracking.joints, self.tracking.contacts = saved.joints, Contacts(*(a.copy() for a in saved.contacts))
+        self.control[:], self.ledger[:] = saved.control, saved.ledger
+        self.loads.inverse_masses[:] = saved.inverse_masses
+        self.safety = saved.safety
 
-    # -- measures ----------------------------------------------------------------------------------
+    # -- energy ------------------------------------------------------------------------------------
 
     def kinetic_energy(self) -> float:
+        """Of all blocks, with the masses that they have now [J]."""
         inverse = self.loads.inverse_masses
         moving = inverse > 0.0
         return 0.5 * float((self.bodies.velocities[moving] ** 2 / inverse[moving]).sum())
 
     def elastic_energy(self) -> float:
+        """In the springs of the joints [J]."""
         contacts, joints = self.contacts, self.joints
         normal = (contacts.normal**2 / np.where(joints.kn > 0, joints.kn, 1.0)).sum()
         shear = ((contacts.shear**2).sum(axis=1) / np.where(joints.ks > 0, joints.ks, 1.0)).sum()
         return 0.5 * float(normal + shear)
 
-    def displacement(self) -> np.ndarray:
-        """Displacement of all centroids [m], (n_blocks, d)."""
-        return self.bodies.positions - self.reference_positions
+    def books(self) -> Books:
+        """The energy ledger as it stands."""
+        return Books(self.ledger, self.kinetic_energy(), self.elastic_energy())
 
-    def save_places(self) -> np.ndarray:
+    def places(self) -> np.ndarray:
         """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
         return np.column_stack([self.bodies.positions, self.bodies.orientations * self.shape.radii[:, None]])
-
-    def energy_sums(self) -> EnergySums:
-        """What the loads gave since the start, and what friction and joints took [J]."""
-        given = float(self.ledger[slot.EXTERNAL])
-        return EnergySums(given, float(self.ledger[slot.FRICTION]) + self.elastic_energy())
-
-    def live_displacement(self) -> float:
-        """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
-        d = self.model.dimension
-        live, free = self.loads.live, self.free  # sums over free blocks: a far support changes no bit of them
-        travel = (live[free, :d] * self.displacement()[free]).sum()
-        if d == 2:
-            travel += (live[free, 2] * self.bodies.orientations[free, 0]).sum()
-        return float(travel)
-
-    def dead_scale(self) -> float:
-        """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
-        joints = self.joints
-        total = np.sqrt((self.loads.dead[self.free, : self.model.dimension] ** 2).sum(axis=1)).sum()
-        if not len(joints.kn):
-            return self.smallest
-        stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
-        return float(total / stiffness.min())
-
-    def largest_displacement(self) -> float:
-        """Largest displacement of a centroid [m]."""
-        return float(np.sqrt((self.displacement()[self.free] ** 2).sum(axis=1)).max(initial=0.0))
-
-    def energy(self) -> Energy:
-        """The ledger since the start [J]; external counts applied loads without gravity."""
-        d, free = self.model.dimension, self.free
-        weight = -self.loads.dead[free, d - 1]
-        gravity = float((weight * self.displacement()[free, d - 1]).sum())
-        return Energy(
-            kinetic=self.kinetic_energy(),
-            elastic=self.elastic_energy(),
-            gravity=gravity,
-            external=float(self.ledger[slot.EXTERNAL]) + gravity,
-            friction=float(self.ledger[slot.FRICTION]),
-            damping=float(self.ledger[slot.DAMPING]),
-            supports=float(self.ledger[slot.SUPPORT]),
-            dashpots=float(self.ledger[slot.DASHPOT]),
-            mass_damping=float(self.ledger[slot.MASS]),
-            maxwell=float(self.ledger[slot.MAXWELL]),
-        )
-
-    def contact_record(self) -> ContactRecord:
-        """All contact points now."""
-        joints, contacts = self.joints, self.measured()
-        owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
-        friction = np.sqrt((contacts.shear**2).sum(axis=1))
-        limit = self.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
-        state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
-        return ContactRecord(
-            joint=owner,
-            blocks=joints.blocks[owner],
-            points=joints.points + self.origin,
-            normals=joints.frames[:, : self.model.dimension].copy(),
-            normal_force=contacts.normal,
-            shear_force=contacts.shear,
-            gap=contacts.gaps,
-            slip=contacts.slip,
-            state=state.astype(np.int8),
-        )
-
-    def frame(self, stage: str) -> Frame:
-        """A snapshot."""
-        bodies = self.bodies
-        return Frame(
-            stage, self.steps, self.load * self.live_scale, self.largest_displacement(),
-            bodies.positions + self.origin, bodies.orientations.copy(), bodies.velocities.copy(), self.contact_record(),
-        )  # fmt: skip

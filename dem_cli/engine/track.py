@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from dem_cli.engine import measures
 from dem_cli.output.record import HistoryRow, Observer
 
 if TYPE_CHECKING:
@@ -22,8 +23,8 @@ class Track:
         """The history row of this instant."""
         sim = self.sim
         return HistoryRow(
-            stage, sim.steps, sim.load * sim.live_scale, sim.largest_displacement(), sim.unbalanced,
-            sim.largest_overlap(), sim.energy(), self.monitors.values(sim), sim.time,
+            stage, sim.steps, sim.load * sim.live_scale, measures.largest_displacement(sim), sim.unbalanced,
+            measures.largest_overlap(sim), measures.energy(sim), self.monitors.values(sim), sim.time,
         )  # fmt: skip
 
     def keep(self, stage: str) -> None:
@@ -33,7 +34,7 @@ class Track:
     def frame(self, stage: str) -> None:
         """Hand over a frame where frames are wanted."""
         if self.frames > 0:
-            self.observer.frame(self.sim.frame(stage))
+            self.observer.frame(measures.frame(self.sim, stage))
 
     def flush(self) -> None:
         """Hand over what was kept."""

@@ -15,7 +15,6 @@ from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
-from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Watch
 
 if TYPE_CHECKING:
@@ -133,5 +132,5 @@ class RestedStructure:
 
 def _at_rest(sim: DynamicSimulation) -> bool:
     """Neither moving nor about to: a block at the turning point of its rocking is not in balance."""
-    still = sim.control[slot.UNBALANCED] < STILL
+    still = sim.unbalanced < STILL
     return bool(still and sim.centred_kinetic_energy() < QUIET * sim.noticeable_energy)

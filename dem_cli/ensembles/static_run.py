@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from dem_cli.engine import measures
 from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
@@ -16,7 +17,7 @@ from dem_cli.statics.warm_start import LIMIT, find_start, place
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.simulation import SavedState, Simulation
     from dem_cli.engine.track import Track
     from dem_cli.model.model import Model
 
@@ -99,17 +100,17 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
         else None,
         share,
         describe(sim, before) if failed else {},
-        sim.largest_displacement(),
+        measures.largest_displacement(sim),
         sim.steps,
         job.clock.seconds(),
         closure(sim),
     )
     track.keep("collapse" if failed else "loading")
-    frame = sim.frame("collapse" if failed else "loading")
+    frame = measures.frame(sim, "collapse" if failed else "loading")
     return StaticRun(run, job.case, job.model, job, sim, frame, track.kept)
 
 
-def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, tuple, float]:
+def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
     """The verdict, the state before the last load was put on, and the share of the load that is on."""
     before = sim.save()
     verdict = stand(sim, job.budget)
@@ -117,7 +118,7 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     load = job.case.analysis.constant_load / sim.live_scale
     if verdict.state != "equilibrium" or load == 0.0:
         return verdict, before, 0.0
-    elastic = compliance(sim)[1] * load or sim.dead_scale()
+    elastic = compliance(sim)[1] * load or measures.dead_scale(sim)
     near = _next_to_failure(job, sim, load, elastic)
     if near is not None:
         track.keep("loading")
@@ -137,7 +138,7 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     return verdict, before, at
 
 
-def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, tuple] | None:
+def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, SavedState] | None:
     """Verdict and state before the load, from a state next to failure where the structure is large (warm_start.py).
 
     None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
@@ -179,7 +180,7 @@ def fall(told: StaticRun, observer: Observer, until: float, frames: int) -> str 
     """
     job = Job.start(told.case, told.model, observer)
     sim = job.simulation("large")
-    sim.steps = told.sim.steps
+    sim.count_from(told.sim.steps)
     soften_falls(sim, until)
     load = told.case.analysis.constant_load / sim.live_scale
     try:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.geometry.rotation import moments
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.model.model import Model
 
@@ -65,7 +66,7 @@ def other_sizes(model: Model, gravity: float, deviation: float, generator: np.ra
     errors = np.where(model.fixed[:, None], 0.0, _draw(generator, deviation, n, 1 + d))
     lean = _draw(generator, deviation, d - 1)
     factors = 1.0 + errors[:, 0]
-    owner = np.repeat(model.part_blocks, np.diff(model.part_starts))
+    owner = model.vertex_blocks
     first = np.searchsorted(owner, np.arange(n))
     sizes = np.maximum.reduceat(model.vertices, first) - np.minimum.reduceat(model.vertices, first)
     shifts = 0.5 * errors[:, 1:] * sizes
@@ -73,7 +74,7 @@ def other_sizes(model: Model, gravity: float, deviation: float, generator: np.ra
     weights[:, -1] = -gravity * model.masses
     dead = model.dead_loads.copy()
     dead[:, :d] -= weights  # what is left are point loads, which act where they did
-    dead[:, d:] -= _moments(shifts, dead[:, :d])
+    dead[:, d:] -= moments(shifts, dead[:, :d])
     dead[:, d - 1] += factors * weights[:, -1]
     dead[:, : d - 1] += factors[:, None] * weights[:, -1:] * lean
     return model._replace(
@@ -83,10 +84,3 @@ def other_sizes(model: Model, gravity: float, deviation: float, generator: np.ra
         vertices=model.vertices - shifts[owner],
         dead_loads=dead,
     )
-
-
-def _moments(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Moments of forces about the origin of their arms, (n, r)."""
-    if arms.shape[1] == 2:
-        return (arms[:, 0] * forces[:, 1] - arms[:, 1] * forces[:, 0])[:, None]
-    return np.cross(arms, forces)

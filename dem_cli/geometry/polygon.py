@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import across, cross, turned_as_one
+
 TOLERANCE = 1e-9  # relative to the size of the polygon: what counts as coincident or collinear
 
 
@@ -74,10 +76,10 @@ def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaPropertie
     origin = vertices[first]
     a = vertices - np.repeat(origin, counts, axis=0)
     b = a[following(starts)]
-    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    doubled = np.add.reduceat(cross, first)
-    moment = np.add.reduceat(cross[:, None] * (a + b), first, axis=0) / 3.0
-    square = np.add.reduceat(cross * (a * a + a * b + b * b).sum(axis=1), first) / 12.0
+    twice = cross(a, b)
+    doubled = np.add.reduceat(twice, first)
+    moment = np.add.reduceat(twice[:, None] * (a + b), first, axis=0) / 3.0
+    square = np.add.reduceat(twice * (a * a + a * b + b * b).sum(axis=1), first) / 12.0
     safe = np.where(doubled == 0.0, 1.0, doubled)
     offset = np.where((doubled == 0.0)[:, None], 0.0, moment / safe[:, None])
     area_ = doubled / 2.0
@@ -108,7 +110,7 @@ def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = TOLE
     after_each = following(starts)
     edges = vertices[after_each] - vertices
     after = edges[after_each]
-    turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]
+    turns = cross(edges, after)
     angles = np.add.reduceat(np.arctan2(turns, (edges * after).sum(axis=1)), starts[:-1])
     once_around = np.abs(angles - 2.0 * np.pi) < 1.0
     least = tolerance * sizes(vertices, starts) ** 2
@@ -175,7 +177,7 @@ def _left_of(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> float:
 def _depth(points: np.ndarray, hull: np.ndarray) -> np.ndarray:
     """Distance of each point to the nearest edge of the hull, positive inside [m]."""
     edges = np.roll(hull, -1, axis=0) - hull
-    normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+    normals = across(edges) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
     return ((points[:, None, :] - hull[None, :, :]) * normals[None, :, :]).sum(axis=2).min(axis=1)
 
 
@@ -205,6 +207,5 @@ def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndar
     """Turned about the origin by angle [rad], then shifted [m]; an angle of 0 is exact."""
     vertices = np.asarray(vertices, float)
     if angle:
-        c, s = np.cos(angle), np.sin(angle)
-        vertices = vertices @ np.array([[c, s], [-s, c]])
+        vertices = turned_as_one(vertices, angle)
     return vertices + np.asarray(shift, float)

@@ -51,6 +51,11 @@ class Joints(NamedTuple):
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
 
+    @property
+    def owners(self) -> np.ndarray:
+        """Joint of each point, (n_points,)."""
+        return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
+
 
 class Contacts(NamedTuple):
     """Changing state of the contact points."""

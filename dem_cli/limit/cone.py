@@ -58,7 +58,7 @@ def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> n
     heads_frictionless: joints steeper than 45° to the horizontal carry no friction (thesis Table 5-3); 2D.
     Raises UsageError where the largest shear force of the law does not grow in proportion to the normal force.
     """
-    owner, n_points = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts)), len(joints.kn)
+    owner, n_points = joints.owners, len(joints.kn)
     linear = not (law.bonded or law.n_memory(2))
     if linear:
         memory = np.zeros((n_points, 0))

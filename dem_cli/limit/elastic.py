@@ -18,7 +18,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
-from dem_cli.limit.matrices import Structure, relative_motion
+from dem_cli.contact.compatibility import free_columns, relative_motion
+from dem_cli.limit.matrices import Structure
 
 LEAST_FRICTION = 1e-6  # of points without friction: negligible, and the equations stay the same
 SINGULAR = 1e-13  # added to the diagonal, over its mean
@@ -98,19 +99,15 @@ class Elastic:
 
     def _pattern(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
         """Where the entries of every point go in the matrix, and what they are made of."""
-        column = np.full(structure.model.n_blocks, -1)
-        column[structure.free[::n_dof] // n_dof] = np.arange(len(structure.free) // n_dof) * n_dof
-        owner = np.repeat(np.arange(len(structure.joints.blocks)), np.diff(structure.joints.starts))
-        first = column[structure.joints.blocks[owner]]
-        dofs = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof)).reshape(len(owner), -1)
+        dofs = free_columns(structure.model, structure.joints).reshape(self.n_points, 2 * n_dof)
         place = np.empty_like(self.order)
         place[self.order] = np.arange(len(place))
         dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)])
         scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
-        normal, tangent = (rows[:, k].reshape(len(owner), -1) * scale for k in (0, 1))
+        normal, tangent = (rows[:, k].reshape(self.n_points, -1) * scale for k in (0, 1))
         i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
         used = (i >= 0) & (j >= 0)
-        self.point = np.broadcast_to(np.arange(len(owner))[:, None], used.shape)[used]
+        self.point = np.broadcast_to(np.arange(self.n_points)[:, None], used.shape)[used]
         outer = [np.einsum("pi,pj->pij", x, y).reshape(used.shape)[used] for x, y in
                  ((normal, normal), (tangent, tangent), (tangent, normal))]  # fmt: skip
         self.outer = outer

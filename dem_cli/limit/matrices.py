@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from dem_cli.contact.detect import block_shape
+from dem_cli.contact.compatibility import compatibility
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
@@ -61,45 +61,7 @@ def structure_of(model: Model, joints: Joints) -> Structure:
     free = (blocks[:, None] * n_dof + np.arange(n_dof)).ravel()
     dead, live = model.dead_loads[blocks], model.live_loads[blocks]
     scales = np.repeat(own_weights(dead, live, d)[:, None], n_dof, axis=1) if len(blocks) else np.zeros((0, n_dof))
-    scales[:, d:] *= block_shape(model).radii[blocks, None]
+    scales[:, d:] *= model.shapes.radii[blocks, None]
     return Structure(
         model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel()
     )
-
-
-def compatibility(model: Model, joints: Joints) -> csr_matrix:
-    """B: from the free degrees of freedom to the motion of b against a at every point, (n_points·d, n_free)."""
-    d, n_dof = model.dimension, model.dead_loads.shape[1]
-    rows = relative_motion(joints, d)
-    n_points = len(rows)
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
-    column = np.full(model.n_blocks, -1)
-    column[~model.fixed] = np.arange(int((~model.fixed).sum())) * n_dof
-    first = column[joints.blocks[owner]]
-    columns = np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof))
-    columns = np.broadcast_to(columns[:, None], rows.shape)
-    used = (columns >= 0) & (rows != 0.0)
-    counts = used.reshape(n_points * d, 2 * n_dof).sum(axis=1)
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    shape = (n_points * d, int((~model.fixed).sum()) * n_dof)
-    matrix = csr_matrix((rows[used], columns[used], starts), shape=shape)
-    matrix.sort_indices()
-    return matrix
-
-
-def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
-    """∂(motion of b against a)/∂(motion of a, of b), (n_points, d directions, 2 blocks, n_dof)."""
-    d = dimension
-    frames = directions(joints, d)
-    n_points = len(frames)
-    levers = joints.levers.reshape(n_points, 2, d, joints.levers.shape[1] // (2 * d)).swapaxes(1, 2)
-    one = np.concatenate([np.repeat(frames[:, :, None], 2, axis=2), levers], axis=3)
-    return one * np.array([-1.0, 1.0])[:, None]
-
-
-def directions(joints: Joints, dimension: int) -> np.ndarray:
-    """Unit normal and tangents of every point, (n_points, d, d); in 2D only normals are stored."""
-    if dimension == 2:
-        normals = joints.frames[:, :2]
-        return np.stack([normals, normals[:, ::-1] * [-1.0, 1.0]], axis=1)
-    return joints.frames.reshape(-1, dimension, dimension)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.detect import block_shape
+from dem_cli.geometry.rotation import swept
 from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
@@ -46,7 +46,7 @@ def frame(structure: Structure, collapse: Collapse, tilting: bool = False) -> Fr
 
 def _amplitude(model: Model, velocities: np.ndarray) -> float:
     """Time for which a mechanism is followed, so that its largest motion is SHOWN of the largest radius."""
-    d, radii = model.dimension, block_shape(model).radii
+    d, radii = model.dimension, model.shapes.radii
     turning = np.linalg.norm(velocities[:, d:], axis=1) * radii
     fastest = float(np.maximum(np.linalg.norm(velocities[:, :d], axis=1), turning).max(initial=0.0))
     return SHOWN * float(radii[~model.fixed].max()) / fastest if fastest > 0.0 else 0.0
@@ -55,7 +55,7 @@ def _amplitude(model: Model, velocities: np.ndarray) -> float:
 def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, factor: float) -> ContactRecord:
     """Forces and motion of every point."""
     joints, d = structure.joints, structure.model.dimension
-    owner = np.repeat(np.arange(len(joints.blocks)), np.diff(joints.starts))
+    owner = joints.owners
     motion = (structure.compatibility @ moved.ravel()[structure.free]).reshape(-1, d)
     slides = np.linalg.norm(motion[:, 1:], axis=1)
     fastest = float(np.linalg.norm(motion, axis=1).max(initial=0.0))
@@ -76,6 +76,6 @@ def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, facto
 
 
 def _carried(structure: Structure, moved: np.ndarray, blocks: np.ndarray) -> np.ndarray:
-    """How far its block takes every point along [m], 2D, (n_points, 2)."""
-    arms = structure.joints.points - structure.model.centroids[blocks]
-    return moved[blocks, :2] + moved[blocks, 2:] * arms[:, ::-1] * [-1.0, 1.0]
+    """How far its block takes every point along [m], to first order, (n_points, d)."""
+    d, arms = structure.model.dimension, structure.joints.points - structure.model.centroids[blocks]
+    return moved[blocks, :d] + swept(moved[blocks, d:], arms)

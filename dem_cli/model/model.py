@@ -6,13 +6,18 @@ Generalised vectors have n_dof = d + r columns: d translations, then r rotations
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.topology import Topology, topology_of_polygons
+from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
 
-class Model(NamedTuple):
-    """A structure that does not change during a run. Blocks are numbered 0 … n_blocks − 1."""
+
+class ModelArrays(NamedTuple):
+    """What a model is made of, as results keep it (but for the aliases)."""
 
     dimension: int  # 2 or 3
     block_ids: tuple[str, ...]  # name of each block
@@ -28,6 +33,15 @@ class Model(NamedTuple):
     vertices: np.ndarray  # corners from the centroid of their block [m], (n_vertices, d); counter-clockwise in 2D
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
+    aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
+
+
+class Model(ModelArrays):
+    """A structure that does not change during a run. Blocks are numbered 0 … n_blocks − 1.
+
+    What follows from its arrays (names, topology, measures of the blocks) is worked out once, when it is first asked
+    for; a model with other arrays (`_replace`, `only`) works it out anew.
+    """
 
     @property
     def n_blocks(self) -> int:
@@ -36,3 +50,57 @@ class Model(NamedTuple):
     @property
     def n_parts(self) -> int:
         return len(self.part_blocks)
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """Number of each block by its name or alias; a name comes before an alias."""
+        names = {name: i for i, name in enumerate(self.block_ids)}
+        return names | {alias: names[name] for alias, name in self.aliases if alias not in names and name in names}
+
+    @cached_property
+    def vertex_blocks(self) -> np.ndarray:
+        """Block of each corner, (n_vertices,)."""
+        return np.repeat(self.part_blocks, np.diff(self.part_starts))
+
+    @cached_property
+    def topology(self) -> Topology:
+        """Faces of the parts, and their corners."""
+        return topology_of_polygons(self.part_starts)
+
+    @cached_property
+    def parts(self) -> PartMeasures:
+        """Volumes and sizes of the parts."""
+        return part_measures(self.vertices, self.part_starts)
+
+    @cached_property
+    def shapes(self) -> BlockMeasures:
+        """Volumes, widths, shortest edges and radii of the blocks."""
+        return block_measures(self.vertices, self.topology, self.part_blocks, self.vertex_blocks, self.parts)
+
+    def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
+        """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""
+        parts = [np.flatnonzero(self.part_blocks == block) for block in blocks]
+        corners = [
+            np.concatenate([np.arange(self.part_starts[p], self.part_starts[p + 1]) for p in of_block])
+            for of_block in parts
+        ]
+        sizes = np.diff(self.part_starts)[np.concatenate(parts)]
+        pick = np.array(blocks)
+        return self._replace(
+            block_ids=tuple(self.block_ids[i] for i in blocks),
+            block_material=self.block_material[pick],
+            fixed=fixed,
+            thickness=self.thickness[pick],
+            masses=self.masses[pick],
+            inertias=self.inertias[pick],
+            centroids=self.centroids[pick],
+            part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in parts]),
+            part_starts=np.concatenate([[0], np.cumsum(sizes)]),
+            vertices=self.vertices[np.concatenate(corners)],
+            dead_loads=self.dead_loads[pick],
+            live_loads=self.live_loads[pick],
+        )
+
+    def parts_alone(self) -> Model:
+        """Every part a block of its own that can move; for detection, masses and loads are not divided."""
+        return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool))

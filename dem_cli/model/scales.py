@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.geometry import polygon
 from dem_cli.model.model import Model
 
 REMOTE = 1e3  # times the extent of the blocks that can move: from there on coordinates are counted from among them
@@ -26,10 +25,8 @@ def origin_of(model: Model) -> np.ndarray:
 
 def smallest_edge(model: Model) -> float:
     """Shortest edge of a block that can move [m]; of any block where none can."""
-    edges = model.vertices[polygon.following(model.part_starts)] - model.vertices
-    free = np.repeat(~model.fixed[model.part_blocks], np.diff(model.part_starts))
-    lengths = np.sqrt((edges**2).sum(axis=1))
-    return float((lengths[free] if free.any() else lengths).min())
+    edges, free = model.shapes.edges, ~model.fixed
+    return float((edges[free] if free.any() else edges).min())
 
 
 def own_weights(dead: np.ndarray, live: np.ndarray, dimension: int) -> np.ndarray:
@@ -53,9 +50,7 @@ def stiffness_scale(model: Model) -> float:
     if not free.any():
         return 1.0
     weight = mean_weight(model.dead_loads[free], model.live_loads[free], model.dimension)
-    parts = polygon.properties_of_all(model.vertices, model.part_starts).area
-    areas = np.bincount(model.part_blocks, parts, model.n_blocks)
-    joint = float(np.sqrt(areas[free]).mean() * model.thickness[free].mean())
+    joint = float(np.sqrt(model.shapes.volumes[free]).mean() * model.thickness[free].mean())
     return weight / (joint * smallest_edge(model))
 
 
@@ -69,11 +64,3 @@ def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
             return near
         reached[new] = True
         near += 1
-
-
-def widths(model: Model) -> np.ndarray:
-    """About the smaller side of each block [m], (n_blocks,): area over largest extent of its narrowest piece."""
-    areas = polygon.properties_of_all(model.vertices, model.part_starts).area
-    narrow = np.full(model.n_blocks, np.inf)
-    np.minimum.at(narrow, model.part_blocks, areas / polygon.sizes(model.vertices, model.part_starts))
-    return narrow

@@ -6,7 +6,7 @@ import platform
 from functools import cache
 from importlib import metadata
 
-from dem_cli import __version__
+from dem_cli.version import __version__
 
 PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
 

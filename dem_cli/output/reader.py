@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias, overload
 
 import h5py
 import numpy as np
@@ -14,9 +15,11 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame
+from dem_cli.output.record import FRAME_UNITS, STAGES, ContactRecord, Energy, Frame
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
+
+Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
 
 
 @dataclass(frozen=True)
@@ -34,19 +37,28 @@ class Results:
     status: str
     kind: str
     series: HistorySeries | None  # of a time history
+    source: ExitStack | None = None  # holds open the file that frames are read from; None: they are in memory
 
 
 class Frames(Sequence[Frame]):
-    """All frames of a run, held as arrays, handed out one by one."""
+    """All frames of a run, handed out one by one; their arrays are in memory, or datasets of a file that is open."""
 
-    def __init__(self, columns: dict[str, np.ndarray], contacts: dict[str, np.ndarray]):
+    units = FRAME_UNITS
+
+    def __init__(self, columns: dict[str, Stored], contacts: dict[str, Stored]):
         self._columns, self._contacts = columns, contacts
         self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
 
     def __len__(self) -> int:
         return len(self._starts) - 1
 
-    def __getitem__(self, index: int) -> Frame:  # type: ignore[override]
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        if isinstance(index, slice):
+            return [self[i] for i in range(len(self))[index]]
         i = range(len(self))[index]
         rows = slice(self._starts[i], self._starts[i + 1])
         contacts = ContactRecord(**{name: self._contacts[name][rows] for name in ContactRecord._fields})
@@ -67,21 +79,30 @@ class Frames(Sequence[Frame]):
         return (self[i] for i in range(len(self)))
 
 
-def read(folder: Path | str) -> Results:
-    """The results in `folder`; UsageError where there are none."""
+def read(folder: Path | str, *, lazy: bool = False) -> Results:
+    """The results in `folder`; UsageError where there are none.
+
+    lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
+    """
     folder = Path(folder)
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder")
     if not (folder / RESULTS).is_file():
         raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS})")
     try:
-        with h5py.File(folder / RESULTS, "r", locking=False) as file:
-            return _read(file["dem"], _read_summary(folder))
+        with ExitStack() as stack:
+            if not lazy:
+                file = stack.enter_context(h5py.File(folder / RESULTS, "r", locking=False))
+                return _read(file["dem"], read_summary(folder), lazy)
+            stream = stack.enter_context((folder / RESULTS).open("rb"))  # others may open the path as they like
+            file = stack.enter_context(h5py.File(stream, "r"))
+            return replace(_read(file["dem"], read_summary(folder), lazy), source=stack.pop_all())
     except (OSError, KeyError) as error:
         raise UsageError(f"{folder / RESULTS}: not a readable result of dem run ({error})") from None
 
 
-def _read_summary(folder: Path) -> dict[str, Any]:
+def read_summary(folder: Path) -> dict[str, Any]:
+    """What summary.json says; {} where there is none. Raises UsageError."""
     path = folder / SUMMARY
     if not path.is_file():
         return {}
@@ -92,7 +113,7 @@ def _read_summary(folder: Path) -> dict[str, Any]:
     return summary
 
 
-def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
+def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
     if dem.attrs["format"] != RESULTS_FORMAT:
         raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {RESULTS_FORMAT}")
     history = dem["history"]
@@ -107,7 +128,7 @@ def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
     return Results(
         summary=summary,
         model=_read_model(dem["model"]),
-        frames=_read_frames(dem),
+        frames=_read_frames(dem, lazy),
         history=columns,
         energy=energy,
         monitors=monitors,
@@ -119,15 +140,17 @@ def _read(dem: h5py.Group, summary: dict[str, Any]) -> Results:
     )
 
 
-def _read_frames(dem: h5py.Group) -> Frames:
+def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
     group = dem["frames"]
     if "n_contacts" not in group:
         return Frames({}, {})
     n_frames = len(group["n_contacts"])
     names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stage", "n_contacts")
-    columns = {name: group[name][:n_frames] for name in names if name in group}
+    held = {name: group[name] for name in names if name in group}
+    columns = {name: data if lazy and name in FRAME_ARRAYS else data[:n_frames] for name, data in held.items()}
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
-    return Frames(columns, {name: dem["contacts"][name][:] for name in ContactRecord._fields})
+    contacts = dem["contacts"]
+    return Frames(columns, {name: contacts[name] if lazy else contacts[name][:] for name in ContactRecord._fields})
 
 
 def _read_model(group: h5py.Group) -> Model:

@@ -40,6 +40,11 @@ class ContactRecord(NamedTuple):
     state: np.ndarray  # index into STATES, (n,) int8
 
 
+# Units of the numbers below that have one, by name.
+CONTACT_UNITS = {"points": "m", "normal_force": "N", "shear_force": "N", "force": "N", "gap": "m", "slip": "m"}
+FRAME_UNITS = {"time": "s", "displacement": "m", "positions": "m", "orientations": "rad"}
+
+
 class Frame(NamedTuple):
     """The structure at one instant."""
 

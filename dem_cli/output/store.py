@@ -21,6 +21,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from dem_cli.geometry.rotation import across, angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
@@ -43,6 +44,7 @@ _VTK_POLYGON = 7
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
 _TEXT = h5py.string_dtype()
+_UNSAID = ("aliases",)  # of a model: the case file says them
 
 
 class ResultWriter:
@@ -193,9 +195,7 @@ class ResultWriter:
             "time": float(frame.time),
         }
         moved = in_space(vertices - self._rest)
-        cell_fields = {}
-        if self.model.dimension == 2:
-            cell_fields["rotation"] = frame.orientations[self.model.part_blocks, 0].astype(np.float32)
+        cell_fields = {"rotation": angles_of(frame.orientations)[self.model.part_blocks].astype(np.float32)}
         value = float(frame.time if self.kind in IN_SECONDS else self.n_frames)
         fields = {"displacement": moved, "velocity": in_space(velocities)}
         grid.add(value, in_space(vertices), fields, cell_fields, step_fields)
@@ -223,6 +223,8 @@ class ResultWriter:
 
 def _store_model(group: h5py.Group, model: Model) -> None:
     for name, value in model._asdict().items():
+        if name in _UNSAID:
+            continue
         if isinstance(value, int):
             group.attrs[name] = value
         elif isinstance(value, tuple):
@@ -247,7 +249,7 @@ def contact_forces(contacts: ContactRecord) -> np.ndarray:
     normals = contacts.normals
     forces = contacts.normal_force[:, np.newaxis] * normals
     if normals.shape[1] == 2:
-        tangents = np.stack((-normals[:, 1], normals[:, 0]), axis=1)
+        tangents = across(normals)
         forces = forces + contacts.shear_force * tangents
     return forces
 

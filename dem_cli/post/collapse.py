@@ -113,7 +113,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
 
 def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """What all panels show: everything, with a margin; of the ground only what is near."""
-    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    free = ~model.fixed[model.vertex_blocks]
     moving = np.concatenate([c[free] if free.any() else c for c in corners])
     everything = np.concatenate(corners)
     margin = 0.05 * np.ptp(moving, axis=0).max()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dem_cli.geometry.rotation import turned
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.store import contact_forces
@@ -87,7 +88,7 @@ def block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
 def size(model: Model) -> float:
     """Diagonal of the box around the blocks that can move [m]."""
     corners = placed_vertices(model, model.centroids, np.zeros((model.n_blocks, 1)))
-    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    free = ~model.fixed[model.vertex_blocks]
     corners = corners[free] if free.any() else corners
     return float(np.linalg.norm(np.ptp(corners, axis=0)))
 
@@ -118,12 +119,6 @@ def scaled(model: Model, frame: Frame, scale: float) -> Frame:
     contacts = frame.contacts
     owner = contacts.blocks[:, 0]
     turn_back = -frame.orientations[owner, 0]
-    arms = _turned(contacts.points - frame.positions[owner], turn_back)
-    points = positions[owner] + _turned(arms, orientations[owner, 0])
+    arms = turned(contacts.points - frame.positions[owner], turn_back)
+    points = positions[owner] + turned(arms, orientations[owner, 0])
     return frame._replace(positions=positions, orientations=orientations, contacts=contacts._replace(points=points))
-
-
-def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    c, s = np.cos(angles), np.sin(angles)
-    x, y = vectors[:, 0], vectors[:, 1]
-    return np.stack((c * x - s * y, s * x + c * y), axis=1)

@@ -46,7 +46,7 @@ def window(model: Model, places: Sequence[np.ndarray], around: float = _GROUND) 
 
     around: empty space on all sides, over the size of what is seen.
     """
-    free = ~np.repeat(model.fixed[model.part_blocks], np.diff(model.part_starts))
+    free = ~model.fixed[model.vertex_blocks]
     shown = free if free.any() else ~free
     rest = rest_vertices(model)
     reach = _FALLEN * float(np.ptp(rest[shown], axis=0).max())

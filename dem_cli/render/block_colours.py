@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.errors import UsageError
+from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
@@ -50,9 +51,7 @@ def block_values(model: Model, frame: Frame, quantity: str) -> np.ndarray:
         return np.linalg.norm(frame.positions - model.centroids, axis=1)
     if quantity == "velocity":
         return np.linalg.norm(frame.velocities[:, :d], axis=1)
-    if d == 2:
-        return np.degrees(np.abs(frame.orientations[:, 0]))
-    return np.degrees(2.0 * np.arccos(np.clip(np.abs(frame.orientations[:, 0]), 0.0, 1.0)))
+    return np.degrees(np.abs(angles_of(frame.orientations)))
 
 
 def _label(quantity: str, highest: float, shaken: bool) -> tuple[float, str]:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.post import frame_measures
@@ -60,8 +61,8 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStri
     stops = np.where(single[:, np.newaxis], ends + width * along, centres)
     faint = (contacts.state == STATES.index("open")) & (contacts.gap < hairline)
     widths = np.where(faint, _THIN * width, width)[:, np.newaxis]
-    across = 0.5 * widths * np.stack((-along[:, 1], along[:, 0]), axis=1)
-    outline = np.stack((starts - across, stops - across, stops + across, starts + across), axis=1)
+    aside = 0.5 * widths * across(along)
+    outline = np.stack((starts - aside, stops - aside, stops + aside, starts + aside), axis=1)
     depth = 0.5 * model.thickness[contacts.blocks].max(axis=1) + 0.5 * width
     n = len(ends)
     points = np.zeros((n, 8, 3))

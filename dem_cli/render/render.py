@@ -23,7 +23,6 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.output.vertices import vertex_blocks
 from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
@@ -153,7 +152,7 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
 def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
     """Corners of the blocks in space, as far as they are in the picture [m], (n, 3)."""
     low, high = view_box.window(model, places, _AROUND)
-    half = 0.5 * model.thickness[vertex_blocks(model)]
+    half = 0.5 * model.thickness[model.vertex_blocks]
     inside = [np.clip(corners, low, high) for corners in places]
     return np.concatenate([lifted(corners, side * half) for corners in inside for side in (-1.0, 1.0)])
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import across, cross, matrices
 from dem_cli.model.model import Model
-from dem_cli.output.vertices import rotations
 from dem_cli.post import frame_measures
 
 _CHAMFER = 0.05  # of the narrowest side of an ordinary block
@@ -39,7 +39,7 @@ class Pose(NamedTuple):
 
 def pose(positions: np.ndarray, orientations: np.ndarray) -> Pose:
     """From centroids (n_blocks, d) and angles or quaternions; 2D blocks lie in the plane z = 0."""
-    found = rotations(orientations)
+    found = matrices(orientations)
     n, d = positions.shape
     turns = np.tile(np.eye(3), (n, 1, 1))
     turns[:, :d, :d] = found
@@ -116,10 +116,10 @@ def inset(corners: np.ndarray, distances: np.ndarray) -> np.ndarray:
     """Each edge of a convex polygon moved inwards by its distance [m]; corner k lies on the edges k − 1 and k."""
     normals = _inward(corners)
     before = np.roll(normals, 1, axis=0)
-    cross = before[:, 0] * normals[:, 1] - before[:, 1] * normals[:, 0]
+    turn = cross(before, normals)
     a, b = np.roll(distances, 1), distances
-    straight = np.abs(cross) < 1e-9  # the two edges lie on one line
-    scale = np.where(straight, 1.0, cross)
+    straight = np.abs(turn) < 1e-9  # the two edges lie on one line
+    scale = np.where(straight, 1.0, turn)
     moved = np.stack((a * normals[:, 1] - b * before[:, 1], b * before[:, 0] - a * normals[:, 0]), axis=1)
     return corners + np.where(straight[:, np.newaxis], b[:, np.newaxis] * normals, moved / scale[:, np.newaxis])
 
@@ -141,4 +141,4 @@ def _inward(corners: np.ndarray) -> np.ndarray:
     """Unit normals of the edges of a counter-clockwise polygon, into it, (n, 2); edge k starts at corner k."""
     along = np.roll(corners, -1, axis=0) - corners
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
-    return np.stack((-along[:, 1], along[:, 0]), axis=1) / np.where(lengths > 0.0, lengths, 1.0)
+    return across(along) / np.where(lengths > 0.0, lengths, 1.0)

@@ -176,7 +176,7 @@ def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Soundn
 def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Size, mass and number of everything."""
     free = ~model.fixed
-    corners = rest_vertices(model)[np.repeat(free[model.part_blocks], np.diff(model.part_starts))]
+    corners = rest_vertices(model)[free[model.vertex_blocks]]
     sides = " × ".join(_metres(float(side)) for side in np.ptp(corners, axis=0)) if free.any() else "–"
     depth = sorted({f"{value:.3g}" for value in model.thickness[free].tolist()}, key=float)
     rows = [

@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.geometry.rotation import across, matrices, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.output.vertices import in_space, rest_orientations, rotations
+from dem_cli.output.vertices import in_space
 from dem_cli.post import frame_measures
 from dem_cli.post import view_box as stage
 from dem_cli.render import marks
@@ -92,7 +93,7 @@ def _as_built(model: Model) -> Frame:
     pairs, states = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int8)
     contacts = ContactRecord(pairs[:, 0], pairs, vectors, vectors, none, np.zeros((0, d - 1)), none, none, states)
     still = np.zeros((n, model.inertias.shape[1] + d))
-    return Frame(AS_BUILT, 0, 0.0, 0.0, model.centroids, rest_orientations(model), still, contacts)
+    return Frame(AS_BUILT, 0, 0.0, 0.0, model.centroids, unturned(model.n_blocks, model.dimension), still, contacts)
 
 
 def _bytes(model: Model, frame: Frame) -> int:
@@ -153,7 +154,7 @@ def _says(frame: Frame, results: Results) -> str:
 
 def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:
     """Points in the axes of the block that each hangs on [m], (n, 3)."""
-    turned = rotations(frame.orientations)[owners]
+    turned = matrices(frame.orientations)[owners]
     return in_space(np.einsum("nji,nj->ni", turned, points - frame.positions[owners]))
 
 
@@ -181,10 +182,10 @@ def _tangents(contacts: ContactRecord) -> np.ndarray:
     """A direction in each contact plane, (n, d)."""
     normals = contacts.normals
     if normals.shape[1] == 2:
-        return np.column_stack((-normals[:, 1], normals[:, 0]))
+        return across(normals)
     helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
-    across = np.cross(normals, helper)
-    return across / np.linalg.norm(across, axis=1)[:, np.newaxis]
+    tangents = np.cross(normals, helper)
+    return tangents / np.linalg.norm(tangents, axis=1)[:, np.newaxis]
 
 
 def _forces(frame: Frame) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.measures import free_falls
 from dem_cli.errors import SolverError
@@ -69,14 +70,14 @@ def relax(
 ) -> Verdict:
     """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
 
-    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.save_places; default: where
+    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where
     they are now); scale: displacement that is elastic [m].
     """
-    since = sim.save_places() if since is None else since
+    since = sim.places() if since is None else since
     sim.use(RELAX_SAFETY, damping=0.0)
     sim.set_load(load)
     _limit_falls(sim)
-    sim.control[slot.FIRE_MIX], sim.control[slot.SINCE_UPHILL] = 0.1, 0.0
+    sim.restart_relaxation(0.1)
     calm = 0
     for _ in range(max(1, max_steps // CHUNK)):
         sim.advance(CHUNK, slot.FIRE)
@@ -95,7 +96,7 @@ def relax(
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
     """Equilibrium under dead loads alone, or proof that there is none."""
-    start, scale = sim.save_places(), sim.dead_scale()
+    start, scale = sim.places(), measures.dead_scale(sim)
     _weigh_down(sim, budget)
     verdict = relax(sim, 0.0, GRAVITY_TOLERANCE, scale=scale, since=start)
     if verdict.state != "unknown":
@@ -115,10 +116,10 @@ def settle_or_fail(
     """Constant load with combined damping until equilibrium or failure is proven.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
-    since: places of the structure that must not have moved grossly when it comes to rest (Simulation.save_places);
+    since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
     default: where it is now. plateau: see FailureTest.
     """
-    since = sim.save_places() if since is None else since
+    since = sim.places() if since is None else since
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     _limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
@@ -178,13 +179,10 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
     if not steps:
         return
 
-    def put(share: float) -> None:
-        sim.control[slot.DEAD_FACTOR] = share
-
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(0.0)
     _limit_falls(sim)
-    _climb(sim, put, steps)
+    _climb(sim, sim.set_dead_share, steps)
     sim.rest()
     budget.spend(steps, "putting on the dead loads")
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
@@ -37,7 +38,7 @@ from dem_cli.statics.failure_test import NOT_ELASTIC
 from dem_cli.statics.warm_start import GRAVITY, place
 
 if TYPE_CHECKING:
-    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.simulation import SavedState, Simulation
     from dem_cli.engine.track import Track
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.warm_start import WarmStart
@@ -84,11 +85,11 @@ class FailureSearch:
     settled: float = 0.0  # largest displacement of a block under the dead loads alone [m]
     onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
-    held: tuple | None = None  # state of the highest equilibrium
+    held: SavedState | None = None  # state of the highest equilibrium
     found: bool = False  # the bracket is as narrow as it was asked for
     failing: Verdict | None = None
     crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
-    crept_state: tuple | None = None
+    crept_state: SavedState | None = None
     limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[LoadPass] = field(default_factory=list)
     start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
@@ -100,12 +101,12 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
     Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
     """
-    before, places, saved = sim.live_displacement(), sim.save_places(), sim.save()
+    before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
     load, value, largest = PROBE_IN_PLAY if sim.play.moved.any() else PROBE, 0.0, 0.0
     for _ in range(4):
         verdict = relax(sim, load, TOLERANCE, 20_000)
-        value = (sim.live_displacement() - before) / load
-        largest = float(np.abs(sim.save_places() - places).max()) / load
+        value = (measures.live_displacement(sim) - before) / load
+        largest = float(np.abs(sim.places() - places).max()) / load
         sim.restore(saved)
         if verdict.state == "equilibrium":
             break
@@ -119,11 +120,11 @@ def _compliance_in_play(sim: Simulation, first: tuple[float, float]) -> tuple[fl
     for _ in range(DOUBLINGS):
         if relax(sim, load, TOLERANCE, 20_000).state != "equilibrium":
             break
-        before, places = sim.live_displacement(), sim.save_places()
+        before, places = measures.live_displacement(sim), sim.places()
         if relax(sim, 2.0 * load, TOLERANCE, 20_000).state != "equilibrium":
             break
-        value = (sim.live_displacement() - before) / load
-        largest = float(np.abs(sim.save_places() - places).max()) / load
+        value = (measures.live_displacement(sim) - before) / load
+        largest = float(np.abs(sim.places() - places).max()) / load
         if value > 0.0 and largest < found[1]:
             found = value, largest
         load *= 2.0
@@ -149,7 +150,7 @@ def find_failure(
     exceeded; then, and where joints have a profile, nothing is estimated first. What is found goes to `search` as it
     is found, so that it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
-    search.low, search.held, search.settled = 0.0, sim.save(), sim.largest_displacement()
+    search.low, search.held, search.settled = 0.0, sim.save(), measures.largest_displacement(sim)
     limit = LOCKED if max_load is None else max_load / sim.live_scale
     search.limit = limit * sim.live_scale
     search.compliance, search.elastic = compliance(sim)
@@ -211,7 +212,7 @@ def _fail_above(sim: Simulation, search: FailureSearch, load: float, budget: Bud
     friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
     """
     track.observer.progress("failing", load * sim.live_scale, search.peak_displacement, None)
-    before, start, ledger = sim.steps, sim.save_places(), sim.energy_sums()
+    before, start, ledger = sim.steps, sim.places(), measures.energy_sums(sim)
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     sim.set_load(load)
     moved, released = 0.0, 0.0
@@ -219,8 +220,8 @@ def _fail_above(sim: Simulation, search: FailureSearch, load: float, budget: Bud
         sim.advance(CHUNK, slot.HOLD_LOAD)
         budget.spend(CHUNK, f"at load multiplier {load * sim.live_scale:.5g}")
         check_finite(sim)
-        moved = float(np.abs(sim.save_places() - start).max())
-        now = sim.energy_sums()
+        moved = float(np.abs(sim.places() - start).max())
+        now = measures.energy_sums(sim)
         given = now.given - ledger.given
         released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
     search.failing = Verdict("failure", sim.unbalanced, released)
@@ -237,15 +238,16 @@ def _creep(sim: Simulation, distance: float, budget: Budget, search: FailureSear
     sim.use(CREEP_SAFETY)
     rate, loads, before = distance / FIRST_PHASE, [], sim.steps
     for phase in range(PHASES + 1):
-        sim.control[slot.RATE] = rate * 0.5**phase
+        sim.prescribe_rate(rate * 0.5**phase)
         for _ in range(LOOKS if phase == 0 else LOOKS // 2):
             sim.advance(FIRST_PHASE // LOOKS, sim.creep_mode)
-            loads.append(sim.control[slot.MEAN_LOAD])
+            loads.append(sim.mean_load)
         check_finite(sim)
         if sim.kinematics == "large" and loads[-1] < SOFTENED * max(loads):
             break
     else:
-        sim.control[slot.RATE], calm = 0.0, 0
+        sim.prescribe_rate(0.0)
+        calm = 0
         for _ in range(HOLD_STEPS // CHUNK):
             sim.advance(CHUNK, sim.creep_mode)
             calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
@@ -326,7 +328,7 @@ def _settle(
 def _keep(sim: Simulation, search: FailureSearch, load: float, track: Track) -> None:
     """The highest proven equilibrium so far, and its row."""
     search.low, search.held = load * sim.live_scale, sim.save()
-    search.peak_displacement = sim.largest_displacement()
+    search.peak_displacement = measures.largest_displacement(sim)
     if search.onset is None and search.peak_displacement > search.settled + NOT_ELASTIC * search.elastic * load:
         search.onset = search.low
     track.keep("loading")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.engine import measures
 from dem_cli.engine.clearances import beyond
 from dem_cli.engine.measures import free_falls
 
@@ -42,26 +43,26 @@ class FailureTest:
     """
 
     def __init__(self, sim: Simulation, scale: float, plateau: bool = False) -> None:
-        self.sim, self.start, self.begun = sim, sim.save_places(), sim.steps
+        self.sim, self.start, self.begun = sim, sim.places(), sim.steps
         self.far = (FAR if plateau else max(FAR, FAR_PER_DEPTH * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
-        self.energies = [sim.energy_sums()]
+        self.energies = [measures.energy_sums(sim)]
 
     def look(self) -> FailureProof | None:
         """To be called whenever the time grew by √2; the proof of failure where there is one."""
-        moved = np.abs(self.sim.save_places() - self.start).max(axis=1)
+        moved = np.abs(self.sim.places() - self.start).max(axis=1)
         self.moved.append(moved)
-        self.energies.append(self.sim.energy_sums())
+        self.energies.append(measures.energy_sums(self.sim))
         if len(self.moved) < 9:
             return None
         own = moved <= 0.5 * free_falls(self.sim) * (self.sim.steps - self.begun) ** 2
         unexplained = moved
         if self.play.any():
-            away = np.abs(self.sim.save_places() - self.sim.first_places).max(axis=1)
+            away = np.abs(self.sim.places() - self.sim.first_places).max(axis=1)
             unexplained = beyond(self.play, moved, self.away, away)
         block = int(np.where(own, unexplained, -np.inf).argmax())
         last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
@@ -79,15 +80,15 @@ class FailureTest:
 
 
 def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
-    """The block that moved furthest since `since` (Simulation.save_places), where that was no elastic motion.
+    """The block that moved furthest since `since` (Simulation.places), where that was no elastic motion.
 
     A structure that comes to rest after it is another structure: something toppled or slid down.
     """
-    motion = np.abs(sim.save_places() - since)
+    motion = np.abs(sim.places() - since)
     d = sim.model.dimension
     moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
     if sim.play.moved.any():
-        before, now = np.abs(since - sim.first_places), np.abs(sim.save_places() - sim.first_places)
+        before, now = np.abs(since - sim.first_places), np.abs(sim.places() - sim.first_places)
         moved = beyond(sim.play.moved, moved, before[:, :d].max(axis=1), now[:, :d].max(axis=1))
         turning = sim.play.turned * sim.shape.radii
         turned = beyond(turning, turned, before[:, d:].max(axis=1), now[:, d:].max(axis=1))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.simulation import SavedState, Simulation
 from dem_cli.kernels import records as slot
 
 ROCKING = 0.02  # share of friction in the released work, below which nothing slides
@@ -15,12 +15,12 @@ TAKES_PART = 0.1  # of the largest motion
 LISTED = 20  # names in a summary
 
 
-def describe(sim: Simulation, held: tuple) -> dict[str, Any]:
+def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     """failure_mode, share of friction work, and the blocks and joints that take part.
 
     sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
     """
-    bodies, contacts, joints, _, ledger = held[:5]
+    bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
     angle = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.properties import FIXED_RATIO
 from dem_cli.engine.track import Track
@@ -66,17 +67,17 @@ def follow(
     track.write("gravity")
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     soften_falls(sim, until)
-    sim.control[slot.RATE] = rate / GROWTH**50
+    sim.prescribe_rate(rate / GROWTH**50)
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []
     highest = 0.0
     while True:
-        before = sim.largest_displacement()
+        before = measures.largest_displacement(sim)
         sim.advance(chunk, sim.creep_mode)
         budget.spend(chunk, "following the collapse")
         check_finite(sim)
-        moved = sim.largest_displacement()
-        load = sim.control[slot.MEAN_LOAD] / sim.control[slot.DEAD_FACTOR]
+        moved = measures.largest_displacement(sim)
+        load = sim.mean_load / sim.dead_share
         curve.append((load, moved))
         done = moved >= until
         highest = max(highest, load)
@@ -90,7 +91,7 @@ def follow(
         if done:
             reached = next((moved for load, moved in curve if load >= 0.99 * highest), moved)
             return {"load": highest, "displacement": reached}
-        sim.control[slot.RATE] = min(GROWTH * sim.control[slot.RATE], rate)
+        sim.prescribe_rate(min(GROWTH * sim.rate, rate))
         pace = abs(moved - before) / chunk
         longest = 100 if stage == "loading" else 20_000
         chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
@@ -109,7 +110,7 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
     relax(sim, 0.0, GRAVITY_TOLERANCE)
     soften_falls(sim, until)
     for share in STEPS_UP:
-        if settle_or_fail(sim, share * failure, budget, sim.dead_scale()).state != "equilibrium":
+        if settle_or_fail(sim, share * failure, budget, measures.dead_scale(sim)).state != "equilibrium":
             break
     fall_under(sim, track, failure, until, frames, budget, HARDER)
 
@@ -124,7 +125,7 @@ def fall_under(
     sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
     calm, next_row, next_frame = 0, 0.0, 0.0
     sim.set_load(load)
-    while sim.largest_displacement() < until:
+    while measures.largest_displacement(sim) < until:
         sim.advance(CHUNK, slot.HOLD_LOAD)
         budget.spend(CHUNK, "following the collapse")
         check_finite(sim)
@@ -134,7 +135,7 @@ def fall_under(
                 return False
             load, calm = harder * load, 0
             sim.set_load(load)
-        moved = sim.largest_displacement()
+        moved = measures.largest_displacement(sim)
         if moved >= next_row:
             track.write("collapse")
             next_row = moved + until / ROWS

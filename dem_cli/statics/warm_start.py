@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.errors import UsageError
-from dem_cli.kernels import records as slot
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -74,21 +73,11 @@ def place(sim: Simulation, start: WarmStart) -> None:
     Where the forces come without a way (limit analysis), what they store was put in from outside.
     """
     sim.set_load(start.load / sim.live_scale)
-    share = sim.control[slot.DEAD_FACTOR]  # a tilted table has less of all loads
-    contacts, bodies = sim.contacts, sim.bodies
-    d = sim.model.dimension
-    contacts.normal[:] = share * start.normal
-    contacts.shear[:] = share * start.shear
-    contacts.gaps[:] = np.where(start.normal > 0.0, -share * start.normal / sim.joints.kn, start.gaps)
-    bodies.positions[:] = sim.reference_positions + start.displacements[:, :d]
-    bodies.orientations[:] = start.displacements[:, d:]
-    bodies.velocities[:] = 0.0
-    elastic = sim.elastic_energy()
-    friction = max(float((sim.loads.dead * start.displacements).sum()) + start.work - elastic, 0.0)
-    sim.ledger[:] = 0.0
-    sim.ledger[slot.FRICTION] = friction
-    sim.ledger[slot.EXTERNAL] = friction + elastic
-    sim.ledger[slot.CONTACT] = -sim.ledger[slot.EXTERNAL]
+    share = sim.dead_share  # a tilted table has less of all loads
+    gaps = np.where(start.normal > 0.0, -share * start.normal / sim.joints.kn, start.gaps)
+    sim.place(share * start.normal, share * start.shear, gaps, start.displacements)
+    given = float((sim.loads.dead * start.displacements).sum()) + start.work
+    sim.open_books(max(given - sim.elastic_energy(), 0.0))
 
 
 def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> WarmStart | None:

@@ -173,9 +173,9 @@ def failure(job: SweepJob, reason: str, trace: str | None = None) -> Summary:
 
     Raises OutputError.
     """
-    from dem_cli import __version__
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.summary import write_summary
+    from dem_cli.version import __version__
 
     summary = {"title": "", "kind": "", "version": __version__, "status": FAILED, "reason": reason}
     summary |= {"traceback": trace} if trace else {}

@@ -51,10 +51,10 @@ def rest(short: bool) -> Iterator[Record]:
         for kinematics in ("fixed", "large"):
             sim = simulation(scene, kinematics)
             settled = settle(sim, load)
-            before, friction = sim.save_places(), sim.ledger[slot.FRICTION]
+            before, friction = sim.places(), sim.ledger[slot.FRICTION]
             sim.advance(steps, slot.HOLD_LOAD)
             structure = f"{scene.name}, {kinematics}"
-            drift = float(np.abs(sim.save_places() - before).max()) / size
+            drift = float(np.abs(sim.places() - before).max()) / size
             ratio = sim.kinetic_energy() / sim.elastic_energy()
             slipped = float(sim.ledger[slot.FRICTION] - friction) / sim.elastic_energy()
             yield figure(AXIS_REST, structure, "drift in block sizes", drift if settled else np.nan, 1e-9)

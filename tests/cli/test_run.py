@@ -10,11 +10,12 @@ import pytest
 from synthetic import wall_model, wall_summary
 from synthetic.runs import CASE, load, solver
 
-from dem_cli.cli.run import execute, monitor_names
+from dem_cli.cli.run import execute
 from dem_cli.cli.words import console
 from dem_cli.output.folder import OutputFolder
 from dem_cli.output.reader import read
 from dem_cli.output.summary import exit_code
+from dem_cli.pipeline.monitor_names import monitor_names
 
 
 def run(tmp_path, solve, text=CASE, **options):

@@ -182,7 +182,7 @@ def test_a_collapse_is_an_answer(tmp_path):
 
 
 def test_names_of_monitors(tmp_path):
-    from dem_cli.cli.run import monitor_names
+    from dem_cli.pipeline.monitor_names import monitor_names
 
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     assert monitor_names(load_case(tmp_path / "case.toml").case.monitor) == NAMES

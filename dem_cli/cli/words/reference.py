@@ -2,40 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
-
-from dem_cli.errors import CaseError, CaseProblem
-
-if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
-
-STATIC = ("gravity", "pushover", "cycle", "settlement")  # kinds of analysis that end in an equilibrium
-
-
-def check_quantities(case: Case, names: Sequence[str]) -> None:
-    """Raises CaseError for a [reference] to a monitor that the case has not, or not so: before a long run, not after.
-
-    names: of the monitors. All other quantities are known only when there is a summary.
-    """
-    from dem_cli.case.wording import unknown_name
-    from dem_cli.output.equilibrium_monitors import PARTS
-    from dem_cli.output.series import Peak
-
-    if case.analysis.kind == "time-history":
-        known = [f"peaks.{name}.{part}" for name in names for part in (*Peak._fields, "unit")]
-    elif case.analysis.kind in STATIC:
-        known = [f"monitors.{name}.{part}" for name in names for part in PARTS]
-    else:
-        return
-    asked = [(i, one.path) for i, one in enumerate(case.reference) if one.path.split(".")[0] in ("peaks", "monitors")]
-    problems = [
-        CaseProblem(("reference", i, "quantity"), unknown_name("quantity", path, known))
-        for i, path in asked
-        if path not in known
-    ]
-    if problems:
-        raise CaseError(problems)
+from collections.abc import Mapping
+from typing import Any
 
 
 def reference_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:

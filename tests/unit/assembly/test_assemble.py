@@ -43,17 +43,17 @@ def test_blocks_are_numbered_from_the_lowest_up_and_left_to_right(case_of, wall)
 
 
 def test_names_and_aliases(case_of, wall):
-    alone = assembly(case_of(structure=[wall])).block_map
+    alone = assembly(case_of(structure=[wall])).model.numbers
     assert alone["top-right"] == alone["wall-top-right"] == alone["wall-6-3"] == alone["6-3"]
     assert alone["base"] == 0
-    two = assembly(case_of(structure=[wall, wall | {"origin": [1.0, 0.0]}])).block_map
+    two = assembly(case_of(structure=[wall, wall | {"origin": [1.0, 0.0]}])).model.numbers
     assert "top-right" not in two
     assert two["wall2-top-right"] == two["wall2-6-3"]
 
 
 def test_a_block_called_like_an_alias_wins(case_of, wall):
     found = assembly(case_of(structure=[wall], block=[SQUARE | {"id": "top-right"}]))
-    assert found.blocks[found.block_map["top-right"]].path == ("block", 0)
+    assert found.blocks[found.model.numbers["top-right"]].path == ("block", 0)
 
 
 def test_corners_in_any_order_and_compounds(case_of):

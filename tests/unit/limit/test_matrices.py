@@ -8,6 +8,7 @@ from casefiles import CASES
 from engine import block, rectangle, scene, simulation, tables, turned
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.engine import measures
 from dem_cli.engine.properties import joint_properties
 from dem_cli.kernels import records as slot
 from dem_cli.limit.matrices import structure_of
@@ -42,7 +43,9 @@ def test_gaps_are_those_of_the_contact_loop():
     sim, s = simulation(ARCH), structure(ARCH)
     before = sim.contacts.gaps.copy()
     sim.advance(40, slot.HOLD_LOAD)
-    moved = np.column_stack([sim.displacement(), sim.bodies.orientations]) - sim.bodies.velocities  # gaps lag a step
+    moved = (
+        np.column_stack([measures.displacements(sim), sim.bodies.orientations]) - sim.bodies.velocities
+    )  # gaps lag a step
     opened = (s.compatibility @ moved.ravel()[s.free]).reshape(-1, 2)[:, 0]
     np.testing.assert_allclose(opened, sim.contacts.gaps - before, atol=1e-9 * np.abs(opened).max())
 

@@ -7,6 +7,7 @@ import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
 from dem_cli.contact.detect import world_corners
+from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.measures import free_falls
 from dem_cli.kernels import records as slot
@@ -79,13 +80,13 @@ def test_rest_after_toppling_names_the_block():
     """At rest on its side, after it stood."""
     sim = simulation(tables(GROUND, NEEDLE, joints={"dry": {"friction": 1.0, "kn": 1e8}}), "large")
     assert stand(sim, Budget(100_000)).state == "equilibrium"
-    scale, since = sim.dead_scale(), sim.save_places()
+    scale, since = measures.dead_scale(sim), sim.places()
     sim.bodies.positions[1], sim.bodies.orientations[1] = (0.75, 0.125), -np.pi / 2
     sim.bodies.corners[:] = world_corners(sim.shape, sim.bodies.positions, sim.bodies.orientations)
     sim.detect()
     verdict = settle_or_fail(sim, 0.0, Budget(200_000), scale, since=since)
     assert (verdict.state, verdict.block) == ("failure", "needle")
-    assert displaced(sim, sim.save_places(), scale) is None
+    assert displaced(sim, sim.places(), scale) is None
 
 
 def test_a_small_fall_onto_the_ground_is_no_failure():

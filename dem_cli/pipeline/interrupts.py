@@ -1,21 +1,26 @@
-"""Ctrl-C, SIGTERM and SIGHUP stop a run between two writes, never inside one."""
+"""Ctrl-C, SIGTERM and SIGHUP interrupt a run between two writes, never inside one."""
 
 from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any
 
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 class Interrupts:
-    """Raises KeyboardInterrupt once: at once, or at the end of a `shielded()` block."""
+    """Raises KeyboardInterrupt once: at once, or at the end of a `shielded()` block.
 
-    def __init__(self) -> None:
+    ends_program: once interrupted, the program is about to end, with an exit code of its own, and nothing disturbs it
+    any more; False: it goes on, with its own handlers back in place.
+    """
+
+    def __init__(self, signals: Sequence[str] = SIGNALS, *, ends_program: bool = True) -> None:
+        self.signals, self.ends_program = tuple(signals), ends_program
         self._depth = 0
         self._pending = False
         self._ignored = self._stopped = False
@@ -23,15 +28,15 @@ class Interrupts:
 
     def __enter__(self) -> Interrupts:
         if threading.current_thread() is threading.main_thread():
-            for name in _NAMES:
+            for name in self.signals:
                 number = getattr(signal, name, None)
-                if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup stays nohup
+                if number is not None and signal.getsignal(number) not in (signal.SIG_IGN, None):  # nohup stays nohup
                     self._previous[number] = signal.signal(number, self._handle)
         return self
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        for number, handler in self._previous.items():  # a stopped program ends with its own exit code
-            signal.signal(number, signal.SIG_IGN if self._stopped else handler)
+        for number, handler in self._previous.items():
+            signal.signal(number, signal.SIG_IGN if self._stopped and self.ends_program else handler)
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self._ignored:

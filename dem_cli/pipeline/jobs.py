@@ -37,17 +37,16 @@ def _solved(
     path: str | Path, overrides: Sequence[str | Override], folder: str | Path | None, text: str | None
 ) -> dict[str, Any]:
     from dem_cli import api
-    from dem_cli.cli.many import Wish
-    from dem_cli.cli.run import execute
+    from dem_cli.pipeline.batches import BatchOptions
+    from dem_cli.pipeline.execution import run_case
 
     started = time.perf_counter()
     loaded = api.load_case(path, overrides, text)
-    model = api.build_model(loaded)
     kept = folder is not None  # by whoever keeps a folder for this run alone: what is broken in it is written anew
     with nullcontext(folder) if folder is not None else tempfile.TemporaryDirectory() as place:
         output = Path(place) if kept else Path(place) / "results"
-        wish = Wish(threads=1, resume=kept)  # what a killed one of many runs left is taken up
-        return execute(loaded, model, output, started, force=kept, quiet=True, wish=wish, recover=not kept)[0]
+        options = BatchOptions(threads=1, resume=kept)  # what a killed one of many runs left is taken up
+        return run_case(loaded, output, started, force=kept, options=options, recover=not kept)[0]
 
 
 def do_job(job: SweepJob) -> Summary:

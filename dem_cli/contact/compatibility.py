@@ -1,0 +1,64 @@
+"""Compatibility of rigid blocks, B: from the motion of the blocks to the relative motion at every contact point.
+
+    w = B u        motion of b against a at every point: along its normal (opening, positive), then along its tangents
+
+One copy for limit analysis, natural frequencies, fictitious masses and the elastic path; 2D and 3D alike. A point has
+d rows, its normal first. Columns are degrees of freedom: block by block, translations first, then rotations; as a
+sparse matrix, those of free blocks alone. The transpose gives the forces on the blocks from those at the points.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.geometry.rotation import across
+from dem_cli.kernels.records import Joints
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+
+def directions(joints: Joints, dimension: int) -> np.ndarray:
+    """Unit normal and tangents of every point, (n_points, d, d); in 2D only normals are kept up to date."""
+    if dimension == 2:
+        normals = joints.frames[:, :2]
+        return np.stack([normals, across(normals)], axis=1)
+    return joints.frames.reshape(-1, dimension, dimension)
+
+
+def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
+    """∂(motion of b against a)/∂(motion of a, of b), (n_points, d directions, 2 blocks, n_dof)."""
+    d = dimension
+    frames = directions(joints, d)
+    n_points = len(frames)
+    levers = joints.levers.reshape(n_points, 2, d, joints.levers.shape[1] // (2 * d)).swapaxes(1, 2)
+    one = np.concatenate([np.repeat(frames[:, :, None], 2, axis=2), levers], axis=3)
+    return one * np.array([-1.0, 1.0])[:, None]
+
+
+def free_columns(model: Model, joints: Joints) -> np.ndarray:
+    """Column of each degree of freedom of both blocks of every point, −1: fixed, (n_points, 2 blocks, n_dof)."""
+    n_dof = model.dead_loads.shape[1]
+    column = np.full(model.n_blocks, -1)
+    column[~model.fixed] = np.arange(int((~model.fixed).sum())) * n_dof
+    first = column[joints.blocks[joints.owners]]
+    return np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof))
+
+
+def compatibility(model: Model, joints: Joints) -> csr_matrix:
+    """B from the free degrees of freedom to the motion of b against a at every point, (n_points·d, n_free)."""
+    from scipy.sparse import csr_matrix
+
+    rows = relative_motion(joints, model.dimension)
+    n_points, d, _, n_dof = rows.shape
+    columns = np.broadcast_to(free_columns(model, joints)[:, None], rows.shape)
+    used = (columns >= 0) & (rows != 0.0)
+    counts = used.reshape(n_points * d, 2 * n_dof).sum(axis=1)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    shape = (n_points * d, int((~model.fixed).sum()) * n_dof)
+    matrix = csr_matrix((rows[used], columns[used], starts), shape=shape)
+    matrix.sort_indices()
+    return matrix

@@ -1,0 +1,72 @@
+"""Rotation of vectors in the plane and in space: by angles or unit quaternions, quarter turns, cross products, moments.
+
+Orientations of n blocks are (n, 1), angles [rad], or (n, 4), unit quaternions with the scalar first; vectors are (n, 2)
+or (n, 3), spins and moments (n, 1) or (n, 3): the lengths say the dimension. Kernels have their own (kernels/vec.py).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def turned_by(vectors: np.ndarray, cosines: np.ndarray | float, sines: np.ndarray | float) -> np.ndarray:
+    """Vectors (..., 2) turned by angles of which cosines and sines are known, one for each or one for all."""
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cosines * x - sines * y, sines * x + cosines * y], axis=-1)
+
+
+def turned(vectors: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
+    """Vectors (n, 2) turned about the origin, each by its own angle [rad] or all by one; 0 is exact."""
+    return turned_by(vectors, np.cos(angles), np.sin(angles))
+
+
+def turned_as_one(vectors: np.ndarray, angle: float) -> np.ndarray:
+    """Vectors (n, 2) turned about the origin by one angle [rad], as a product of matrices."""
+    c, s = np.cos(angle), np.sin(angle)
+    return vectors @ np.array([[c, s], [-s, c]])
+
+
+def across(vectors: np.ndarray) -> np.ndarray:
+    """Vectors turned by +90°, (..., 2): velocities of their tips at unit spin."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross product in the plane, (...): how far b lies to the left of a, times the length of a."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def moments(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Moments of forces about the origin of their arms, arm × force, (n, r)."""
+    return cross(arms, forces)[:, np.newaxis] if arms.shape[1] == 2 else np.cross(arms, forces)
+
+
+def swept(spins: np.ndarray, arms: np.ndarray) -> np.ndarray:
+    """Velocities of the tips of arms (..., d) that turn with spins (..., r): ω × arm, (..., d)."""
+    return spins * across(arms) if arms.shape[-1] == 2 else np.cross(spins, arms)
+
+
+def unturned(n: int, dimension: int) -> np.ndarray:
+    """Orientations of n blocks that have not turned, (n, 1) or (n, 4)."""
+    return np.zeros((n, 1)) if dimension == 2 else np.tile((1.0, 0.0, 0.0, 0.0), (n, 1))
+
+
+def angles_of(orientations: np.ndarray) -> np.ndarray:
+    """How far each block has turned [rad], (n,): with its sign in the plane, from 0 to π in space."""
+    if orientations.shape[1] == 1:
+        return orientations[:, 0]
+    return 2.0 * np.arccos(np.clip(np.abs(orientations[:, 0]), 0.0, 1.0))
+
+
+def matrices(orientations: np.ndarray) -> np.ndarray:
+    """Rotation matrices: (n, 1) angles -> (n, 2, 2); (n, 4) unit quaternions -> (n, 3, 3)."""
+    if orientations.shape[1] == 1:
+        c, s = np.cos(orientations[:, 0]), np.sin(orientations[:, 0])
+        return np.stack((np.stack((c, -s), axis=1), np.stack((s, c), axis=1)), axis=1)
+    w, x, y, z = orientations.T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.stack([np.stack(row, axis=1) for row in rows], axis=1)

@@ -1,0 +1,42 @@
+"""Topology of convex parts: their faces, and the corners of each face, as compressed sparse rows (CSR).
+
+In the plane a part has as many faces as corners, and face k has the two corners k and the next one around: edges and
+faces are one thing.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.geometry import polygon
+
+
+class Topology(NamedTuple):
+    """Which corners bound which face of which convex part."""
+
+    part_faces: np.ndarray  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
+    face_starts: np.ndarray  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
+    face_corners: np.ndarray  # in the plane both ends of an edge, in space around the face seen from outside, int64
+
+    @property
+    def n_faces(self) -> int:
+        return len(self.face_starts) - 1
+
+    @property
+    def face_parts(self) -> np.ndarray:
+        """Part of each face, (n_faces,)."""
+        return np.repeat(np.arange(len(self.part_faces) - 1), np.diff(self.part_faces))
+
+    @property
+    def ends(self) -> np.ndarray:
+        """First and last corner of each face, (n_faces, 2): in the plane the ends of the edge."""
+        return np.column_stack([self.face_corners[self.face_starts[:-1]], self.face_corners[self.face_starts[1:] - 1]])
+
+
+def topology_of_polygons(part_starts: np.ndarray) -> Topology:
+    """Of polygons with the corners part_starts[p]:part_starts[p + 1]: face k starts at corner k."""
+    n = int(part_starts[-1])
+    corners = np.column_stack([np.arange(n), polygon.following(part_starts)])
+    return Topology(np.asarray(part_starts, np.int64), np.arange(0, 2 * n + 1, 2), corners.ravel())

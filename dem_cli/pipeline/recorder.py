@@ -1,0 +1,49 @@
+"""The observer of a run: everything that a solver reports goes to the files, and progress to the listener."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from dem_cli.model.model import Model
+    from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
+    from dem_cli.output.store import ResultWriter
+    from dem_cli.pipeline.interrupts import Interrupts
+    from dem_cli.pipeline.listener import RunListener
+
+
+class Recorder:
+    """Keeps what comes, says where the run stands, lets nothing interrupt a write."""
+
+    def __init__(self, writer: ResultWriter, listener: RunListener, interrupts: Interrupts):
+        self.writer, self.listener, self.interrupts = writer, listener, interrupts
+
+    def frame(self, frame: Frame) -> None:
+        """Into the files."""
+        with self.interrupts.shielded():
+            self.writer.frame(frame)
+
+    def row(self, row: HistoryRow) -> None:
+        """Into the files."""
+        with self.interrupts.shielded():
+            self.writer.row(row)
+
+    def samples(self, samples: Samples) -> None:
+        """Into the files."""
+        with self.interrupts.shielded():
+            self.writer.samples(samples)
+
+    def structure(self, model: Model) -> None:
+        """Into the files."""
+        with self.interrupts.shielded():
+            self.writer.structure(model)
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """Into the files."""
+        with self.interrupts.shielded():
+            self.writer.runs(rows)
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """To the listener."""
+        self.listener.progress(stage, load, displacement, fraction)

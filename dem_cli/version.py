@@ -1,0 +1,3 @@
+"""Version of dem; what a version promises stands in docs/versions.md."""
+
+__version__ = "0.2.0"
