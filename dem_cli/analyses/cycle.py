@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
 FAILS = "fails on the way"
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
+def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
-    job = Job.start(case, model, observer)
+    job = Job.start(case, model, observer, settings)
     job.skipped.append("failure search: the load follows the path of the case")
     sim = job.first_simulation()
     track = job.track(sim)

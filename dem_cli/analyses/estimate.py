@@ -11,7 +11,8 @@ import numpy as np
 
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.kinematics import live_scale, why_moving
-from dem_cli.engine.properties import FIXED_RATIO, joint_properties, law_of
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
@@ -82,7 +83,7 @@ def _ratio(case: Case, model: Model) -> float:
         from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
 
         return of_settlement(model)
-    return FIXED_RATIO
+    return DEFAULT.stiffness.statics
 
 
 def _blocks(model: Model, gravity: float) -> Rows:

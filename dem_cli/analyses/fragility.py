@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.engine.audit import CLOSURE
 from dem_cli.engine.job import Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
 from dem_cli.ensembles.capacities import Bounds, bounds_of, distribution, outcomes, split, survived_above
 from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
-from dem_cli.ensembles.shaken_run import OnlyProgress, RestedStructure
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
@@ -31,18 +31,20 @@ if TYPE_CHECKING:
     from dem_cli.tables.analysis import FragilityAnalysis
 
 MOST_LISTED = 5  # runs that one warning names
-FEW = 2  # intervals between levels that any narrow distribution fits
 
 
-def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+def run(
+    case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT, batch: Batch | None = None
+) -> Outcome:
     """Outcome of all runs. Raises CaseError without any record, SolverError where no run has a result."""
-    return FragilityStudy(case, model, observer, batch or Batch()).run()
+    return FragilityStudy(case, model, observer, settings, batch or Batch()).run()
 
 
 class FragilityStudy:
     """All records at all intensities, on the structure of the case and on slightly different ones."""
 
-    def __init__(self, case: Case, model: Model, observer: Observer, batch: Batch):
+    def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch):
+        self.settings = settings
         self.case, self.model, self.observer, self.batch = case, model, observer, batch
         self.analysis: FragilityAnalysis = case.analysis
         self.started = time.perf_counter()
@@ -70,13 +72,18 @@ class FragilityStudy:
 
     def _rest(self) -> list[RestedStructure]:
         """All structures, at rest under their dead loads."""
-        quiet, found = OnlyProgress(self.observer), []
+        quiet, found = ProgressOnly(self.observer), []
         for number in range(1 + self.analysis.repeats):
-            found.append(RestedStructure(Variant(self.case, self.model, number), self.records, quiet))
+            found.append(self._rested(number, quiet))
         fell = [rested.variant.number for rested in found if not rested.stands]
         if fell and found[0].stands:
             self.warnings.append(f"{len(fell)} of {len(found) - 1} perturbed structures do not stand: left out")
         return found
+
+    def _rested(self, number: int, quiet: Observer) -> RestedStructure:
+        """One structure of the set, at rest under its dead loads."""
+        variant = Variant(self.case, self.model, number, self.settings.statistics.largest_draw)
+        return RestedStructure(variant, self.records, quiet, self.settings)
 
     def _motion(self, trial: ShakingTrial) -> list[Motion]:
         return [scaled(self.records[trial.record], trial.intensity, self.analysis)]
@@ -116,7 +123,7 @@ class FragilityStudy:
             "records": self.names,
             "collapse_intensities": [_upper(bounds[0, r]) for r in range(len(self.records))],
             "stood_up_to": [_lower(bounds[0, r]) for r in range(len(self.records))],
-            **distribution(table, levels, self.analysis.confidence, self.case.seed),
+            **distribution(table, levels, self.analysis.confidence, self.case.seed, self.settings.statistics),
             "never_collapsed": int(np.isinf(table[:, :, 1]).sum()),
             "collapsed_at_lowest": int((table[:, :, 0] == 0.0).sum()),
             "unit_acceleration": self.analysis.unit_acceleration,
@@ -148,7 +155,7 @@ class FragilityStudy:
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""
-        if answer["median"] is not None and intervals <= FEW:
+        if answer["median"] is not None and intervals <= self.settings.statistics.few:
             self.warnings.append(
                 f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
                 "resolved, closer levels are needed"
@@ -164,7 +171,7 @@ class FragilityStudy:
                 "other intensities; repeats = 5 shows by how much"
             )
         worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
-        if worst is not None and abs(worst) > CLOSURE:
+        if worst is not None and abs(worst) > self.settings.doubts.closure:
             self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")
         if answer["never_collapsed"] and answer["median"] is not None:
             highest = self.analysis.levels[-1]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
+def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a gravity analysis; status "ok" means that it stands."""
-    job = Job.start(case, model, observer)
+    job = Job.start(case, model, observer, settings)
     sim = job.first_simulation()
     track = job.track(sim)
     try:

@@ -16,6 +16,7 @@ from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
@@ -26,18 +27,12 @@ from dem_cli.statics.equilibrium import FALLS, settle, stand
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-PRESSED = 1e-4  # of the mean weight of a block: a point with less than that may be round-off of the equilibrium
-CLOSES = 1e-6  # of the smallest edge: a gap below that is closed (contact.start.TOUCH), but for what gravity opened
-PULL = 1e-6  # of the elastic displacement of a weight on a point, to see whether it carries tension
-VISIBLE, LARGEST_TURN = 0.06, 0.2  # of the size of the structure, and rad: how far the picture of a mode moves
 AXES = "xyz"
-AGREES, ROUNDS = 1e-4, 8  # of a frequency: how near a calibrated structure comes to the measured one; most attempts
-SINKS, MOST_STEPS = 0.05, 200_000  # of an attempt: overlap in smallest edges, and steps to stand
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
+def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a modal analysis. Raises CaseError where the structure has no mode with the number asked for."""
-    job = Job.start(case, model, observer)
+    job = Job.start(case, model, observer, settings)
     sim = _simulation(job)
     track = job.track(sim)
     found: dict[str, Any] = {}
@@ -103,7 +98,7 @@ def closed_points(sim: Simulation) -> np.ndarray:
     """Contact points that answer any small motion: pressed together, or held by a bond, (n_points,) bool."""
     free, d = sim.free, sim.model.dimension
     weight = mean_weight(sim.loads.dead[free], sim.loads.live[free], d) if len(free) else 1.0
-    closed = sim.contacts.normal > PRESSED * weight
+    closed = sim.contacts.normal > sim.settings.modes.pressed * weight
     if sim.law.bonded:
         closed |= _bonds(sim, np.flatnonzero(~closed), weight)
     return closed
@@ -111,7 +106,7 @@ def closed_points(sim: Simulation) -> np.ndarray:
 
 def touching_points(sim: Simulation) -> np.ndarray:
     """The same and all that have no gap, such as head joints that carry nothing yet, (n_points,) bool."""
-    return closed_points(sim) | (sim.measured().gaps <= CLOSES * sim.smallest)
+    return closed_points(sim) | (sim.measured().gaps <= sim.settings.modes.closes * sim.smallest)
 
 
 def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
@@ -121,7 +116,7 @@ def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
     still = (0.0,) * (sim.model.dimension - 1)
     holds = np.zeros(len(joints.kn), bool)
     for i in points:
-        gap = contacts.gaps[i] + PULL * weight / joints.kn[i]
+        gap = contacts.gaps[i] + sim.settings.modes.pull * weight / joints.kn[i]
         normal = sim.law.function(
             gap, still, tuple(contacts.shear[i]), joints.kn[i], joints.ks[i], joints.law, owner[i], memory, i
         )[0]
@@ -131,12 +126,13 @@ def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
 
 def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     """The structure moved along a mode so far that it can be seen; `step` is the number of the mode."""
+    modes = sim.settings.modes
     model, d = sim.model, sim.model.dimension
     free = ~model.fixed
     reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, d:]).max(axis=1) * sim.shape.radii
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
     turn = float(np.abs(shape[:, d:]).max())
-    amplitude = min(VISIBLE * size / reach.max(), LARGEST_TURN / turn if turn > 0.0 else math.inf)
+    amplitude = min(modes.visible * size / reach.max(), modes.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
     return rest._replace(
         step=number,
@@ -169,12 +165,13 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
     That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
     with the new stiffness, and the factor is corrected until the frequency is met.
     """
+    modes = sim.settings.modes
     wanted = job.case.analysis
     tried: list[float] = []
     factor, found, sinks = 1.0, computed, measures.largest_overlap(sim) / sim.smallest
-    while len(tried) < ROUNDS and abs(found / wanted.measured - 1.0) > AGREES:
+    while len(tried) < modes.rounds and abs(found / wanted.measured - 1.0) > modes.agrees:
         factor *= (wanted.measured / found) ** 2
-        frequency = _frequency_with(job, sim, factor) if sinks / factor < SINKS else None
+        frequency = _frequency_with(job, sim, factor) if sinks / factor < modes.sinks else None
         if frequency is None:
             job.warnings.append(
                 f"joints as soft as {wanted.measured:g} Hz asks for ({factor:.3g} times kn and ks) do not carry the "
@@ -183,8 +180,8 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
             break
         found = frequency
         tried.append(found)
-    met = abs(found / wanted.measured - 1.0) <= AGREES
-    if not met and len(tried) == ROUNDS:
+    met = abs(found / wanted.measured - 1.0) <= modes.agrees
+    if not met and len(tried) == modes.rounds:
         job.warnings.append(f"the calibrated frequency is {found:.4g} Hz instead of {wanted.measured:g} Hz")
     return {
         "mode": wanted.mode,
@@ -212,7 +209,7 @@ def _frequency_with(job: Job, sim: Simulation, factor: float) -> float | None:
     tables = {name: job.case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
     again = _simulation(replace(job, case=job.case.model_copy(update={"joints": tables})))
     try:
-        if stand(again, Budget(min(MOST_STEPS, wanted.max_steps))).state != "equilibrium":
+        if stand(again, Budget(min(sim.settings.modes.most_steps, wanted.max_steps))).state != "equilibrium":
             return None
     except SolverError:
         return None

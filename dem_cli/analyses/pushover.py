@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine.job import Job, Outcome
-from dem_cli.engine.properties import FIXED_RATIO, joint_properties, law_of
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
@@ -14,21 +15,18 @@ from dem_cli.statics import post_peak
 from dem_cli.statics.equilibrium import FALLS, settle
 from dem_cli.statics.failure_load import FailureSearch, find_failure
 from dem_cli.statics.mechanism import describe
-from dem_cli.statics.warm_start import GRAVITY, LARGE, LIMIT, PATH, find_start
+from dem_cli.statics.warm_start import GRAVITY, LIMIT, PATH, find_start
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 INTERRUPTED = "interrupted"
-OVERSHOOT = 0.02  # of the failure load, that the curve of the collapse may peak above it without a word
-ABOVE = 0.005  # of the associated load, that a failure load may lie above it
-LOWERED = 0.005  # of the load on stiff joints, that soft ones may change it by without a word
-SOFT = 0.5  # displacement at failure in smallest edges, over the resolution, from which geometry must move
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
+def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
-    job = Job.start(case, model, observer)
+    warm_start = settings.warm_start
+    job = Job.start(case, model, observer, settings)
     search, sim = _search(job)
     sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
@@ -37,8 +35,10 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             "started from the forces of limit analysis without friction in head joints: "
             "the load that the structure reaches from gravity may be some per cent lower"
         )
-    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > LARGE:
-        job.warnings.append(f"more than {LARGE} blocks raised from gravity: the true failure load may be higher")
+    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > warm_start.large:
+        job.warnings.append(
+            f"more than {warm_start.large} blocks raised from gravity: the true failure load may be higher"
+        )
     if search.found and None not in (search.crept, search.high) and search.crept * sim.live_scale > search.high:
         job.warnings.append(
             f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
@@ -56,7 +56,7 @@ def run(case: Case, model: Model, observer: Observer) -> Outcome:
             sims.append(falling)
             found["displacement_at_failure"] = peak["displacement"]
             found["peak_of_curve"] = peak["load"] and peak["load"] * sim.live_scale
-            job.warnings += _too_fast(found["peak_of_curve"], search.high)
+            job.warnings += _too_fast(found["peak_of_curve"], search.high, settings.doubts.overshoot)
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
@@ -88,9 +88,11 @@ def _search(job: Job) -> tuple[FailureSearch, Simulation]:
         except KeyboardInterrupt:
             search.status = INTERRUPTED
         moved = search.peak_displacement / sim.smallest
-        soft = moved > SOFT * analysis.resolution and any(j.kn != "auto" for j in job.case.joints.values())
+        soft = moved > job.settings.load_search.soft * analysis.resolution and any(
+            j.kn != "auto" for j in job.case.joints.values()
+        )
         if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
-            if rigid and search.found and abs(search.low - rigid) > LOWERED * rigid:
+            if rigid and search.found and abs(search.low - rigid) > job.settings.doubts.lowered * rigid:
                 change = f"by {100 * abs(search.low / rigid - 1):.2g} %"
                 job.warnings.append(
                     f"the given kn {'lowers' if search.low < rigid else 'raises'} the failure load {change}: "
@@ -105,9 +107,9 @@ def _search(job: Job) -> tuple[FailureSearch, Simulation]:
         search, sim = FailureSearch(), job.simulation("large")
 
 
-def _too_fast(peak: float | None, high: float | None) -> list[str]:
+def _too_fast(peak: float | None, high: float | None, overshoot: float) -> list[str]:
     """A word where the curve of the collapse is above what the structure carries at rest."""
-    if peak is None or high is None or peak <= (1.0 + OVERSHOOT) * high:
+    if peak is None or high is None or peak <= (1.0 + overshoot) * high:
         return []
     share = f"{100 * (peak / high - 1):.2g} %"
     return [
@@ -136,7 +138,7 @@ def _limit_analysis(job: Job, search: FailureSearch) -> dict[str, Any]:
         summary["non_associated" if status == OK else "non_associated_at_least"] = load
         summary["non_associated_status"] = status
     bound = loads.associated.upper
-    if search.found and bound is not None and search.low > (1.0 + ABOVE) * bound:
+    if search.found and bound is not None and search.low > (1.0 + job.settings.doubts.above) * bound:
         job.warnings.append(
             f"the failure load {search.low:.5g} is above the associated limit load {bound:.5g}, "
             "which rigid blocks cannot exceed: do not trust this run"
@@ -156,13 +158,13 @@ def _fall(job: Job, sim: Simulation, search: FailureSearch) -> tuple[Simulation,
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.low / sim.live_scale
     by_load = _by_load(job)
-    ratio, softer = FIXED_RATIO, 1.0
+    ratio, softer = sim.settings.stiffness.statics, 1.0
     if not by_load:
-        ratio, softer = post_peak.softness(job.case, search.elastic, load, sim.smallest, until)
+        ratio, softer = post_peak.softness(job.case, search.elastic, load, sim.smallest, until, job.settings)
     falling = job.simulation("large", ratio)
     falling.count_from(sim.steps)
-    fast = search.compliance * softer / post_peak.STEPS
-    rate = min(fast, search.compliance / search.elastic * until / post_peak.FEWEST)
+    fast = search.compliance * softer / sim.settings.post_peak.steps
+    rate = min(fast, search.compliance / search.elastic * until / sim.settings.post_peak.fewest)
     try:
         if by_load:
             impossible = search.high / sim.live_scale

@@ -10,12 +10,12 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.engine.audit import CLOSURE
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.kinematics import why_moving
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles import bisection
 from dem_cli.ensembles.bisection import Ends
-from dem_cli.ensembles.shaken_run import OnlyProgress
+from dem_cli.ensembles.shaken_run import ProgressOnly
 from dem_cli.ensembles.static_bound import Bound, bound
 from dem_cli.ensembles.static_run import StaticRun, decide, fall
 from dem_cli.ensembles.static_values import changed, checked_model, scale_of, weaker
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.tables.safety import SafetyAnalysis
 
-BEYOND = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
 NOT_CONVERGED, INTERRUPTED = "not converged", "interrupted"
 
 
-def run(case: Case, model: Model, observer: Observer) -> Outcome:
+def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a safety analysis. Raises CaseError where nothing can be varied as the case says."""
-    return SafetyStudy(case, model, observer).run()
+    return SafetyStudy(case, model, observer, settings).run()
 
 
 class SafetyStudy:
     """All runs of a safety analysis."""
 
-    def __init__(self, case: Case, model: Model, observer: Observer):
+    def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings):
+        self.settings = settings
         self.case, self.model, self.observer = case, model, observer
         self.analysis: SafetyAnalysis = case.analysis
         self.scale = scale_of(case)
@@ -95,7 +95,9 @@ class SafetyStudy:
         text = f"{len(self.runs) + 1}. run: {self._named(value)}"
         self.observer.progress(text, math.nan, math.nan, None)
         try:
-            told = decide(*self.variant(value), OnlyProgress(self.observer), value, self._past(value) >= 0.0)
+            told = decide(
+                *self.variant(value), ProgressOnly(self.observer), value, self._past(value) >= 0.0, self.settings
+            )
         except CaseError as error:  # both ends of the range are possible
             self._give_up(value, str(error))
             return
@@ -126,11 +128,11 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(self.case, self.model)
+        moving = why_moving(self.case, self.model, self.settings)
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)
-        return bound(self.variant, self.scale, self.analysis.resolution)
+        return bound(self.variant, self.scale, self.analysis.resolution, self.settings.safety.closer)
 
     # -- what they say -----------------------------------------------------------------------------
 
@@ -154,17 +156,18 @@ class SafetyStudy:
 
     def _check(self, ends: Ends) -> None:
         """Words about answers that contradict each other."""
+        doubts = self.settings.doubts
         if bisection.changes(self.answers) > 1:
             tried = ", ".join(f"{v:.5g} {'stands' if s else 'fails'}" for v, s in sorted(self.answers.items()))
             self.warnings.append(f"not monotone: {tried}; the answer is the first failure from the side that stands")
         if isinstance(self.known, Bound) and ends.stands is not None:
             impossible = self.known.impossible
-            if self._past(ends.stands) > BEYOND * abs(impossible):
+            if self._past(ends.stands) > doubts.beyond * abs(impossible):
                 self.warnings.append(
                     f"it stands at {self._named(ends.stands)}, where limit analysis proves that nothing can "
                     f"({impossible:.5g} and beyond): do not trust this run"
                 )
-        if abs(self.closure) > CLOSURE:
+        if abs(self.closure) > doubts.closure:
             self.warnings.append(f"the energy does not close: {self.closure:.2%} is missing; do not trust this run")
 
     def _answer(self, status: str, ends: Ends) -> dict[str, Any]:

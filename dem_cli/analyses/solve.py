@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.analyses.registry import ANALYSES
 from dem_cli.engine.job import Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 
@@ -14,10 +15,16 @@ if TYPE_CHECKING:
     from dem_cli.ensembles.batch import Batch
 
 
-def solve(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+def solve(
+    case: Case, model: Model, observer: Observer, batch: Batch | None = None, settings: Settings = DEFAULT
+) -> Outcome:
     """Solve a case with the analysis that it names. Raises SolverError where the solver gives up.
 
-    batch: how to do the runs of an analysis that consists of many.
+    batch: how to do the runs of an analysis that consists of many; settings: those that differ from the default are
+    named in the summary.
     """
-    solve = ANALYSES[case.analysis.kind].load()
-    return solve(case, model, observer) if batch is None else solve(case, model, observer, batch)
+    run = ANALYSES[case.analysis.kind].load()
+    outcome = run(case, model, observer, settings, *([] if batch is None else [batch]))
+    if changed := settings.changed():
+        outcome.summary["settings"] = changed
+    return outcome

@@ -16,8 +16,9 @@ import numpy as np
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
-from dem_cli.ensembles.shaken_run import OnlyProgress, RestedStructure, ShakenRunResult
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
@@ -34,16 +35,18 @@ ONE_DRAW = (
 PERCENTILES = {"min": 0.0, "p16": 16.0, "median": 50.0, "p84": 84.0, "max": 100.0}
 
 
-def run(case: Case, model: Model, observer: Observer, batch: Batch | None = None) -> Outcome:
+def run(
+    case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT, batch: Batch | None = None
+) -> Outcome:
     """Outcome of a time history, and how sensitive it is. Raises SolverError where it blows up."""
-    job = Job.start(case, model, observer)
+    job = Job.start(case, model, observer, settings)
     for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
         job.clock.imported(module)
     outcome = TimeHistory(job, GroundMotion(motions_of(case), model)).run()
     if doubtful(case):
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
-        found = repeated(case, model, observer, batch or Batch())
+        found = repeated(case, model, observer, settings, batch or Batch())
         outcome.summary["warnings"] += found.pop("warnings")
         outcome.summary |= found
     return outcome
@@ -54,11 +57,12 @@ def doubtful(case: Case) -> bool:
     return case.analysis.repeats == 0 and any(table.kind in EARTHQUAKES for table in case.motion)
 
 
-def repeated(case: Case, model: Model, observer: Observer, batch: Batch) -> dict[str, Any]:
+def repeated(case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch) -> dict[str, Any]:
     """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed."""
     started = time.perf_counter()
-    motions, quiet = motions_of(case), OnlyProgress(observer)
-    structures = [RestedStructure(Variant(case, model, 1 + k), motions, quiet) for k in range(case.analysis.repeats)]
+    motions, quiet = motions_of(case), ProgressOnly(observer)
+    variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
+    structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
     batcher = Batcher(structures, lambda _: motions, batch)
 

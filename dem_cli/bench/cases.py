@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dem_cli import api
-from dem_cli.output.record import SilentObserver
+from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -92,13 +93,13 @@ SIZES = (  # walls of the same blocks and friction 0.6, by size
 )
 
 
-def solve(case: Case, model: Model, observer: Observer | None = None) -> dict[str, Any]:
+def solve(case: Case, model: Model, observer: Observer | None = None, settings: Settings = DEFAULT) -> dict[str, Any]:
     """The summary of a run; of a run that gave up, its status and message."""
     from dem_cli.analyses.solve import solve
     from dem_cli.errors import SolverError
 
     try:
-        return solve(case, model, observer or SilentObserver()).summary
+        return solve(case, model, observer or Observer(), settings=settings).summary
     except SolverError as error:
         return {"status": str(error), "failure_load": None, "steps": None}
 

@@ -14,7 +14,7 @@ from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Frame, HistoryRow, SilentObserver
+from dem_cli.output.record import Frame, HistoryRow, Observer
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
@@ -46,7 +46,7 @@ class Feature:
         return True
 
 
-class DiskObserver(SilentObserver):
+class DiskObserver(Observer):
     """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
 
     def __init__(self, case: Any, model: Any, folder: Path):

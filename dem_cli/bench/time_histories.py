@@ -15,7 +15,7 @@ from dem_cli.bench.cases import FOLDER
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Samples, SilentObserver
+from dem_cli.output.record import Observer, Samples
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
@@ -31,7 +31,7 @@ DASHPOTS = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
 BLOCK, SHAKEN_FILES = "block", {"column": "shaken_column", "arch": "shaken_arch"}
 
 
-class FirstMonitor(SilentObserver):
+class FirstMonitor(Observer):
     """An observer that keeps the first monitor."""
 
     def __init__(self) -> None:

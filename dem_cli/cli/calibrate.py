@@ -14,7 +14,7 @@ from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
-from dem_cli.output.record import SilentObserver
+from dem_cli.output.record import Observer
 from dem_cli.pipeline.batches import usable_cores
 from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.version import __version__
@@ -128,7 +128,7 @@ def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[
     return [found[i] for i in range(len(plan))]
 
 
-class RowKeeper(SilentObserver):
+class RowKeeper(Observer):
     """An observer that keeps the rows of the history."""
 
     def __init__(self) -> None:

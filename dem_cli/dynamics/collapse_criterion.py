@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.tables.analysis import ShakingAnalysis
 
-BLOW_UP = 0.2  # energy error over the largest energy from which a run is stopped
-
 
 class CollapsedBlock(NamedTuple):
     """The first block that collapsed."""
@@ -47,7 +45,7 @@ def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:
     """Raises SolverError where the motion makes energy."""
     sim.note_kinetic_energy()
     error = closure(sim)
-    if abs(error) > BLOW_UP and measures.energy(sim).kinetic > sim.noticeable_energy:
+    if abs(error) > sim.settings.history.blow_up and measures.energy(sim).kinetic > sim.noticeable_energy:
         block = sim.model.block_ids[_fastest(sim)]
         raise SolverError(
             f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.dynamics.restitution import fraction_of, reference_block
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.viscous import Damping, element_numbers
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 
-def damping_of(case: Case, model: Model, joints: Joints) -> Damping:
+def damping_of(case: Case, model: Model, joints: Joints, settings: Settings = DEFAULT) -> Damping:
     """The [damping] of a case in numbers. Raises CaseError for an unknown block or a restitution out of reach.
 
     joints: those of the start.
@@ -28,7 +29,7 @@ def damping_of(case: Case, model: Model, joints: Joints) -> Damping:
     if table.stiffness:
         words.append("dashpots of the joints")
     if table.restitution is not None:
-        fraction, said = fraction_of(case, model, joints, table)
+        fraction, said = fraction_of(case, model, joints, table, settings)
         words.append(said)
     if table.contact_fraction:
         fraction = table.contact_fraction

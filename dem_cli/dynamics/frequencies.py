@@ -14,18 +14,13 @@ import numpy as np
 
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
+from dem_cli.engine.settings import FrequencySettings
 from dem_cli.errors import SolverError
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from dem_cli.engine.simulation import Simulation
-
-DENSE = 30  # degrees of freedom up to which a full matrix is used; beyond, threads of BLAS may cost more than they give
-DENSE_SHARE = 0.5  # of all modes: from there on as well
-ACCURATE = 1e-6  # residual over the highest eigenvalue, whose error is of its square
-ZERO, SHIFT = 1e-12, 1e-10  # of the highest eigenvalue: no vibration below it; where the lowest ones are looked for
-EQUAL = 1e-6  # shares of energy that are no further apart are the same: the first block or joint is named
 
 
 class System(NamedTuple):
@@ -35,6 +30,7 @@ class System(NamedTuple):
     geometric: csr_array | None  # M^(-1/2) G M^(-1/2) [1/s2], (n_free, n_free); None: left out
     masses: np.ndarray  # [kg, kg m2], (n_free,)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
+    settings: FrequencySettings
 
     @property
     def matrix(self) -> csr_array:
@@ -91,7 +87,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     turning = None
     if geometric:
         turning = (per_mass @ geometric_stiffness(model, joints, contacts, sim.bodies) @ per_mass).tocsr()
-    return System(rows, turning, masses, blocks)
+    return System(rows, turning, masses, blocks, sim.settings.frequency)
 
 
 def highest_frequency(sim: Simulation) -> float:
@@ -112,27 +108,28 @@ def limiting(sim: Simulation) -> Highest:
     if vector is None:  # the degree of freedom with the largest bound
         vector = np.zeros(len(found.masses))
         vector[_gershgorin(found.matrix).argmax()] = 1.0
-    block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1))]
+    block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1), found.settings.equal)]
     owner = sim.joints.owners
     energy = ((found.rows @ vector).reshape(len(owner), -1) ** 2).sum(axis=1)
     strained = np.bincount(owner, energy, len(sim.joints.blocks))
     strained[~(sim.joints.blocks == block).any(axis=1)] = -1.0
-    return Highest(frequency, exact, int(block), _first_largest(strained))
+    return Highest(frequency, exact, int(block), _first_largest(strained, found.settings.equal))
 
 
 def _largest(found: System) -> tuple[float, np.ndarray | None]:
     """Highest frequency [rad/s] and its mode times √M, (n_free,); no mode where the frequency is but a bound."""
+    settings = found.settings
     n = len(found.masses)
     if n == 0 or found.rows.nnz == 0:
         return 0.0, np.zeros(n)
     matrix = found.matrix
-    if n <= DENSE:
+    if n <= settings.dense:
         values, vectors = np.linalg.eigh(matrix.toarray())
         return float(np.sqrt(values[-1])), vectors[:, -1]
     from scipy.sparse.linalg import ArpackError, eigsh
 
     try:
-        values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=ACCURATE)
+        values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=settings.accurate)
     except ArpackError:
         return float(np.sqrt(_gershgorin(matrix).max())), None
     return float(np.sqrt(values[0])), vectors[:, 0]
@@ -148,17 +145,17 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)
-    values, held_vectors = _lowest(found.matrix[held][:, held], count)
+    values, held_vectors = _lowest(found.matrix[held][:, held], count, found.settings)
     flat = np.zeros((len(values), n_free * n_dof))
     flat[:, held] = held_vectors.T
     vectors = flat.reshape(len(values), n_free, n_dof)
     still = values == 0.0
-    loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > EQUAL).any(axis=0)
+    loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > found.settings.equal).any(axis=0)
     masses = found.masses.reshape(n_free, n_dof)
     moving = vectors[~still] / np.sqrt(masses)
     shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
     shapes = np.zeros((len(moving), n_blocks, n_dof))
-    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum())[:, None, None]
+    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum(), found.settings.equal)[:, None, None]
     return Modes(
         frequencies=np.sqrt(values[~still]) / (2.0 * np.pi),
         shapes=shapes,
@@ -168,16 +165,16 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     )
 
 
-def _lowest(matrix: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _lowest(matrix: csr_array, count: int, settings: FrequencySettings) -> tuple[np.ndarray, np.ndarray]:
     """All eigenvalues up to 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
     n = matrix.shape[0]
     largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
     while True:
-        if n <= DENSE or asked >= DENSE_SHARE * n:
+        if n <= settings.dense or asked >= settings.dense_share * n:
             values, vectors = np.linalg.eigh(matrix.toarray())
         else:
-            values, vectors = _shift_invert(matrix, min(asked, n - 1), SHIFT * largest)
-        values[values < ZERO * largest] = 0.0
+            values, vectors = _shift_invert(matrix, min(asked, n - 1), settings.shift * largest)
+        values[values < settings.zero * largest] = 0.0
         stop = int((values == 0.0).sum()) + count
         if len(values) >= min(stop, n - 1):
             return values[:stop], vectors[:, :stop]
@@ -196,13 +193,13 @@ def _shift_invert(matrix: csr_array, count: int, shift: float) -> tuple[np.ndarr
     return values[order], vectors[:, order]
 
 
-def _signs(shapes: np.ndarray, shares: np.ndarray, mass: float) -> np.ndarray:
+def _signs(shapes: np.ndarray, shares: np.ndarray, mass: float, equal: float) -> np.ndarray:
     """1 or −1 for each shape (n, n_blocks, n_dof): with the base where it follows it, else its first large part up."""
     signs = np.empty(len(shapes))
     for i, (shape, share) in enumerate(zip(shapes, shares)):
-        axis = _first_largest(np.abs(share))
-        excited = share[axis] ** 2 > EQUAL * mass
-        leading = share[axis] if excited else shape.ravel()[_first_largest(np.abs(shape).ravel())]
+        axis = _first_largest(np.abs(share), equal)
+        excited = share[axis] ** 2 > equal * mass
+        leading = share[axis] if excited else shape.ravel()[_first_largest(np.abs(shape).ravel(), equal)]
         signs[i] = 1.0 if leading >= 0.0 else -1.0
     return signs
 
@@ -217,6 +214,6 @@ def _gershgorin(matrix: csr_array) -> np.ndarray:
     return np.asarray(abs(matrix).sum(axis=1)).ravel()
 
 
-def _first_largest(values: np.ndarray) -> int:
+def _first_largest(values: np.ndarray, equal: float) -> int:
     """Index of the first of the largest values; round-off does not choose between equal ones."""
-    return int(np.flatnonzero(values >= values.max() - EQUAL * abs(values.max()))[0])
+    return int(np.flatnonzero(values >= values.max() - equal * abs(values.max()))[0])

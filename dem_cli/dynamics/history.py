@@ -18,7 +18,8 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.job import Job, Outcome
-from dem_cli.engine.properties import DYNAMIC_RATIO, joint_properties, law_of, laws_of
+from dem_cli.engine.properties import joint_properties, law_of, laws_of
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
@@ -31,12 +32,8 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
 
-LONGEST_LOOK = 0.1  # s from one look to the next, at most
-SETTLING = 4_000_000  # steps to come to rest, at most
-ROWS = 200  # looks along the way: energies, collapse, whether all is well
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
-GOVERNS = 0.05  # share of numerical damping in all that is lost, from which a run warns
 
 
 class SnapshotTimes:
@@ -57,7 +54,7 @@ class TimeHistory:
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
         self.duration = _duration(job.case, ground)
-        self.damping = damping_of_start(job.case, job.model)
+        self.damping = damping_of_start(job.case, job.model, job.settings)
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
         self.overlap = 0.0
@@ -67,7 +64,7 @@ class TimeHistory:
         analysis, model = self.case.analysis, self.job.model
 
         def make(step: float) -> DynamicSimulation:
-            return shaken(self.case, model, self.damping, step)
+            return shaken(self.case, model, self.damping, step, self.job.settings)
 
         sim = self.job.clock.compiled(lambda: make(math.inf))
         found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
@@ -103,7 +100,7 @@ class TimeHistory:
 
     def _stands(self) -> str:
         """State under dead loads. Raises SolverError where neither equilibrium nor a fall is found."""
-        steps = min(self.case.analysis.max_steps, SETTLING)
+        steps = min(self.case.analysis.max_steps, self.job.settings.history.settling)
         try:
             return stand(self.sim, Budget(steps)).state
         except SolverError as error:
@@ -114,6 +111,7 @@ class TimeHistory:
 
     def _shake(self) -> dict[str, Any]:
         """Stretches of the motion until its end, or until a collapse was followed long enough."""
+        history = self.job.settings.history
         sim, output, dt = self.sim, self.case.output, self.step.step
         every = max(1, round(1.0 / (output.rate * dt)))
         total = max(1, math.ceil(self.duration / dt))
@@ -122,7 +120,7 @@ class TimeHistory:
                 f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
                 f"({self.case.analysis.max_steps:,}): {self.step.cause}"
             )
-        stretch = max(1, math.ceil(min(total / ROWS, LONGEST_LOOK / dt)))  # whatever the rate of samples
+        stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
         done, fallen, end = 0, None, self.duration
         frames = SnapshotTimes(0.0, end, output.frames)
         while done < total and sim.time < end - 0.5 * dt:
@@ -174,7 +172,7 @@ class TimeHistory:
         """The summary, audited."""
         sim = self.sim
         shares = energy_shares(measures.energy(sim))
-        if shares.get("local", 0.0) > GOVERNS:
+        if shares.get("local", 0.0) > self.job.settings.doubts.governs:
             self.job.warnings.append(
                 f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "
                 "slows every motion; use it for nothing but a test"
@@ -192,16 +190,20 @@ class TimeHistory:
         })  # fmt: skip
 
 
-def damping_of_start(case: Case, model: Model) -> Damping:
+def damping_of_start(case: Case, model: Model, settings: Settings = DEFAULT) -> Damping:
     """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
-    properties = joint_properties(case, model, DYNAMIC_RATIO)
+    properties = joint_properties(case, model, settings.stiffness.dynamics)
     joints, _ = joints_of_start(model, bodies_at_rest(model, origin_of(model)), properties, smallest_edge(model))
-    return damping_of(case, model, joints)
+    return damping_of(case, model, joints, settings)
 
 
-def shaken(case: Case, model: Model, damping: Damping, step: float = math.inf) -> DynamicSimulation:
+def shaken(
+    case: Case, model: Model, damping: Damping, step: float = math.inf, settings: Settings = DEFAULT
+) -> DynamicSimulation:
     """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
-    return DynamicSimulation(model, law_of(case), joint_properties(case, model, DYNAMIC_RATIO, step), damping)
+    return DynamicSimulation(
+        model, law_of(case), joint_properties(case, model, settings.stiffness.dynamics, step), damping, settings
+    )
 
 
 def energy_shares(energy: Energy) -> dict[str, float]:

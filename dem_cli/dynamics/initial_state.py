@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
 
 
-INSIDE = 1e-3  # of the smallest edge: deeper than joints give when they close
-
-
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
     names, rest = sim.model.numbers, measures.largest_overlap(sim)
@@ -41,7 +38,7 @@ def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
     model, names = sim.model, sim.model.numbers
     faces = sim.tracking.faces_within(sim.bodies, 0.0)
-    for number in np.flatnonzero(faces.separation < -2.0 * rest - INSIDE * sim.smallest):
+    for number in np.flatnonzero(faces.separation < -2.0 * rest - sim.settings.history.inside * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
         tables = [i for i, t in enumerate(case.initial) if {names[name] for name in t.names} & set(pair)]
         if not tables:

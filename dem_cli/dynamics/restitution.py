@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.kernels.records import Joints, Watch
 from dem_cli.model.model import Model
@@ -19,12 +20,6 @@ from dem_cli.model.model import Model
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.tables.damping import DampingTable
-
-HOUSNER_FRACTION = 2.0  # of critical: within 3e-4 of Housner's ratio for h/b from 2 to 5 (docs/rocking.md)
-MOST, LEAST = 4.0, 0.1  # fractions of critical between which a ratio is sought; with less, landings are many bounces
-TILT = 0.3  # of the angle at which the block would fall
-LANDED = 0.05  # of the first tilt: beyond it on the other side the block has landed and does not chatter any more
-LOOK = 2e-3  # share of the longest possible time between two looks
 
 
 class RockingBlock(NamedTuple):
@@ -70,14 +65,20 @@ def housner(model: Model, reference: RockingBlock) -> float:
     return float((inertia + mass * old @ new) / (inertia + mass * new @ new))
 
 
-def fraction_of(case: Case, model: Model, joints: Joints, table: DampingTable) -> tuple[float, str]:
+def fraction_of(
+    case: Case, model: Model, joints: Joints, table: DampingTable, settings: Settings = DEFAULT
+) -> tuple[float, str]:
     """Fraction of critical that gives the wanted restitution, and words about it. Raises CaseError out of reach."""
+    restitution = settings.restitution
     reference = reference_block(case, model, joints, table)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
     if table.restitution == "housner":
-        return HOUSNER_FRACTION, f"restitution of Housner, {rigid:.4g} for block '{name}'"
+        return restitution.housner_fraction, f"restitution of Housner, {rigid:.4g} for block '{name}'"
     wanted = float(table.restitution)  # type: ignore[arg-type]
-    least, most = rocked(case, model, reference, MOST), rocked(case, model, reference, LEAST)
+    least, most = (
+        rocked(case, model, reference, restitution.most, settings),
+        rocked(case, model, reference, restitution.least, settings),
+    )
     if not least < wanted < most:
         message = (
             f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {least:.4f} to {most:.4f} "
@@ -86,44 +87,45 @@ def fraction_of(case: Case, model: Model, joints: Joints, table: DampingTable) -
         raise CaseError([CaseProblem(("damping", "restitution"), message)])
 
     def error(logarithm: float) -> float:
-        return rocked(case, model, reference, float(np.exp(logarithm))) - wanted
+        return rocked(case, model, reference, float(np.exp(logarithm)), settings) - wanted
 
-    found = float(np.exp(brentq(error, np.log(LEAST), np.log(MOST), xtol=1e-3, rtol=1e-6)))
+    found = float(np.exp(brentq(error, np.log(restitution.least), np.log(restitution.most), xtol=1e-3, rtol=1e-6)))
     return found, f"restitution {wanted:g} of block '{name}', {found:.3g} of critical"
 
 
-def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float) -> float:
+def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT) -> float:
     """Ratio of angular velocities when the block lands, from the heights before and after it."""
+    restitution = settings.restitution
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.dynamics.initial_state import tilt
     from dem_cli.dynamics.time_step import time_step
     from dem_cli.engine.budget import Budget
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.engine.properties import DYNAMIC_RATIO, joint_properties, law_of
+    from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.engine.viscous import Damping
     from dem_cli.statics.equilibrium import stand
 
     pair = model.only([reference.support, reference.block], fixed=np.array([True, False]))
-    properties = joint_properties(case, model, DYNAMIC_RATIO)
-    sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction))
-    stand(sim, Budget(200_000))
+    properties = joint_properties(case, model, settings.stiffness.dynamics)
+    sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction), settings)
+    stand(sim, Budget(restitution.most_steps))
     rest = float(sim.bodies.positions[1, pair.dimension - 1])
     dt = time_step(sim, case.analysis.margin).step
     sim.begin(dt)
     slender = np.arctan2(np.abs(reference.ends[:, 0]).min(), np.abs(reference.ends[:, 1]).max())
-    angle = float(TILT * slender)
+    angle = float(restitution.tilt * slender)
     tilt(sim, np.array([1]), angle)
     sim.start_moving()
     start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
     ground = GroundMotion([], pair)
     radius = float(np.sqrt((reference.ends**2).sum(axis=1)).max())
     longest = 20.0 * np.sqrt(radius / max(case.gravity, 1e-9))
-    n, highest = max(1, int(LOOK * longest / dt)), 0.0
+    n, highest = max(1, int(restitution.look * longest / dt)), 0.0
     watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
     while sim.time < longest:
         sim.shake(ground.stretch(sim.time, n, dt), n, watch)
         place, speed = watch.samples[:, 0, 0], watch.samples[:, 0, 1]
-        beyond = place[:, pair.dimension] < -LANDED * angle
+        beyond = place[:, pair.dimension] < -restitution.landed * angle
         highest = max(highest, float((place[beyond, pair.dimension - 1] - rest).max(initial=0.0)))
         if (beyond & (speed[:, pair.dimension] > 0.0)).any():
             break

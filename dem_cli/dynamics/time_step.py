@@ -11,7 +11,7 @@ from dem_cli.errors import CaseError, CaseProblem
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
 
-MARGIN = 0.5  # of the limit: joints that blocks meet later may be stiffer, and the error goes with the square
+DEFAULT_MARGIN = 0.5  # of the limit: joints that blocks meet later may be stiffer, and the error goes with the square
 
 
 class TimeStep(NamedTuple):
@@ -32,7 +32,9 @@ class TimeStep(NamedTuple):
         return f"{named} vibrates at {'' if self.exact else 'no more than '}{self.highest / (2 * math.pi):.4g} Hz"
 
 
-def time_step(sim: Simulation, margin: float = MARGIN, forced: float | None = None, stiffer: float = 1.0) -> TimeStep:
+def time_step(
+    sim: Simulation, margin: float = DEFAULT_MARGIN, forced: float | None = None, stiffer: float = 1.0
+) -> TimeStep:
     """The step to use: `forced` [s] where it is given, else margin · 2/ω_max.
 
     stiffer: what Maxwell elements multiply frequencies by. Dashpots do not come into it: they are implicit

@@ -8,26 +8,22 @@ import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.engine.measures import closure, free_falls
-from dem_cli.model.scales import CLOSURE, OVERLAP, WEIGHTLESS, own_weights
+from dem_cli.model.scales import WEIGHTLESS, own_weights
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.simulation import Simulation
 
-SHEAR = (0.01, 10.0)  # ks/kn of given joints that structures were tested with
-LEANS = 0.006  # displacement before failure, in widths of blocks, from which loads were more than 0.5 % off
-UNEVEN = 1e3  # how much faster than another a block may fall in pseudo-time before it is worth a word
-
 
 def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[str]:
     """Doubts about the answer `found`, the worst first; where there is none, how to get one."""
-    said = []
+    said, doubts = [], sims[0].settings.doubts
     worst = max((closure(sim) for sim in sims), key=abs)
     overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
-    if abs(worst) > CLOSURE:
+    if abs(worst) > doubts.closure:
         advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
-    if overlap > OVERLAP:
+    if overlap > doubts.overlap:
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
     said += _weightless(sims[0]) + _shear(sims[0]) + _leaning(case, sims[0], found.get("displacement_at_failure"))
     if found.get("status") == "not converged":
@@ -50,11 +46,12 @@ def _shear(sim: Simulation) -> list[str]:
     """Joints that only a user can have asked for: "auto" has ks = kn."""
     properties = sim.properties
     ratios = properties.ks / properties.kn
+    low, high = sim.settings.doubts.shear_low, sim.settings.doubts.shear_high
     return [
-        f"ks/kn = {ratio:.3g} of joint '{name}' is outside {SHEAR[0]:g} to {SHEAR[1]:g}: sudden sliding may have "
+        f"ks/kn = {ratio:.3g} of joint '{name}' is outside {low:g} to {high:g}: sudden sliding may have "
         "lowered the load by some per cent"
         for name, ratio in zip(properties.names, ratios)
-        if not SHEAR[0] * (1 - 1e-9) <= ratio <= SHEAR[1] * (1 + 1e-9)
+        if not low * (1 - 1e-9) <= ratio <= high * (1 + 1e-9)
     ]
 
 
@@ -64,7 +61,7 @@ def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
     if case.analysis.kinematics != "large" or not given or moved is None:
         return []
     share = moved / float(np.median(sim.widths[sim.free]))
-    if share <= LEANS:
+    if share <= sim.settings.doubts.leans:
         return []
     return [
         f"with the given kn blocks move {share:.2g} of their width before failure: the failure load may differ from "
@@ -83,7 +80,7 @@ def _advice(case: Case, sim: Simulation, bracket: list[float | None]) -> str:
         ways.append(f"accept a wider bracket (analysis.resolution {case.analysis.resolution:g})")
     fall, ids = free_falls(sim)[sim.free], sim.model.block_ids
     fastest = fall.max(initial=0.0)
-    slow = np.flatnonzero((fall > 0.0) & (fall * UNEVEN < fastest))
+    slow = np.flatnonzero((fall > 0.0) & (fall * sim.settings.doubts.uneven < fastest))
     if len(slow):
         slowest = slow[fall[slow].argmin()]
         ways.append(

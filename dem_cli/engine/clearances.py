@@ -9,16 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
-
-MARGIN = 1.25  # for the slip that goes with a microrotation, and finite rotations
-WIDEST = 0.25  # gaps beyond this share of the smallest edge are meant to stay
-AMPLIFIED = 20.0  # motion of blocks over the gap that it closes
-FARTHEST, STEEPEST = 0.5, 0.3  # width of a block, and angle [rad]: motion beyond is failure, whatever gaps it closes
-
-BARE = 1e-3  # of an edge: faces that overlap by less meet corner to corner
 
 
 class Play(NamedTuple):
@@ -28,7 +22,7 @@ class Play(NamedTuple):
     turned: np.ndarray  # [rad], (n_blocks,)
 
 
-def open_gaps(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def open_gaps(corners: np.ndarray, edges: np.ndarray, clearance: ClearanceSettings = DEFAULT.clearance) -> np.ndarray:
     """Largest gap of each pair of faces that look at each other [m], (n,); 0 where they do not or overlap; 2D.
 
     corners: world coordinates of all corners [m], (n_vertices, 2); edges: as Faces.edges, (n, 4). A wedge touches at
@@ -39,23 +33,25 @@ def open_gaps(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
     length = np.hypot(*along.T)
     along /= length[:, None]
     start, run, rise = ((b1 - a0) * along).sum(axis=1), (across * along).sum(axis=1), cross(across, along)
-    facing = (run > 0.0) & (np.abs(rise) < STEEPEST * run)  # rise: of b's face from b1 to b0, away from a
+    facing = (run > 0.0) & (np.abs(rise) < clearance.steepest * run)  # rise: of b's face from b1 to b0, away from a
     run = np.where(facing, run, 1.0)
     low, high = np.maximum(start, 0.0), np.minimum(start + run, length)
     first = cross(b1 - a0, along)  # to the right of a: outside, as corners go counter-clockwise
     gaps = [first + rise * (place - start) / run for place in (low, high)]
-    return np.where(facing & (high - low > BARE * np.minimum(run, length)), np.maximum(*gaps), 0.0).clip(0.0)
+    return np.where(facing & (high - low > clearance.bare * np.minimum(run, length)), np.maximum(*gaps), 0.0).clip(0.0)
 
 
-def gap_play(gaps: np.ndarray, width: float, n_blocks: int) -> Play:
+def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
     """The same while joints close that are open at the start.
 
     gaps: between faces near each other [m], (n,); width: of a typical block [m]. A block that turns into a gap takes
     along what stands on it, so that its motion is many times the gap.
     """
     widest = float(gaps.max(initial=0.0))
-    moved = min(AMPLIFIED * widest, FARTHEST * width)
-    return Play(np.full(n_blocks, moved), np.full(n_blocks, min(AMPLIFIED * widest / width, STEEPEST)))
+    moved = min(clearance.amplified * widest, clearance.farthest * width)
+    return Play(
+        np.full(n_blocks, moved), np.full(n_blocks, min(clearance.amplified * widest / width, clearance.steepest))
+    )
 
 
 def joint_angles(joints: Joints) -> np.ndarray:
@@ -70,7 +66,7 @@ def joint_angles(joints: Joints) -> np.ndarray:
     return angles
 
 
-def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
+def play(model: Model, joints: Joints, positions: np.ndarray, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
     """Of every block on the way from the supports on which it can move least; joints: those of the start, 2D.
 
     A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
@@ -92,9 +88,9 @@ def play(model: Model, joints: Joints, positions: np.ndarray) -> Play:
             side = 1 if reached[i, 0] else 0
             a, b = joints.blocks[i, 1 - side], joints.blocks[i, side]
             far = np.hypot(*(positions[b] - positions[a]))
-            moved = found.moved[a] + found.turned[a] * far + MARGIN * angles[i] * reach[i, side]
+            moved = found.moved[a] + found.turned[a] * far + clearance.margin * angles[i] * reach[i, side]
             if moved < found.moved[b]:
-                found.moved[b], found.turned[b] = moved, found.turned[a] + MARGIN * angles[i]
+                found.moved[b], found.turned[b] = moved, found.turned[a] + clearance.margin * angles[i]
             new[b] = True
         if (new == near).all():
             break

@@ -12,9 +12,10 @@ from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.model.model import Model
 
 
-class Clock:
+class Clock(Observer):
     """Seconds of solving, without the compilation of kernels and what the observer does with results.
 
     It is an observer itself and hands everything on.
@@ -41,6 +42,9 @@ class Clock:
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         self.observer.runs(rows)
+
+    def structure(self, model: Model) -> None:
+        self.observer.structure(model)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         begun = time.perf_counter()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.assemble import JointProperties
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Books, Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.drift import drift_corners
@@ -20,8 +21,6 @@ from dem_cli.model.model import Model
 
 if TYPE_CHECKING:
     from dem_cli.engine.viscous import Damping
-
-WIDE_SKIN = 0.15  # blocks that rock move far: fewer detections are worth more joints to look at
 
 
 @cache
@@ -37,12 +36,17 @@ class DynamicSimulation(Simulation):
     damping     what the joints and blocks lose (dynamics/damping.py)
     """
 
-    def __init__(self, model: Model, law: Law, properties: JointProperties, damping: Damping):
+    def __init__(
+        self, model: Model, law: Law, properties: JointProperties, damping: Damping,
+        settings: Settings = DEFAULT,
+    ):  # fmt: skip
         self.damping = damping
         self.real, self.dt = False, 1.0
         self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
         n_damped = model.dimension * (1 + len(damping.elements)) if damping.in_joints else 0
-        super().__init__(model, law, properties, "large", n_damped=n_damped, skin=WIDE_SKIN)
+        super().__init__(
+            model, law, properties, "large", n_damped=n_damped, skin=settings.detection.wide_skin, settings=settings
+        )
 
     # -- from pseudo-time to time ------------------------------------------------------------------
 

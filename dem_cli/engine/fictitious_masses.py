@@ -5,14 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.contact.compatibility import relative_motion
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.kernels.records import BlockShapes, Bodies, Joints
 from dem_cli.model.model import Model
 
-SLOW_FALL = 1e-4  # acceleration of a structure without any contact, in radii of its blocks per step²
-
 
 def fictitious_masses(
-    model: Model, joints: Joints, bodies: Bodies, shape: BlockShapes, safety: float, inverse_out: np.ndarray
+    model: Model,
+    joints: Joints,
+    bodies: Bodies,
+    shape: BlockShapes,
+    safety: float,
+    inverse_out: np.ndarray,
+    free_fall: float = DEFAULT.relaxation.free_fall,
 ) -> None:
     """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks.
 
@@ -38,7 +43,7 @@ def fictitious_masses(
         lonely = masses[:, k] <= 0.0
         if lonely.all():
             weights = np.maximum(np.abs(model.dead_loads).max(axis=1), 1e-300)
-            masses[:, k] = weights / (SLOW_FALL * shape.radii) * (1.0 if k < model.dimension else shape.radii**2)
+            masses[:, k] = weights / (free_fall * shape.radii) * (1.0 if k < model.dimension else shape.radii**2)
         else:
             masses[lonely, k] = np.median(masses[~lonely, k])
     inverse_out[:] = 1.0 / masses

@@ -12,7 +12,8 @@ from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, why_moving
 from dem_cli.engine.measures import closure
 from dem_cli.engine.monitors import Monitors
-from dem_cli.engine.properties import FIXED_RATIO, joint_properties, law_of
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.model.model import Model
@@ -38,16 +39,18 @@ class Job:
     clock: Clock
     monitors: Monitors
     budget: Budget
+    settings: Settings = DEFAULT
     skipped: list[str] = field(default_factory=list)  # what the case did not need
     warnings: list[str] = field(default_factory=list)
 
     @classmethod
-    def start(cls, case: Case, model: Model, observer: Observer) -> Job:
+    def start(cls, case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:
         """A job that reports to `observer`. Raises CaseError where a monitor has no block."""
-        return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps))
+        return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
 
-    def simulation(self, kinematics: str, ratio: float = FIXED_RATIO) -> Simulation:
-        """A compiled simulation of the case; `ratio` is the kn·h/W of "auto" joints."""
+    def simulation(self, kinematics: str, ratio: float | None = None) -> Simulation:
+        """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings)."""
+        ratio = self.settings.stiffness.statics if ratio is None else ratio
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(
             lambda: Simulation(
@@ -57,12 +60,13 @@ class Job:
                 kinematics,
                 live_scale=1.0 if tilting else live_scale(self.model),
                 tilting=tilting,
+                settings=self.settings,
             )
         )
 
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
-        moving = why_moving(self.case, self.model)
+        moving = why_moving(self.case, self.model, self.settings)
         if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")

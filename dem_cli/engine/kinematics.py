@@ -8,6 +8,7 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.start import TOUCH
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -16,10 +17,8 @@ from dem_cli.model.scales import smallest_edge
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-NEAR = 1e-3  # gaps below this share of the smallest edge are meant: they may close
 
-
-def why_moving(case: Case, model: Model) -> str | None:
+def why_moving(case: Case, model: Model, settings: Settings = DEFAULT) -> str | None:
     """Why geometry moves on the way to failure ("": the case says so); None: that of the start is good enough.
 
     Raises CaseError where the case asks for fixed geometry that its joints do not allow.
@@ -35,7 +34,7 @@ def why_moving(case: Case, model: Model) -> str | None:
         return "" if wanted == "large" else None
     if case.imperfection:
         return "imperfections of blocks leave gaps that may close"
-    gaps = open_joints(model)
+    gaps = open_joints(model, settings.detection.meant_gap)
     return f"{gaps} joints have gaps that may close" if gaps else None
 
 
@@ -47,7 +46,7 @@ def live_scale(model: Model) -> float:
     return float(dead / live) if dead > 0.0 and live > 0.0 else 1.0
 
 
-def open_joints(model: Model) -> int:
+def open_joints(model: Model, meant_gap: float = DEFAULT.detection.meant_gap) -> int:
     """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
     edge = smallest_edge(model)
-    return int((np.abs(find_joints(model, undeformed(model), NEAR * edge).separation) > TOUCH * edge).sum())
+    return int((np.abs(find_joints(model, undeformed(model), meant_gap * edge).separation) > TOUCH * edge).sum())

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.engine.simulation import Simulation
+from dem_cli.geometry.rotation import rotation_vectors
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
@@ -33,9 +34,7 @@ def live_displacement(sim: Simulation) -> float:
     d = sim.model.dimension
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
-    if d == 2:
-        travel += (live[free, 2] * sim.bodies.orientations[free, 0]).sum()
-    return float(travel)
+    return float(travel + (live[free, d:] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
 def dead_scale(sim: Simulation) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.assembly.assemble import joint_table
 from dem_cli.contact.assemble import JointProperties
 from dem_cli.contact.layout import PointLayout
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
@@ -19,9 +20,6 @@ from dem_cli.model.scales import stiffness_scale
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-
-DYNAMIC_RATIO = 1e5  # kn·h/W of "auto" joints in time histories: the deeper they give, the longer the step
-FIXED_RATIO = 1e6  # kn·h/W of "auto" joints where the stiffness drops out
 
 
 def laws_of(case: Case) -> list[Law]:
@@ -34,7 +32,9 @@ def law_of(case: Case) -> Law:
     return mixed(tuple(laws_of(case)))
 
 
-def joint_properties(case: Case, model: Model, ratio: float = FIXED_RATIO, step: float = math.inf) -> JointProperties:
+def joint_properties(
+    case: Case, model: Model, ratio: float = DEFAULT.stiffness.statics, step: float = math.inf
+) -> JointProperties:
     """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.

@@ -14,8 +14,9 @@ from dem_cli.contact.assemble import (
 )
 from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.start import TOUCH, bodies_at_rest
-from dem_cli.engine.clearances import WIDEST, Play, gap_play, open_gaps, play
+from dem_cli.engine.clearances import Play, gap_play, open_gaps, play
 from dem_cli.engine.fictitious_masses import fictitious_masses
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
@@ -28,11 +29,6 @@ from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge
-
-SKIN = 0.05  # detection reach as a share of the smallest edge
-SLIVER = 1e-3  # of its radius: the least width that a block's moments are compared with
-LONGEST_CALL = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
-ALPHA = 0.4  # local damping near failure
 
 
 @cache
@@ -73,7 +69,8 @@ class Simulation:
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     n_damped    numbers that the dampers of a time history remember of each point
-    skin        reach of detection, in smallest edges
+    safety      of the fictitious masses (None: that of a creep)
+    skin        reach of detection, in smallest edges (None: that of the settings)
     """
 
     def __init__(
@@ -84,10 +81,14 @@ class Simulation:
         kinematics: str = "fixed",
         live_scale: float = 1.0,
         tilting: bool = False,
-        safety: float = 0.85,
+        safety: float | None = None,
         n_damped: int = 0,
-        skin: float = SKIN,
+        skin: float | None = None,
+        settings: Settings = DEFAULT,
     ):
+        self.settings, relaxation = settings, settings.relaxation
+        skin = settings.detection.skin if skin is None else skin
+        safety = relaxation.creep_safety if safety is None else safety
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
         self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
@@ -106,7 +107,9 @@ class Simulation:
         force_scales = np.empty((n, d + r))
         force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
         self.widths = model.shapes.widths
-        arms = np.clip(self.widths, SLIVER * self.shape.radii, self.shape.radii)  # small moments turn a needle over
+        arms = np.clip(
+            self.widths, relaxation.narrowest_arm * self.shape.radii, self.shape.radii
+        )  # small moments turn a needle over
         force_scales[:, d:] /= arms[:, None]
         self.loads = Loads(
             dead=np.ascontiguousarray(dead),
@@ -117,7 +120,7 @@ class Simulation:
         )
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
-        self.control[slot.DAMP] = ALPHA
+        self.control[slot.DAMP] = relaxation.local_damping
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
@@ -133,7 +136,9 @@ class Simulation:
     def _track(self, n_memory: int, reach: float) -> JointTracking:
         """The joints of the blocks where they start."""
         moves = self.kinematics == "large"
-        return JointTracking(self.model, self.bodies, self.properties, moves, n_memory, self.smallest, reach)
+        return JointTracking(
+            self.model, self.bodies, self.properties, moves, n_memory, self.smallest, reach, self.settings.detection
+        )
 
     # -- joints ------------------------------------------------------------------------------------
 
@@ -154,16 +159,17 @@ class Simulation:
 
     def _play(self) -> Play:
         """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
-        found = play(self.model, self.joints, self.bodies.positions)
+        clearance = self.settings.clearance
+        found = play(self.model, self.joints, self.bodies.positions, clearance)
         if self.kinematics == "fixed":
             return found
-        faces = self.tracking.faces_within(self.bodies, WIDEST * self.smallest)
-        gaps = open_gaps(self.bodies.corners, faces.edges)
-        gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= WIDEST * self.smallest)]
+        faces = self.tracking.faces_within(self.bodies, clearance.widest * self.smallest)
+        gaps = open_gaps(self.bodies.corners, faces.edges, clearance)
+        gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= clearance.widest * self.smallest)]
         if not len(gaps):
             return found
         width = float(np.median(self.widths[self.free])) if len(self.free) else self.smallest
-        more = gap_play(gaps, width, self.model.n_blocks)
+        more = gap_play(gaps, width, self.model.n_blocks, clearance)
         return Play(found.moved + more.moved, found.turned + more.turned)
 
     def detect(self) -> None:
@@ -177,7 +183,7 @@ class Simulation:
 
     def _take_joints(self) -> None:
         """What follows from other joints: masses, and how long a compiled call may be."""
-        self.longest = max(100, LONGEST_CALL // max(1, len(self.joints.kn)))
+        self.longest = max(100, self.settings.detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
 
@@ -185,7 +191,15 @@ class Simulation:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
         self.measured()
-        fictitious_masses(self.model, self.joints, self.bodies, self.shape, self.safety, self.loads.inverse_masses)
+        fictitious_masses(
+            self.model,
+            self.joints,
+            self.bodies,
+            self.shape,
+            self.safety,
+            self.loads.inverse_masses,
+            self.settings.relaxation.free_fall,
+        )
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 
     # -- stepping ----------------------------------------------------------------------------------
@@ -260,8 +274,9 @@ class Simulation:
         """Largest unbalanced force of a block in the last step, over its own weight."""
         return float(self.control[slot.UNBALANCED])
 
-    def use(self, safety: float, damping: float = ALPHA, change: float = 0.0) -> None:
+    def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:
         """Local and combined damping, and fictitious masses with another safety."""
+        damping = self.settings.relaxation.local_damping if damping is None else damping
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = damping, change
         if safety != self.safety:
             self.safety = safety

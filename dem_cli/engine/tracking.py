@@ -14,10 +14,9 @@ from dem_cli.contact.assemble import (
 )
 from dem_cli.contact.detect import Faces, find_joints, inner_edges
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
+from dem_cli.engine.settings import DEFAULT, DetectionSettings
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
-
-SAME_PLACE = 0.01  # of the reach of detection: blocks that moved less have the same faces as before
 
 
 class JointTracking:
@@ -32,10 +31,10 @@ class JointTracking:
 
     def __init__(
         self, model: Model, bodies: Bodies, properties: JointProperties, moves: bool, n_memory: int, smallest: float,
-        reach: float,
+        reach: float, settings: DetectionSettings = DEFAULT.detection,
     ):  # fmt: skip
         self.model, self.properties, self.moves, self.n_memory = model, properties, moves, n_memory
-        self.smallest, self.reach = smallest, reach
+        self.smallest, self.reach, self.settings = smallest, reach, settings
         self.inner = inner_edges(model)
         self.chains: Chains | None = None
         self.detections = 0
@@ -69,7 +68,7 @@ class JointTracking:
         faces = self.faces_within(bodies, self.reach)
         joints, contacts = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
         carry_memory(old, memory, joints, contacts)
-        if bodies.travel.max(initial=0.0) < SAME_PLACE * self.reach:
+        if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
             contacts.stale[:-1] |= np.array([tuple(row) in asked for row in joints.edges.tolist()], bool)

@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.shaken_run import RestedStructure, ShakenRunResult
 
 if TYPE_CHECKING:
     from dem_cli.motion.motion import Motion
-
-ASK = 0.2  # s between two looks at an interrupt and at the progress
 
 
 class ShakingTrial(NamedTuple):
@@ -38,6 +37,7 @@ class Batch(NamedTuple):
 
     threads: int = 1
     journal: RunStore | None = None
+    ask: float = DEFAULT.statistics.ask  # s between two looks at an interrupt and at the progress
 
 
 Answer = Callable[[ShakingTrial], ShakenRunResult]  # does a run, or looks it up
@@ -82,7 +82,7 @@ class Batcher:
             try:
                 pending = {pool.submit(task, self.answer) for task in tasks}
                 while pending:
-                    finished, pending = wait(pending, ASK, FIRST_COMPLETED)
+                    finished, pending = wait(pending, self.batch.ask, FIRST_COMPLETED)
                     say(len(self.done))
                     for future in finished:
                         future.result()

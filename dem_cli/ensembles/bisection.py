@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-FIRST, GROWTH = 0.4, 4.0  # resolutions from a guess to the first value on either side of it; of the next steps
-NOTHING = 1e-3  # of the range, below which a resolution relative to a value makes no sense
-STRIDE = 1.5  # from factor to factor where there is no guess; the next steps grow
+from dem_cli.engine.settings import DEFAULT, SafetySettings
 
 
 class Scale(NamedTuple):
@@ -18,6 +16,7 @@ class Scale(NamedTuple):
     high: float
     ratio: bool  # by ratios, as for factors; else by differences
     whole: bool = False  # whole numbers only
+    nothing: float = DEFAULT.safety.nothing  # of the range, below which a relative resolution makes no sense
 
     def middle(self, a: float, b: float) -> float:
         """Between two values."""
@@ -29,7 +28,7 @@ class Scale(NamedTuple):
         """Whether two values are as near as can be told, or as is asked for."""
         if self.whole:
             return abs(a - b) <= 1.0
-        return abs(a - b) <= resolution * max(abs(a), abs(b), NOTHING * (self.high - self.low))
+        return abs(a - b) <= resolution * max(abs(a), abs(b), self.nothing * (self.high - self.low))
 
     def towards(self, start: float, end: float, step: float) -> float:
         """From `start` by `step` (relative to it) to `end`, which is not passed."""
@@ -60,7 +59,15 @@ class Ends(NamedTuple):
 Stands = Callable[[float], bool]
 
 
-def search(stands: Stands, scale: Scale, resolution: float, guess: Ends | None, scan: int, start: float | None) -> Ends:
+def search(
+    stands: Stands,
+    scale: Scale,
+    resolution: float,
+    guess: Ends | None,
+    scan: int,
+    start: float | None,
+    settings: SafetySettings = DEFAULT.safety,
+) -> Ends:
     """The change from standing to failure next to the end that stands, its two values at most `resolution` apart.
 
     guess: values next to which the change should be; scan: equal parts that are tried first; start: from where to go
@@ -69,9 +76,9 @@ def search(stands: Stands, scale: Scale, resolution: float, guess: Ends | None, 
     if scan:
         found = first_change([(value, stands(value)) for value in scale.parts(scan)])
     elif guess is not None:
-        found = _around(stands, scale, resolution, guess)
+        found = _around(stands, scale, resolution, guess, settings)
     elif start is not None:
-        found = _outwards(stands, scale, start)
+        found = _outwards(stands, scale, start, settings)
     else:
         found = first_change([(scale.low, stands(scale.low)), (scale.high, stands(scale.high))])
     good, bad = found
@@ -102,7 +109,7 @@ def changes(tried: dict[float, bool]) -> int:
     return sum(a != b for a, b in zip(answers, answers[1:]))
 
 
-def _around(stands: Stands, scale: Scale, resolution: float, guess: Ends) -> Ends:
+def _around(stands: Stands, scale: Scale, resolution: float, guess: Ends, settings: SafetySettings) -> Ends:
     """From a guess to both sides, by growing steps."""
     assert guess.stands is not None
     assert guess.fails is not None
@@ -110,39 +117,39 @@ def _around(stands: Stands, scale: Scale, resolution: float, guess: Ends) -> End
     to_stand, to_fail = (scale.low, scale.high) if up else (scale.high, scale.low)
     middle = guess.stands if scale.whole else scale.middle(guess.stands, guess.fails)
     last: Ends = Ends(None, None)
-    for value in _steps(scale, middle, to_stand, resolution):
+    for value in _steps(scale, middle, to_stand, resolution, settings):
         if stands(value):
             last = last._replace(stands=value)
             break
         last = last._replace(fails=value)
     if last.stands is None or last.fails is not None:
         return last
-    for value in _steps(scale, guess.fails if scale.whole else middle, to_fail, resolution):
+    for value in _steps(scale, guess.fails if scale.whole else middle, to_fail, resolution, settings):
         if not stands(value):
             return last._replace(fails=value)
         last = last._replace(stands=value)
     return last
 
 
-def _steps(scale: Scale, start: float, end: float, resolution: float) -> Iterator[float]:
+def _steps(scale: Scale, start: float, end: float, resolution: float, settings: SafetySettings) -> Iterator[float]:
     """Values that leave `start` faster and faster, up to `end`; of whole numbers, `start` first."""
-    step, value = FIRST * resolution, start
+    step, value = settings.first * resolution, start
     if scale.whole:
         yield value
     while value != end:
         value = scale.towards(start, end, step)
         yield value
-        step *= GROWTH
+        step *= settings.growth
 
 
-def _outwards(stands: Stands, scale: Scale, start: float) -> Ends:
+def _outwards(stands: Stands, scale: Scale, start: float, settings: SafetySettings) -> Ends:
     """From `start`, towards higher values where it stands there and lower ones where it does not."""
-    value, stride = start, STRIDE
+    value, stride = start, settings.stride
     first = stands(value)
     end = scale.high if first else scale.low
     while value != end:
         following = scale.towards(value, end, stride - 1.0)
         if stands(following) != first:
             return Ends(value, following) if first else Ends(following, value)
-        value, stride = following, stride * STRIDE
+        value, stride = following, stride * settings.stride
     return Ends(value, None) if first else Ends(None, value)

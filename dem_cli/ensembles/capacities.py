@@ -8,12 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.engine.settings import DEFAULT, StatisticsSettings
 from dem_cli.ensembles.batch import ShakingTrial
 from dem_cli.ensembles.lognormal import Lognormal, bootstrap, fit
 from dem_cli.ensembles.shaken_run import ShakenRunResult
-
-RESAMPLES = 400
-POINTS = 101  # of the curve in summary.json
 
 
 class Bounds(NamedTuple):
@@ -50,17 +48,24 @@ def survived_above(found: Outcomes) -> list[float]:
     return [a for a, fell in found.items() if not fell and a > lowest]
 
 
-def distribution(bounds: np.ndarray, levels: Sequence[float], confidence: float, seed: int) -> dict[str, Any]:
+def distribution(
+    bounds: np.ndarray, levels: Sequence[float], confidence: float, seed: int,
+    statistics: StatisticsSettings = DEFAULT.statistics,
+) -> dict[str, Any]:  # fmt: skip
     """Keys of the summary: the lognormal fit, its confidence and the curve.
 
     bounds: (n_records, n_structures, 2).
     """
     lower, upper = bounds[:, :, 0], bounds[:, :, 1]
-    found = fit(lower.ravel(), upper.ravel())
+    found = fit(lower.ravel(), upper.ravel(), statistics.narrowest)
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
-    at = _range(found, levels)
-    band = bootstrap(lower, upper, at, confidence, seed, RESAMPLES) if len(lower) > 1 else None
+    at = _range(found, levels, statistics.points)
+    band = (
+        bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
+        if len(lower) > 1
+        else None
+    )
     curve = {"intensity": at, "share": found.share(at)}
     sure = None
     if band is not None:
@@ -69,11 +74,11 @@ def distribution(bounds: np.ndarray, levels: Sequence[float], confidence: float,
     return {"median": found.median, "dispersion": found.dispersion, "confidence": sure, "curve": curve}
 
 
-def _range(found: Lognormal, levels: Sequence[float]) -> np.ndarray:
+def _range(found: Lognormal, levels: Sequence[float], points: int) -> np.ndarray:
     """Intensities of the curve: all that were tried, and 99 % of the distribution as far as that is near."""
     low = min(levels[0], max(found.median * math.exp(-2.6 * found.dispersion), 0.5 * levels[0]))
     high = max(levels[-1], min(found.median * math.exp(2.6 * found.dispersion), 1.5 * levels[-1]))
-    return np.linspace(low, high, POINTS)
+    return np.linspace(low, high, points)
 
 
 def split(bounds: np.ndarray) -> dict[str, float] | None:

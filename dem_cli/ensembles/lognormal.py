@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import log_ndtr
 
-NARROWEST = 1e-4  # least dispersion: all bounds overlap
+from dem_cli.engine.settings import DEFAULT
 
 
 class Lognormal(NamedTuple):
@@ -38,7 +38,7 @@ class Band(NamedTuple):
     resamples: int
 
 
-def fit(lower: np.ndarray, upper: np.ndarray) -> Lognormal | None:
+def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statistics.narrowest) -> Lognormal | None:
     """The most likely distribution of capacities between lower (≥ 0) and upper (≤ ∞) bounds, (n,).
 
     None where the bounds leave it open: nothing fell, or all fell at once.
@@ -50,7 +50,7 @@ def fit(lower: np.ndarray, upper: np.ndarray) -> Lognormal | None:
         return None
     known = np.where(np.isfinite(a), a, b)
     middles = np.where(inside, 0.5 * (known + np.where(inside, b, 0.0)), known)
-    least, most = math.log(NARROWEST), math.log(10.0)
+    least, most = math.log(narrowest), math.log(10.0)
     start = [float(middles.mean()), float(np.clip(np.log(middles.std() + 1e-3), least, most))]
 
     def badness(at: np.ndarray) -> float:
@@ -72,7 +72,13 @@ def _log_shares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def bootstrap(
-    lower: np.ndarray, upper: np.ndarray, at: np.ndarray, confidence: float, seed: int, resamples: int
+    lower: np.ndarray,
+    upper: np.ndarray,
+    at: np.ndarray,
+    confidence: float,
+    seed: int,
+    resamples: int,
+    narrowest: float = DEFAULT.statistics.narrowest,
 ) -> Band | None:
     """Confidence of `fit` by resampling records: lower, upper (n_records, n_variants), at (m,) intensities.
 
@@ -83,7 +89,7 @@ def bootstrap(
     fits = []
     for _ in range(resamples):
         pick = generator.integers(0, n, n)
-        found = fit(lower[pick].ravel(), upper[pick].ravel())
+        found = fit(lower[pick].ravel(), upper[pick].ravel(), narrowest)
         if found is not None:
             fits.append(found)
     if len(fits) <= 0.5 * resamples:

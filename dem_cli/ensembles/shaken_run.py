@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,10 @@ from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Watch
+from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,12 +25,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.ensembles.variants import Variant
     from dem_cli.motion.motion import Motion
-    from dem_cli.output.record import Observer
-
-LOOK = 0.1  # s of motion between two looks: collapse times are known to this
-ENERGY_EVERY = 10  # looks from one look into the books to the next
-STILL = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
-QUIET = 1e-3  # ... with so much of the noticeable energy at most
 
 
 class ShakenRunResult(NamedTuple):
@@ -47,25 +43,22 @@ class RunCancelled(Exception):
     """Nobody waits for this run any more."""
 
 
-class OnlyProgress:
+class ProgressOnly(Observer):
     """An observer of structures that come to rest: nothing of them is kept."""
 
     def __init__(self, observer: Observer):
-        self.progress = observer.progress
+        self.observer = observer
 
-    def frame(self, *_: Any) -> None: ...
-    def row(self, *_: Any) -> None: ...
-    def samples(self, *_: Any) -> None: ...
-    def runs(self, *_: Any) -> None: ...
-    def structure(self, *_: Any) -> None: ...
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        self.observer.progress(stage, load, displacement, fraction)
 
 
 class RestedStructure:
     """A structure that has come to rest, from which any number of motions start."""
 
-    def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer):
+    def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer, settings: Settings = DEFAULT):
         self.variant, self.case = variant, variant.case
-        job = Job.start(variant.case, variant.model, observer)
+        job = Job.start(variant.case, variant.model, observer, settings)
         history = TimeHistory(job, GroundMotion(records, variant.model))
         self.stands = history.start()
         self.sim, self.step, self.monitors, self.damping = history.sim, history.step, job.monitors, history.damping
@@ -73,7 +66,7 @@ class RestedStructure:
         self.absolute = any(monitor.absolute for monitor in variant.case.monitor)
         dt = self.step.step
         self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
-        self.stretch = self.every * max(1, round(LOOK / (self.every * dt)))
+        self.stretch = self.every * max(1, round(settings.history.look / (self.every * dt)))
         self.coda = getattr(variant.case.analysis, "coda", 0.0)
 
     def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
@@ -109,7 +102,7 @@ class RestedStructure:
             self._stretch(sim, ground, n, peaks)
             done, looks = done + n, looks + 1
             check_finite(sim)
-            if looks % ENERGY_EVERY == 0:
+            if looks % sim.settings.history.energy_every == 0:
                 check_energy(sim, self.step)
             found = fallen(sim, analysis)
             if found is not None:
@@ -132,5 +125,6 @@ class RestedStructure:
 
 def _at_rest(sim: DynamicSimulation) -> bool:
     """Neither moving nor about to: a block at the turning point of its rocking is not in balance."""
-    still = sim.unbalanced < STILL
-    return bool(still and sim.centred_kinetic_energy() < QUIET * sim.noticeable_energy)
+    history = sim.settings.history
+    still = sim.unbalanced < history.still
+    return bool(still and sim.centred_kinetic_energy() < history.quiet * sim.noticeable_energy)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, UsageError
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from dem_cli.limit.matrices import Structure
     from dem_cli.model.model import Model
 
-CLOSER = 0.1  # width of its bracket over that of the runs
 
 Variant = Callable[[float], tuple["Case", "Model"]]  # case and model at a value
 
@@ -43,7 +43,7 @@ class Bound(NamedTuple):
         }
 
 
-def bound(variant: Variant, scale: Scale, resolution: float) -> Bound | str:
+def bound(variant: Variant, scale: Scale, resolution: float, closer: float = DEFAULT.safety.closer) -> Bound | str:
     """The change between the ends of `scale`, by bisection; or why there is none to tell."""
     begun, programs = time.perf_counter(), 0
 
@@ -60,7 +60,7 @@ def bound(variant: Variant, scale: Scale, resolution: float) -> Bound | str:
         if at_low == at_high:
             what = "finds forces in equilibrium" if at_low else "proves equilibrium impossible"
             return f"limit analysis {what} at both {low:g} and {high:g}"
-        while not scale.close(low, high, CLOSER * resolution):
+        while not scale.close(low, high, closer * resolution):
             middle = scale.middle(low, high)
             found = carried(middle)
             if found is None:

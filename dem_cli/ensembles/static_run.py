@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.statics.equilibrium import Verdict, settle_or_fail, stand
@@ -20,11 +21,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import SavedState, Simulation
     from dem_cli.engine.track import Track
     from dem_cli.model.model import Model
-
-SHARES = (0.5, 0.8, 0.9, 0.95, 0.98, 1.0)  # of the load, held one after the other
-NEAR, GENTLE = 0.9, 0.005  # a failure that near the whole load is tried again by halves of its step, down to this:
-# a larger step may have shaken down what a smaller one does not
-SOFT = 0.5  # displacement in smallest edges, over the resolution, from which geometry must move on given stiffness
 
 
 class StaticRunResult(NamedTuple):
@@ -67,15 +63,22 @@ class StaticRun(NamedTuple):
     rows: list[HistoryRow]
 
 
-def decide(case: Case, model: Model, observer: Observer, value: float, hopeless: bool = False) -> StaticRun:
+def decide(
+    case: Case,
+    model: Model,
+    observer: Observer,
+    value: float,
+    hopeless: bool = False,
+    settings: Settings = DEFAULT,
+) -> StaticRun:
     """Equilibrium or failure of a case under its constant load.
 
     hopeless: known to have no equilibrium, so that the first failure will do.
     """
-    job = Job.start(case, model, observer)
+    job = Job.start(case, model, observer, settings)
     told = _decided(job, job.first_simulation(), value, hopeless)
     given = any(joint.kn != "auto" for joint in case.joints.values())
-    soft = told.run.displacement > SOFT * case.analysis.resolution * told.sim.smallest
+    soft = told.run.displacement > settings.safety.soft * case.analysis.resolution * told.sim.smallest
     if told.run.stands and soft and given and told.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
         told = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was
     return told
@@ -112,6 +115,7 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
 
 def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
     """The verdict, the state before the last load was put on, and the share of the load that is on."""
+    safety = sim.settings.safety
     before = sim.save()
     verdict = stand(sim, job.budget)
     track.keep("gravity")
@@ -123,14 +127,14 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     if near is not None:
         track.keep("loading")
         return *near, 1.0
-    shares, at = list(SHARES), 0.0
+    shares, at = list(safety.shares), 0.0
     while shares:
         share, before = shares[0], sim.save()
         verdict = settle_or_fail(sim, share * load, job.budget, elastic * share)
         if verdict.state == "equilibrium":
             at = shares.pop(0)
             track.keep("loading")
-        elif share >= NEAR and share - at > GENTLE and not hopeless:
+        elif share >= safety.near and share - at > safety.gentle and not hopeless:
             sim.restore(before)
             shares.insert(0, 0.5 * (at + share))
         else:
@@ -178,7 +182,7 @@ def fall(told: StaticRun, observer: Observer, until: float, frames: int) -> str 
 
     Frames and rows go to the observer; returns why it did not go that far, if so.
     """
-    job = Job.start(told.case, told.model, observer)
+    job = Job.start(told.case, told.model, observer, told.job.settings)
     sim = job.simulation("large")
     sim.count_from(told.sim.steps)
     soften_falls(sim, until)

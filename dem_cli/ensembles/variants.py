@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.geometry.rotation import moments
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.model.model import Model
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from dem_cli.tables.analysis import Perturbation
 
 STREAM = 0xD1FF  # so that no other draws from the same seed are met
-LARGEST = 3.0  # standard deviations that a draw is limited to
 
 
 class Variant:
@@ -28,28 +28,31 @@ class Variant:
 
     case, model  with its own joints and masses
     motion       factor on the ground motion
+    largest      standard deviations that a draw is limited to
     """
 
-    def __init__(self, case: Case, model: Model, number: int):
+    def __init__(self, case: Case, model: Model, number: int, largest: float = DEFAULT.statistics.largest_draw):
         self.number, self.case, self.model, self.motion = number, case, model, 1.0
         if number == 0:
             return
         perturb: Perturbation = case.analysis.perturb
         friction, geometry, motion = (np.random.default_rng([case.seed, STREAM, number, topic]) for topic in range(3))
-        self.case = _other_friction(case, perturb.friction, friction)
-        self.model = other_sizes(model, case.gravity, perturb.geometry, geometry)
-        self.motion = 1.0 + float(_draw(motion, perturb.motion, 1)[0])
+        self.case = _other_friction(case, perturb.friction, friction, largest)
+        self.model = other_sizes(model, case.gravity, perturb.geometry, geometry, largest)
+        self.motion = 1.0 + float(_draw(motion, perturb.motion, (1,), largest)[0])
 
 
-def _draw(generator: np.random.Generator, deviation: float, *shape: int) -> np.ndarray:
+def _draw(generator: np.random.Generator, deviation: float, shape: tuple[int, ...], largest: float) -> np.ndarray:
     """Normal, limited."""
-    return deviation * np.clip(generator.standard_normal(shape), -LARGEST, LARGEST)
+    return deviation * np.clip(generator.standard_normal(shape), -largest, largest)
 
 
-def _other_friction(case: Case, deviation: float, generator: np.random.Generator) -> Case:
+def _other_friction(case: Case, deviation: float, generator: np.random.Generator, largest: float) -> Case:
     """A factor on the friction coefficient of each named joint that has one."""
     joints = {}
-    for (name, joint), error in zip(case.joints.items(), _draw(generator, deviation, len(case.joints)), strict=True):
+    for (name, joint), error in zip(
+        case.joints.items(), _draw(generator, deviation, (len(case.joints),), largest), strict=True
+    ):
         if isinstance(joint, FrictionJoint):
             factor = 1.0 + float(error)
             joint = joint.model_copy(update={"friction": factor * joint.coefficient, "friction_angle_deg": None})
@@ -57,14 +60,20 @@ def _other_friction(case: Case, deviation: float, generator: np.random.Generator
     return case.model_copy(update={"joints": joints})
 
 
-def other_sizes(model: Model, gravity: float, deviation: float, generator: np.random.Generator) -> Model:
+def other_sizes(
+    model: Model,
+    gravity: float,
+    deviation: float,
+    generator: np.random.Generator,
+    largest: float = DEFAULT.statistics.largest_draw,
+) -> Model:
     """Masses, centres of mass and direction of gravity with errors; the places of all corners stay.
 
     deviation: relative, of masses, of the distances of the corners along each axis, and of the lean [rad].
     """
     d, n = model.dimension, model.n_blocks
-    errors = np.where(model.fixed[:, None], 0.0, _draw(generator, deviation, n, 1 + d))
-    lean = _draw(generator, deviation, d - 1)
+    errors = np.where(model.fixed[:, None], 0.0, _draw(generator, deviation, (n, 1 + d), largest))
+    lean = _draw(generator, deviation, (d - 1,), largest)
     factors = 1.0 + errors[:, 0]
     owner = model.vertex_blocks
     first = np.searchsorted(owner, np.arange(n))

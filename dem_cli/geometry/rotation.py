@@ -58,6 +58,16 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
     return 2.0 * np.arccos(np.clip(np.abs(orientations[:, 0]), 0.0, 1.0))
 
 
+def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
+    """Axis times angle of each rotation [rad], (n, r): in the plane the angle, in space the shorter way round."""
+    if orientations.shape[1] == 1:
+        return orientations
+    shorter = orientations * np.where(orientations[:, :1] < 0.0, -1.0, 1.0)
+    sines = np.linalg.norm(shorter[:, 1:], axis=1, keepdims=True)
+    angles = 2.0 * np.arctan2(sines, shorter[:, :1])
+    return shorter[:, 1:] * np.divide(angles, sines, out=np.full_like(sines, 2.0), where=sines > 0.0)
+
+
 def matrices(orientations: np.ndarray) -> np.ndarray:
     """Rotation matrices: (n, 1) angles -> (n, 2, 2); (n, 4) unit quaternions -> (n, 3, 3)."""
     if orientations.shape[1] == 1:

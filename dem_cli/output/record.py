@@ -6,7 +6,7 @@ Plain arrays, no files.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -118,36 +118,23 @@ def distinct(names: Iterable[str]) -> list[str]:
     return found
 
 
-class Observer(Protocol):
-    """Who a solver reports to while it runs; all return at once and never change the state.
-
-    What a subclass does not override is let go: each method has a body, so that none of them is abstract.
-    """
+class Observer:
+    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state."""
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""
-        return
 
     def row(self, row: HistoryRow) -> None:
         """A row of the history to keep."""
-        return
 
     def samples(self, samples: Samples) -> None:
         """A stretch of a time history to keep; follows the one before."""
-        return
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
-        return
 
     def structure(self, model: Model) -> None:
         """The structure that all frames show, where it is another one than that of the case; before any of them."""
-        return
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """All runs of an analysis that consists of many, at its end."""
-        return
-
-
-class SilentObserver(Observer):
-    """An observer that keeps nothing; a subclass overrides what it listens to."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.output.record import Observer
+
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
     from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from dem_cli.pipeline.listener import RunListener
 
 
-class Recorder:
+class Recorder(Observer):
     """Keeps what comes, says where the run stands, lets nothing interrupt a write."""
 
     def __init__(self, writer: ResultWriter, listener: RunListener, interrupts: Interrupts):

@@ -26,19 +26,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.track import Track
 
 FALLS = "does not stand under its dead loads"
-CHUNK = 100  # steps between two looks
-TOLERANCE = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
-GRAVITY_TOLERANCE = 1e-5
-COMBINED = 0.3  # combined damping: as much against the velocity as against the change of force
-# Mass scaling for FIRE, for local damping (numerics, section 3) and for combined damping, which makes a
-# reversal of force 1 + 2·COMBINED times as strong and is stable below 1/√(1 + 2·COMBINED) = 0.79.
-RELAX_SAFETY, CREEP_SAFETY, COMBINED_SAFETY = 0.6, 0.85, 0.75
-GENTLE = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
-FALL = 2e-3  # of the narrowest block: what a block that falls may move in a step, where geometry moves
-SHORTEST, LONGEST, STAIR = 500, 20_000, 20  # steps: of a ramp (a shorter one is none), and between its loads
-# The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what it
-# would not by itself. Steps per course, and between loads.
-REMEMBERED, FINE_STAIR = 100, 5
 
 
 @dataclass(frozen=True)
@@ -73,14 +60,15 @@ def relax(
     "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where
     they are now); scale: displacement that is elastic [m].
     """
+    relaxation = sim.settings.relaxation
     since = sim.places() if since is None else since
-    sim.use(RELAX_SAFETY, damping=0.0)
+    sim.use(relaxation.fire_safety, damping=0.0)
     sim.set_load(load)
     _limit_falls(sim)
-    sim.restart_relaxation(0.1)
+    sim.restart_relaxation(relaxation.fire_mix)
     calm = 0
-    for _ in range(max(1, max_steps // CHUNK)):
-        sim.advance(CHUNK, slot.FIRE)
+    for _ in range(max(1, max_steps // relaxation.chunk)):
+        sim.advance(relaxation.chunk, slot.FIRE)
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < tolerance else 0
         if calm == 2:
@@ -88,7 +76,7 @@ def relax(
                 break
             calm = 0
     sim.rest()
-    sim.use(CREEP_SAFETY)
+    sim.use(relaxation.creep_safety)
     if calm < 2:
         return Verdict("unknown", sim.unbalanced)
     return _at_rest(sim, since, scale)
@@ -96,12 +84,13 @@ def relax(
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
     """Equilibrium under dead loads alone, or proof that there is none."""
+    relaxation = sim.settings.relaxation
     start, scale = sim.places(), measures.dead_scale(sim)
     _weigh_down(sim, budget)
-    verdict = relax(sim, 0.0, GRAVITY_TOLERANCE, scale=scale, since=start)
+    verdict = relax(sim, 0.0, relaxation.gravity_tolerance, scale=scale, since=start)
     if verdict.state != "unknown":
         return verdict
-    return settle_or_fail(sim, 0.0, budget, scale, GRAVITY_TOLERANCE, start)
+    return settle_or_fail(sim, 0.0, budget, scale, relaxation.gravity_tolerance, start)
 
 
 def settle_or_fail(
@@ -109,7 +98,7 @@ def settle_or_fail(
     load: float,
     budget: Budget,
     scale: float,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     since: np.ndarray | None = None,
     plateau: bool = False,
 ) -> Verdict:
@@ -119,18 +108,20 @@ def settle_or_fail(
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
     default: where it is now. plateau: see FailureTest.
     """
+    relaxation = sim.settings.relaxation
+    tolerance = relaxation.tolerance if tolerance is None else tolerance
     since = sim.places() if since is None else since
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
     _limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
     motion = FailureTest(sim, scale, plateau)
     _ramp(sim, load, scale, budget, doing)
     done, calm = 0, 0
     for look in count(2):
-        while done < CHUNK * round(math.sqrt(2.0) ** look):
-            sim.advance(CHUNK, slot.HOLD_LOAD)
-            budget.spend(CHUNK, doing)
-            done += CHUNK
+        while done < relaxation.chunk * round(math.sqrt(2.0) ** look):
+            sim.advance(relaxation.chunk, slot.HOLD_LOAD)
+            budget.spend(relaxation.chunk, doing)
+            done += relaxation.chunk
             calm = calm + 1 if sim.unbalanced < tolerance else 0
             if calm == 2 and not _rests(sim, tolerance, slot.HOLD_LOAD):
                 calm = 0
@@ -154,7 +145,7 @@ def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
 def _limit_falls(sim: Simulation) -> None:
     """Blocks in flight would be detected at every step; what a joint holds is slower by far."""
     if sim.kinematics == "large" and len(sim.free):
-        sim.limit_speed(FALL * float(sim.widths[sim.free].min()))
+        sim.limit_speed(sim.settings.relaxation.fall_speed * float(sim.widths[sim.free].min()))
 
 
 def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str) -> None:
@@ -162,12 +153,13 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 
     What moves by `scale` in a ramp of n steps is accelerated by about 4·scale/n².
     """
+    relaxation = sim.settings.relaxation
     before = sim.load
     sim.set_load(load)
     fall = free_falls(sim)[sim.free]
     slowest = fall[fall > 0.0].min(initial=math.inf)
-    steps = int(min(math.sqrt(4.0 * scale / (GENTLE * slowest)), LONGEST))
-    steps = max(steps if steps >= SHORTEST else 0, _steps_of_memory(sim))
+    steps = int(min(math.sqrt(4.0 * scale / (relaxation.gentle * slowest)), relaxation.longest_ramp))
+    steps = max(steps if steps >= relaxation.shortest_ramp else 0, _steps_of_memory(sim))
     if load != before:
         _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps)
         budget.spend(steps, doing)
@@ -175,11 +167,12 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
     """Dead loads little by little, where joints remember."""
+    relaxation = sim.settings.relaxation
     steps = _steps_of_memory(sim)
     if not steps:
         return
 
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
     sim.set_load(0.0)
     _limit_falls(sim)
     _climb(sim, sim.set_dead_share, steps)
@@ -189,12 +182,18 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
 
 def _steps_of_memory(sim: Simulation) -> int:
     """Length of the ramp of a load on joints that remember; 0 for others."""
-    return max(SHORTEST, REMEMBERED * sim.depth) if sim.law.n_memory(sim.model.dimension) else 0
+    relaxation = sim.settings.relaxation
+    return (
+        max(relaxation.shortest_ramp, relaxation.ramp_of_memory * sim.depth)
+        if sim.law.n_memory(sim.model.dimension)
+        else 0
+    )
 
 
 def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:
     """Steps with loads put on by their share, which grows smoothly to 1."""
-    stair = FINE_STAIR if sim.law.n_memory(sim.model.dimension) else STAIR
+    relaxation = sim.settings.relaxation
+    stair = relaxation.stair_of_memory if sim.law.n_memory(sim.model.dimension) else relaxation.stair
     stairs = steps // stair
     for number in range(1, stairs + 1):
         share = number / stairs

@@ -24,17 +24,11 @@ from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.statics.equilibrium import (
-    CHUNK,
-    COMBINED,
-    COMBINED_SAFETY,
-    CREEP_SAFETY,
-    TOLERANCE,
     Verdict,
     check_finite,
     relax,
     settle_or_fail,
 )
-from dem_cli.statics.failure_test import NOT_ELASTIC
 from dem_cli.statics.warm_start import GRAVITY, place
 
 if TYPE_CHECKING:
@@ -42,25 +36,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.track import Track
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.warm_start import WarmStart
-
-REACH = 15.0  # displacement of the creep, in elastic displacements at multiplier 1
-FIRST_PHASE, PHASES = 1000, 5  # steps of the first phase of the creep; how often the rate is halved after it
-LOOKS = 20  # how often the load is looked at in the first phase
-HOLD_STEPS = 3000
-SOFTENED = 0.95  # of the highest load: a creep past its peak
-PROBE = 0.02  # internal multiplier of the first load
-PROBE_IN_PLAY, FIRST_IN_PLAY = 2e-4, 2e-3  # the same, and the first step, where microrotations may begin early
-DOUBLINGS = 4  # of that load
-LOCKED = 100.0  # internal multiplier at which a structure counts as self-locking
-SHARES = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
-LEAST = 1e-3  # internal multiplier that the resolution is relative to, at least
-JUMP = 5.0  # resolutions; a failure after a larger step is tried again from close by
-GROWTH = 1.5  # of the step from load to load after these
-BELOW = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
-ONE_STEP = 0.99  # of the resolution: the next load, so that one failure closes the bracket
-BEYOND = 1e-4  # of a load proved impossible, that failure is shown at
-COARSE = 0.01  # bracket, over its load, that is narrow enough between a held load and one proved impossible
-SHOWN = 5.0  # elastic displacements that show a mechanism moving where failure is proved by limit analysis
 
 
 @dataclass(frozen=True)
@@ -101,10 +76,11 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
     Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
     """
+    load_search = sim.settings.load_search
     before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
-    load, value, largest = PROBE_IN_PLAY if sim.play.moved.any() else PROBE, 0.0, 0.0
+    load, value, largest = load_search.probe_in_play if sim.play.moved.any() else load_search.probe, 0.0, 0.0
     for _ in range(4):
-        verdict = relax(sim, load, TOLERANCE, 20_000)
+        verdict = relax(sim, load, sim.settings.relaxation.tolerance, 20_000)
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load
         sim.restore(saved)
@@ -116,12 +92,13 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
 def _compliance_in_play(sim: Simulation, first: tuple[float, float]) -> tuple[float, float]:
     """The same where any load may roll blocks over sides of a profile: the step of it that moves them least."""
-    saved, found, load = sim.save(), first, PROBE_IN_PLAY
-    for _ in range(DOUBLINGS):
-        if relax(sim, load, TOLERANCE, 20_000).state != "equilibrium":
+    load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
+    saved, found, load = sim.save(), first, load_search.probe_in_play
+    for _ in range(load_search.doublings):
+        if relax(sim, load, relaxation.tolerance, 20_000).state != "equilibrium":
             break
         before, places = measures.live_displacement(sim), sim.places()
-        if relax(sim, 2.0 * load, TOLERANCE, 20_000).state != "equilibrium":
+        if relax(sim, 2.0 * load, relaxation.tolerance, 20_000).state != "equilibrium":
             break
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load
@@ -145,13 +122,14 @@ def find_failure(
     """Bracket of the failure load of a structure that stands under its dead loads (see the module docstring).
 
     max_load is the multiplier, as users know it, above which the structure counts as self-locking (None:
-    LOCKED times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
+    a hundred times the dead loads). start: a state next to failure, instead of creep and loads raised from gravity;
     where it does not hold, these are the way after all. longest: step of the load, as users know it, that is never
     exceeded; then, and where joints have a profile, nothing is estimated first. What is found goes to `search` as it
     is found, so that it is not lost where the budget ends; the equilibria are kept as rows in the track.
     """
+    load_search = sim.settings.load_search
     search.low, search.held, search.settled = 0.0, sim.save(), measures.largest_displacement(sim)
-    limit = LOCKED if max_load is None else max_load / sim.live_scale
+    limit = load_search.locked if max_load is None else max_load / sim.live_scale
     search.limit = limit * sim.live_scale
     search.compliance, search.elastic = compliance(sim)
     if search.compliance <= 0.0:
@@ -161,23 +139,23 @@ def find_failure(
     if start is not None and _holds(sim, search, start, resolution, limit, budget, track):
         low = search.low / sim.live_scale
         if start.limits is not None:
-            above = (1.0 + BEYOND) * start.limits.associated.upper / sim.live_scale
-            if above <= min(limit, (1.0 + max(resolution, COARSE)) * low):
+            above = (1.0 + load_search.beyond_impossible) * start.limits.associated.upper / sim.live_scale
+            if above <= min(limit, (1.0 + max(resolution, load_search.coarse)) * low):
                 _fail_above(sim, search, above, budget, track)
                 return
-        step = ONE_STEP * resolution * low
+        step = load_search.one_step * resolution * low
         _raise_load(sim, search, low, [], step, resolution, limit, budget, track, start.plateau)
         return
     if longest is not None or sim.play.moved.any():  # a creep would stop at the first microrotation
         most = np.inf if longest is None else longest / sim.live_scale
-        first = FIRST_IN_PLAY if longest is None else most
+        first = load_search.first_in_play if longest is None else most
         _raise_load(sim, search, 0.0, [], first, resolution, limit, budget, track, longest=most)
         return
     track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
-    estimate = _creep(sim, REACH * search.compliance, budget, search)
+    estimate = _creep(sim, load_search.reach * search.compliance, budget, search)
     sim.restore(search.held)
-    estimate = min(estimate if estimate > 0.0 else PROBE, limit)
-    levels = [share * estimate for share in SHARES]
+    estimate = min(estimate if estimate > 0.0 else load_search.probe, limit)
+    levels = [share * estimate for share in load_search.shares]
     _raise_load(sim, search, 0.0, levels, 0.5 * resolution * estimate, resolution, limit, budget, track)
 
 
@@ -191,7 +169,7 @@ def _holds(
     track: Track,
 ) -> bool:
     """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
-    load = (1.0 - BELOW * resolution) * start.load / sim.live_scale
+    load = (1.0 - sim.settings.load_search.below * resolution) * start.load / sim.live_scale
     if not 0.0 < load < limit:
         return False
     track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
@@ -211,14 +189,15 @@ def _fail_above(sim: Simulation, search: FailureSearch, load: float, budget: Bud
     """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in the
     friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
     """
+    relaxation = sim.settings.relaxation
     track.observer.progress("failing", load * sim.live_scale, search.peak_displacement, None)
     before, start, ledger = sim.steps, sim.places(), measures.energy_sums(sim)
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
     sim.set_load(load)
     moved, released = 0.0, 0.0
-    while moved < SHOWN * search.elastic * load or released <= 0.0:
-        sim.advance(CHUNK, slot.HOLD_LOAD)
-        budget.spend(CHUNK, f"at load multiplier {load * sim.live_scale:.5g}")
+    while moved < sim.settings.load_search.shown * search.elastic * load or released <= 0.0:
+        sim.advance(relaxation.chunk, slot.HOLD_LOAD)
+        budget.spend(relaxation.chunk, f"at load multiplier {load * sim.live_scale:.5g}")
         check_finite(sim)
         moved = float(np.abs(sim.places() - start).max())
         now = measures.energy_sums(sim)
@@ -235,28 +214,29 @@ def _creep(sim: Simulation, distance: float, budget: Budget, search: FailureSear
 
     Where geometry moves, a creep that passed the peak of the curve stops there and gives the peak.
     """
-    sim.use(CREEP_SAFETY)
-    rate, loads, before = distance / FIRST_PHASE, [], sim.steps
-    for phase in range(PHASES + 1):
+    relaxation, load_search = sim.settings.relaxation, sim.settings.load_search
+    sim.use(relaxation.creep_safety)
+    rate, loads, before = distance / load_search.first_phase, [], sim.steps
+    for phase in range(load_search.phases + 1):
         sim.prescribe_rate(rate * 0.5**phase)
-        for _ in range(LOOKS if phase == 0 else LOOKS // 2):
-            sim.advance(FIRST_PHASE // LOOKS, sim.creep_mode)
+        for _ in range(load_search.looks if phase == 0 else load_search.looks // 2):
+            sim.advance(load_search.first_phase // load_search.looks, sim.creep_mode)
             loads.append(sim.mean_load)
         check_finite(sim)
-        if sim.kinematics == "large" and loads[-1] < SOFTENED * max(loads):
+        if sim.kinematics == "large" and loads[-1] < load_search.softened * max(loads):
             break
     else:
         sim.prescribe_rate(0.0)
         calm = 0
-        for _ in range(HOLD_STEPS // CHUNK):
-            sim.advance(CHUNK, sim.creep_mode)
-            calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+        for _ in range(load_search.hold_steps // relaxation.chunk):
+            sim.advance(relaxation.chunk, sim.creep_mode)
+            calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
             if calm == 2:
                 search.crept = sim.load
                 sim.rest()
                 search.crept_state = sim.save()
                 break
-    softened = sim.kinematics == "large" and sim.load < SOFTENED * max(loads)
+    softened = sim.kinematics == "large" and sim.load < load_search.softened * max(loads)
     estimate = max(loads) if softened else sim.load
     budget.spend(sim.steps - before, "creeping to failure")
     search.passes.append(LoadPass("creep", sim.steps - before, estimate * sim.live_scale, "estimate"))
@@ -277,17 +257,18 @@ def _raise_load(
     longest: float = np.inf,
 ) -> None:
     """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
+    load_search = sim.settings.load_search
     high, failed, jumped = None, None, False
     first_step = step
-    while high is None or jumped or high - low > resolution * max(abs(low), LEAST):
-        if high is not None and high - low <= resolution * max(abs(low), LEAST):
+    while high is None or jumped or high - low > resolution * max(abs(low), load_search.least):
+        if high is not None and high - low <= resolution * max(abs(low), load_search.least):
             load = high  # failed after a jump, which may break what a gentler step does not: once more from close by
         elif high is not None:
             load = 0.5 * (low + high)
         elif levels:
             load = levels.pop(0)
         else:
-            load, step = low + step, min(GROWTH * step, longest)
+            load, step = low + step, min(load_search.growth * step, longest)
         load = min(load, limit)
         verdict = _settle(sim, search, load, budget, track, plateau)
         if verdict.state == "equilibrium":
@@ -299,7 +280,7 @@ def _raise_load(
                 search.status = "no failure"
                 return
         else:
-            jumped = load - low > JUMP * resolution * max(abs(low), LEAST)
+            jumped = load - low > load_search.jump * resolution * max(abs(low), load_search.least)
             high, failed = load, (verdict, sim.save())
             search.high, search.failing = high * sim.live_scale, verdict
     if search.crept is not None and low < search.crept < high:
@@ -329,6 +310,9 @@ def _keep(sim: Simulation, search: FailureSearch, load: float, track: Track) -> 
     """The highest proven equilibrium so far, and its row."""
     search.low, search.held = load * sim.live_scale, sim.save()
     search.peak_displacement = measures.largest_displacement(sim)
-    if search.onset is None and search.peak_displacement > search.settled + NOT_ELASTIC * search.elastic * load:
+    if (
+        search.onset is None
+        and search.peak_displacement > search.settled + sim.settings.proof.not_elastic * search.elastic * load
+    ):
         search.onset = search.low
     track.keep("loading")

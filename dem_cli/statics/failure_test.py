@@ -19,14 +19,6 @@ from dem_cli.engine.measures import free_falls
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
 
-# Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
-ACCELERATED, STEADY = 2.5, 1.55
-FAR = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
-FAR_PER_DEPTH = 0.125  # times the square of the courses: walls of 22 find equilibrium after 40, of 70 after 300
-STEADILY = 3.3  # times as far, where the motion does not accelerate
-GROSS, TURNED = 0.1, 0.05  # of the width of a block; of its rotation [rad]: no elastic motion
-NOT_ELASTIC = 10.0  # elastic displacements that gross motion is beyond, where joints are soft
-
 
 class FailureProof(NamedTuple):
     """The proof of a failure."""
@@ -43,10 +35,13 @@ class FailureTest:
     """
 
     def __init__(self, sim: Simulation, scale: float, plateau: bool = False) -> None:
+        proof = sim.settings.proof
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
-        self.far = (FAR if plateau else max(FAR, FAR_PER_DEPTH * sim.depth**2)) * scale
+        self.far = (proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
-            self.far = min(self.far, max(NOT_ELASTIC * scale, GROSS * float(np.median(sim.widths[sim.free]))))
+            self.far = min(
+                self.far, max(proof.not_elastic * scale, proof.gross * float(np.median(sim.widths[sim.free])))
+            )
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
@@ -54,6 +49,7 @@ class FailureTest:
 
     def look(self) -> FailureProof | None:
         """To be called whenever the time grew by √2; the proof of failure where there is one."""
+        proof = self.sim.settings.proof
         moved = np.abs(self.sim.places() - self.start).max(axis=1)
         self.moved.append(moved)
         self.energies.append(measures.energy_sums(self.sim))
@@ -68,8 +64,8 @@ class FailureTest:
         last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
         if unexplained[block] <= self.far or not own[block] or min(last) <= 0.0:
             return None
-        accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > ACCELERATED
-        steady = last[-1] > STEADY**4 * last[0] and unexplained[block] > STEADILY * self.far
+        accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > proof.accelerated
+        steady = last[-1] > proof.steady**4 * last[0] and unexplained[block] > proof.steadily * self.far
         if not (accelerated or steady):
             return None
         for since in (self.energies[-3], self.energies[0]):
@@ -84,6 +80,7 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
 
     A structure that comes to rest after it is another structure: something toppled or slid down.
     """
+    proof = sim.settings.proof
     motion = np.abs(sim.places() - since)
     d = sim.model.dimension
     moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
@@ -92,6 +89,6 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
         moved = beyond(sim.play.moved, moved, before[:, :d].max(axis=1), now[:, :d].max(axis=1))
         turning = sim.play.turned * sim.shape.radii
         turned = beyond(turning, turned, before[:, d:].max(axis=1), now[:, d:].max(axis=1))
-    gross = (moved > GROSS * sim.widths) | (turned > TURNED * sim.shape.radii)
-    gross &= (np.maximum(moved, turned) > NOT_ELASTIC * scale) & ~sim.model.fixed
+    gross = (moved > proof.gross * sim.widths) | (turned > proof.turned * sim.shape.radii)
+    gross &= (np.maximum(moved, turned) > proof.not_elastic * scale) & ~sim.model.fixed
     return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None

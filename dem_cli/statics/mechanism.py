@@ -9,17 +9,13 @@ import numpy as np
 from dem_cli.engine.simulation import SavedState, Simulation
 from dem_cli.kernels import records as slot
 
-ROCKING = 0.02  # share of friction in the released work, below which nothing slides
-TURNS = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
-TAKES_PART = 0.1  # of the largest motion
-LISTED = 20  # names in a summary
-
 
 def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     """failure_mode, share of friction work, and the blocks and joints that take part.
 
     sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
     """
+    mechanism = sim.settings.mechanism
     bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
@@ -38,15 +34,17 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     # Whether anything turns, not the share: friction takes nearly all that hinges and one slipping joint release, and
     # little of what lifts blocks up a slope.
     turned = float(angle.max(initial=0.0)) * _size(sim)
-    translates = turned < TURNS * motion.max(initial=0.0)
-    mode = "sliding" if translates else "rocking" if share < ROCKING else "mixed"
-    moving = np.flatnonzero(motion > TAKES_PART * motion.max(initial=0.0))
+    translates = turned < mechanism.turns * motion.max(initial=0.0)
+    mode = "sliding" if translates else "rocking" if share < mechanism.rocking else "mixed"
+    moving = np.flatnonzero(motion > mechanism.takes_part * motion.max(initial=0.0))
     found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
     if same and len(joints.edges):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
-            found["mechanism"][key] = _pairs(sim, np.flatnonzero(values > TAKES_PART * motion.max(initial=0.0)))
+            found["mechanism"][key] = _pairs(
+                sim, np.flatnonzero(values > mechanism.takes_part * motion.max(initial=0.0))
+            )
     return found
 
 
@@ -57,11 +55,11 @@ def _size(sim: Simulation) -> float:
 
 
 def _names(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
-    names = [sim.model.block_ids[i] for i in blocks[:LISTED]]
+    names = [sim.model.block_ids[i] for i in blocks[: sim.settings.mechanism.listed]]
     return {"count": len(blocks), "first": names}
 
 
 def _pairs(sim: Simulation, joints: np.ndarray) -> dict[str, Any]:
     ids = sim.model.block_ids
-    pairs = [[ids[a], ids[b]] for a, b in sim.joints.blocks[joints[:LISTED]]]
+    pairs = [[ids[a], ids[b]] for a, b in sim.joints.blocks[joints[: sim.settings.mechanism.listed]]]
     return {"count": len(joints), "first": pairs}

@@ -11,48 +11,37 @@ from typing import TYPE_CHECKING
 
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.properties import FIXED_RATIO
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
 from dem_cli.kernels import records as slot
 from dem_cli.statics.equilibrium import (
-    CHUNK,
-    COMBINED,
-    COMBINED_SAFETY,
-    GRAVITY_TOLERANCE,
-    TOLERANCE,
     check_finite,
     relax,
     settle_or_fail,
 )
-from dem_cli.statics.failure_load import PROBE
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.simulation import Simulation
 
-ELASTIC = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
-STEPS = 200  # steps in which the rate passes the elastic displacement of a multiplier of one, at least
-FEWEST, MOST = 40_000, 60_000  # steps of the whole way, about: fewer would throw the blocks about
-GROWTH = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
-ROWS = 250  # history rows
-SOFTEST, STIFFEST = 1e3, 1e7  # kn·h/W
-FALL = 1e-3  # speed limit of blocks that fall, in smallest edges per step: they land softly
-STEPS_UP = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the load of failure, held before the collapse
-HARDER = 1.005  # growth of a load that holds after all
-NEAR_PEAK = 0.97  # share of the failure load at which loading counts as over
 
-
-def softness(case: Case, elastic: float, load: float, edge: float, until: float) -> tuple[float, float]:
+def softness(
+    case: Case, elastic: float, load: float, edge: float, until: float, settings: Settings = DEFAULT
+) -> tuple[float, float]:
     """kn·h/W for "auto" joints in a collapse, and how much softer that is than in the failure search.
 
-    As stiff as ELASTIC asks, unless the way would then take more than MOST steps.
+    As stiff as the elastic displacement at failure asks, unless the way would take more than the most steps.
     elastic: largest elastic displacement per unit of multiplier in the search [m]; edge: smallest edge [m];
     until: displacement to be followed [m].
     """
-    softer = max(ELASTIC * edge / (elastic * max(load, PROBE)), STEPS * until / (elastic * MOST))
-    ratio = min(max(FIXED_RATIO / softer, SOFTEST), STIFFEST)
+    post_peak, stiffness = settings.post_peak, settings.stiffness
+    softer = max(
+        post_peak.elastic * edge / (elastic * max(load, settings.load_search.probe)),
+        post_peak.steps * until / (elastic * post_peak.most),
+    )
+    ratio = min(max(stiffness.statics / softer, post_peak.softest), post_peak.stiffest)
     automatic = any(joint.kn == "auto" for joint in case.joints.values())
-    return ratio, (FIXED_RATIO / ratio if automatic else 1.0)
+    return ratio, (stiffness.statics / ratio if automatic else 1.0)
 
 
 def follow(
@@ -63,11 +52,12 @@ def follow(
     failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is
     {"load": the highest multiplier, "displacement": where the curve first came within 1 % of it}.
     """
-    relax(sim, 0.0, GRAVITY_TOLERANCE)
+    relaxation, post_peak = sim.settings.relaxation, sim.settings.post_peak
+    relax(sim, 0.0, relaxation.gravity_tolerance)
     track.write("gravity")
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
     soften_falls(sim, until)
-    sim.prescribe_rate(rate / GROWTH**50)
+    sim.prescribe_rate(rate / post_peak.growth**50)
     stage, next_frame, chunk = "loading", 0.0, 50
     curve: list[tuple[float, float]] = []
     highest = 0.0
@@ -81,7 +71,7 @@ def follow(
         curve.append((load, moved))
         done = moved >= until
         highest = max(highest, load)
-        if load >= NEAR_PEAK * failure or (highest > 0.8 * failure and load < NEAR_PEAK * highest):
+        if load >= post_peak.near_peak * failure or (highest > 0.8 * failure and load < post_peak.near_peak * highest):
             stage = "collapse"
         track.write(stage)
         if done or (stage == "collapse" and moved >= next_frame):
@@ -91,15 +81,16 @@ def follow(
         if done:
             reached = next((moved for load, moved in curve if load >= 0.99 * highest), moved)
             return {"load": highest, "displacement": reached}
-        sim.prescribe_rate(min(GROWTH * sim.rate, rate))
+        sim.prescribe_rate(min(post_peak.growth * sim.rate, rate))
         pace = abs(moved - before) / chunk
         longest = 100 if stage == "loading" else 20_000
-        chunk = int(min(max(until / ROWS / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
+        chunk = int(min(max(until / post_peak.rows / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
 
 
 def soften_falls(sim: Simulation, until: float) -> None:
     """Limits the speed of blocks that fall, over a way of `until` [m]."""
-    sim.limit_speed(max(FALL * sim.smallest, 20.0 * until / FEWEST))
+    post_peak = sim.settings.post_peak
+    sim.limit_speed(max(post_peak.fall_speed * sim.smallest, 20.0 * until / post_peak.fewest))
 
 
 def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
@@ -107,12 +98,13 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
 
     failure: internal multiplier that was proved impossible. Rows and frames of the way up are those of the search.
     """
-    relax(sim, 0.0, GRAVITY_TOLERANCE)
+    post_peak = sim.settings.post_peak
+    relax(sim, 0.0, sim.settings.relaxation.gravity_tolerance)
     soften_falls(sim, until)
-    for share in STEPS_UP:
+    for share in post_peak.steps_up:
         if settle_or_fail(sim, share * failure, budget, measures.dead_scale(sim)).state != "equilibrium":
             break
-    fall_under(sim, track, failure, until, frames, budget, HARDER)
+    fall_under(sim, track, failure, until, frames, budget, post_peak.harder)
 
 
 def fall_under(
@@ -122,14 +114,15 @@ def fall_under(
 
     load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
     """
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    relaxation = sim.settings.relaxation
+    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
     calm, next_row, next_frame = 0, 0.0, 0.0
     sim.set_load(load)
     while measures.largest_displacement(sim) < until:
-        sim.advance(CHUNK, slot.HOLD_LOAD)
-        budget.spend(CHUNK, "following the collapse")
+        sim.advance(relaxation.chunk, slot.HOLD_LOAD)
+        budget.spend(relaxation.chunk, "following the collapse")
         check_finite(sim)
-        calm = calm + 1 if sim.unbalanced < TOLERANCE else 0
+        calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
         if calm == 2:
             if harder is None:
                 return False
@@ -138,7 +131,7 @@ def fall_under(
         moved = measures.largest_displacement(sim)
         if moved >= next_row:
             track.write("collapse")
-            next_row = moved + until / ROWS
+            next_row = moved + until / sim.settings.post_peak.rows
         if moved >= next_frame:
             track.frame("collapse")
             next_frame = moved + until / max(frames - 3, 1)

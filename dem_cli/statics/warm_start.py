@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from dem_cli.limit.matrices import Structure
 
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
-SMALL = 100  # blocks, up to which raising the load from gravity is as fast
-FLAT = 0.5  # of the resolution: growth of the load along the path that counts as none
-DROP = 0.98  # of the highest load, that a path may end at: below it nothing says that the highest was a failure
-AT_THE_END = 4  # last increments, among which the highest load is a plateau and not a peak
-LARGE = 1000  # blocks, beyond which the path takes too many factorisations
 
 
 class WarmStart(NamedTuple):
@@ -45,9 +40,10 @@ class WarmStart(NamedTuple):
 
 def find_start(job: Job, sim: Simulation) -> tuple[WarmStart | None, dict[str, Any]]:
     """The start that the case asks for or that its size needs (None: gravity), and what summary.json says of it."""
+    warm_start = sim.settings.warm_start
     wanted = job.case.analysis.start
     blocks = len(sim.free)
-    automatic = GRAVITY if blocks <= SMALL else PATH if blocks <= LARGE else LIMIT
+    automatic = GRAVITY if blocks <= warm_start.small else PATH if blocks <= warm_start.large else LIMIT
     kind = automatic if wanted == "auto" else wanted
     if sim.kinematics != "fixed" or sim.properties.profiled:
         kind = GRAVITY  # gaps that may close, or soft joints: the geometry of the start is not that of failure
@@ -95,10 +91,11 @@ def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Warm
 
 
 def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[str, Any]) -> WarmStart | None:
+    warm_start = job.settings.warm_start
     from dem_cli.limit.path import OK, trace
 
     path = trace(
-        structure, friction, FLAT * job.case.analysis.resolution,
+        structure, friction, warm_start.flat * job.case.analysis.resolution,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
     )  # fmt: skip
     report |= path.summary()
@@ -107,12 +104,12 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
         return None
     if path.status != OK:
         report["note"] = "the path ended before the load stopped growing; the load is raised from there"
-    if path.loads[-1] < DROP * path.load:
+    if path.loads[-1] < warm_start.drop * path.load:
         report["note"] = "the load drops along the path, maybe into another mechanism; it is raised from gravity"
         return None
     upto = path.highest + 1
     work = _work(path.loads[:upto], path.live_displacements[:upto])
-    at_the_end = path.status == OK and path.highest >= len(path.loads) - AT_THE_END
+    at_the_end = path.status == OK and path.highest >= len(path.loads) - warm_start.at_the_end
     return WarmStart(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work, at_the_end)
 
 

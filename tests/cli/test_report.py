@@ -287,9 +287,9 @@ def test_an_audit_that_finds_something(tmp_path):
 
 
 def test_what_counts_as_balanced_is_what_the_solver_asks_for():
-    from dem_cli.statics.equilibrium import GRAVITY_TOLERANCE
+    from dem_cli.engine.settings import DEFAULT
 
-    assert facts.BALANCED == GRAVITY_TOLERANCE
+    assert DEFAULT.relaxation.gravity_tolerance == facts.BALANCED
 
 
 def test_colours_of_stages_and_lines_are_in_the_style_sheet():

@@ -20,9 +20,11 @@ from engine import (
 )  # fmt: skip
 
 from dem_cli.engine import measures
-from dem_cli.engine.simulation import ALPHA
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.kernels import records as slot
-from dem_cli.statics.equilibrium import COMBINED, COMBINED_SAFETY, CREEP_SAFETY, RELAX_SAFETY, TOLERANCE, relax
+from dem_cli.statics.equilibrium import relax
+
+RELAXATION = DEFAULT.relaxation
 
 FOLLOWED = ["collapse"]
 
@@ -164,7 +166,7 @@ def test_falls_and_comes_to_rest(tilt):
     sim = simulation(tables(*blocks), "large", ratio=1e4)
     sim.use(0.6, 0.3, 0.3)
     sim.advance(20_000, slot.HOLD_LOAD)
-    assert sim.unbalanced < TOLERANCE
+    assert sim.unbalanced < RELAXATION.tolerance
     assert measures.largest_overlap(sim) < 1e-3
     tilts = np.where(np.arange(1, 4) == sim.model.block_ids.index("a"), np.radians(tilt), 0.0)
     quarter_turns = sim.bodies.orientations[1:, 0] + tilts
@@ -183,9 +185,14 @@ def test_falls_when_nothing_touches():
 
 
 SCHEMES = {
-    "gravity": (RELAX_SAFETY, 0.0, 0.0, slot.FIRE),
-    "creep": (CREEP_SAFETY, ALPHA, 0.0, slot.HOLD_LOAD),
-    "constant load": (COMBINED_SAFETY, COMBINED, COMBINED, slot.HOLD_LOAD),
+    "gravity": (RELAXATION.fire_safety, 0.0, 0.0, slot.FIRE),
+    "creep": (RELAXATION.creep_safety, RELAXATION.local_damping, 0.0, slot.HOLD_LOAD),
+    "constant load": (
+        RELAXATION.combined_safety,
+        RELAXATION.combined_damping,
+        RELAXATION.combined_damping,
+        slot.HOLD_LOAD,
+    ),
 }
 
 
@@ -200,7 +207,7 @@ def test_kicked_block_comes_to_rest(height, safety, damping, change, mode):
     sim.advance(1000, mode)
     sim.bodies.velocities[1] = [3e-4, 0.0, 3e-4]
     sim.advance(20_000, mode)
-    assert sim.unbalanced < TOLERANCE
+    assert sim.unbalanced < RELAXATION.tolerance
 
 
 # -- what must not matter ----------------------------------------------------------------------------
@@ -296,7 +303,7 @@ def test_scene_is_the_one_that_is_meant():
 def test_resting_block_does_not_creep(kinematics):
     """A million steps at 95 % of the sliding limit: true stick, no drift."""
     sim = simulation(tables(BASE, block("b", rectangle(0, 0, 1, 1))), kinematics)
-    sim.use(0.6, COMBINED, COMBINED)
+    sim.use(0.6, RELAXATION.combined_damping, RELAXATION.combined_damping)
     sim.set_load(0.95 * 0.6)
     sim.advance(20_000, slot.HOLD_LOAD)
     before, friction = sim.places(), sim.ledger[slot.FRICTION]

@@ -319,7 +319,7 @@ def test_names_numbers_and_aliases_are_those_of_the_drawing(case_of, wall):
     errors = [{"height": [-0.003, 0.003], "length": [-0.003, 0.003]}]
     wild = assembly(case_of(structure=[wall], imperfection=errors))
     assert [block.id for block in plain.blocks] == [block.id for block in wild.blocks]
-    assert plain.model.numbers == wild.block_map
+    assert plain.model.numbers == wild.model.numbers
 
 
 def test_a_turned_wall_is_a_wall_turned(case_of, wall):

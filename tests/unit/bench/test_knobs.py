@@ -1,32 +1,29 @@
-"""Knobs that only benchmarks turn: they reach the solver, and are as before afterwards."""
+"""Settings that only benchmarks change: they reach the solver, and the summary names them."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from dem_cli.bench import constants
+from dem_cli.bench import precision
 from dem_cli.bench.cases import KNOWN_STRUCTURES, solve
 from dem_cli.bench.points import points_per_joint, refined, shares
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation
-from dem_cli.statics import equilibrium, failure_load
 
 
-def test_tolerance_reaches_names_and_defaults_and_is_given_back():
-    before = equilibrium.TOLERANCE, failure_load.TOLERANCE, equilibrium.settle_or_fail.__defaults__
-    with constants.tolerance(1e-3):
-        assert (equilibrium.TOLERANCE, failure_load.TOLERANCE) == (1e-3, 1e-3)
-        assert 1e-3 in equilibrium.settle_or_fail.__defaults__
-    assert before == (equilibrium.TOLERANCE, failure_load.TOLERANCE, equilibrium.settle_or_fail.__defaults__)
+def test_settings_of_a_run_are_named_in_its_summary():
+    case, model = KNOWN_STRUCTURES["COL14"].build()
+    assert "settings" not in solve(case, model)
+    changed = solve(case, model, settings=precision.tolerance(1e-3))["settings"]
+    assert changed == {"relaxation.tolerance": 1e-3, "relaxation.gravity_tolerance": 1e-3}
 
 
 def test_a_loose_tolerance_overrates_a_column():
     """A claimed equilibrium that is none: the higher the unbalanced force, the higher the load."""
     known = KNOWN_STRUCTURES["COL14"]
     case, model = known.build()
-    with constants.tolerance(1e-2):
-        loose = solve(case, model)["failure_load"]
+    loose = solve(case, model, settings=precision.tolerance(1e-2))["failure_load"]
     assert known.error(loose) > 0.01
     assert abs(known.error(solve(case, model)["failure_load"])) < 0.003
 
@@ -34,20 +31,7 @@ def test_a_loose_tolerance_overrates_a_column():
 def test_shorter_time_steps_need_more_of_them():
     case, model = KNOWN_STRUCTURES["T21 μ 0.5"].build()
     usual = solve(case, model)["steps"]
-    with constants.time_step(0.5):
-        assert solve(case, model)["steps"] > 1.3 * usual
-
-
-def test_a_constant_that_is_gone_is_said():
-    with pytest.raises(constants.Missing, match="NO_SUCH_THING"), constants.changed({"NO_SUCH_THING": 1.0}):
-        pass
-
-
-def test_what_is_inside_may_fail():
-    before = equilibrium.TOLERANCE
-    with pytest.raises(ZeroDivisionError), constants.tolerance(1e-3):
-        raise ZeroDivisionError
-    assert before == equilibrium.TOLERANCE
+    assert solve(case, model, settings=precision.time_step(0.5))["steps"] > 1.3 * usual
 
 
 @pytest.mark.parametrize(

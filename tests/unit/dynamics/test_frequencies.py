@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,9 @@ from engine import block, rectangle, running_wall, simulation, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.dynamics import frequencies
 from dem_cli.dynamics.frequencies import highest_frequency, limiting, modes, system
 from dem_cli.dynamics.time_step import time_step
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import CaseError
 from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
 
@@ -169,11 +170,11 @@ def test_modes_of_walls(courses, length, ratio):
     assert lowest(four, count).frequencies == pytest.approx(2.0 * found.frequencies, rel=1e-9)
 
 
-def test_large_structures_answer_as_small_ones(monkeypatch):
+def test_large_structures_answer_as_small_ones():
     sim = wall(14, 12, 0.4)
     found, fast = lowest(sim, 8), highest_frequency(sim)
     assert found.frequencies.size == 8
-    monkeypatch.setattr(frequencies, "DENSE", 10**9)
+    sim.settings = replace(DEFAULT, frequency=replace(DEFAULT.frequency, dense=10**9))
     dense = lowest(sim, 8)
     assert found.frequencies == pytest.approx(dense.frequencies, rel=1e-9)
     assert np.abs(found.shapes - dense.shapes).max() < 1e-6 * np.abs(dense.shapes).max()
@@ -210,10 +211,9 @@ def test_motions_that_strain_nothing():
     assert none.shapes.shape == (0, 3, 3)
 
 
-def test_mechanisms_of_large_structures_are_left_out(monkeypatch):
-    monkeypatch.setattr(frequencies, "DENSE", 0)
-    monkeypatch.setattr(frequencies, "DENSE_SHARE", 1.0)
+def test_mechanisms_of_large_structures_are_left_out():
     sim = stack(4, 1.0, 0.5, 1e9, 1e9)
+    sim.settings = replace(DEFAULT, frequency=replace(DEFAULT.frequency, dense=0, dense_share=1.0))
     closed = np.ones(8, bool)
     closed[[3, 7]] = False
     found = lowest(sim, 3, closed)

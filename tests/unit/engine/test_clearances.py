@@ -14,16 +14,15 @@ from hypothesis import strategies as st
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.engine.clearances import (
-    AMPLIFIED,
-    FARTHEST,
-    MARGIN,
-    STEEPEST,
     beyond,
     gap_play,
     joint_angles,
     open_gaps,
     play,
 )
+from dem_cli.engine.settings import DEFAULT
+
+CLEARANCE = DEFAULT.clearance
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
 statics = importlib.import_module("thesis7.statics")
@@ -95,7 +94,7 @@ def test_every_block_of_a_wall_has_play_by_its_nearest_support():
     assert sim.play.moved[names.index("base")] == sim.play.turned[names.index("base")] == 0.0
     assert all(max(low) < min(high) for low, high in zip(courses, courses[1:]))
     own = (sim.joints.blocks == [names.index("base"), names.index("b0-1")]).all(axis=1)
-    assert sim.play.turned[names.index("b0-1")] == pytest.approx(MARGIN * joint_angles(sim.joints)[own][0])
+    assert sim.play.turned[names.index("b0-1")] == pytest.approx(CLEARANCE.margin * joint_angles(sim.joints)[own][0])
 
 
 def test_plane_closed_joints_have_none():
@@ -185,9 +184,9 @@ def test_gap_is_the_largest_distance_of_points(angle, lean, x, y, width):
 def test_gap_play_is_no_licence_to_collapse(gap, width):
     found = gap_play(np.array([0.0, gap]), width, 3)
     assert found.moved.shape == found.turned.shape == (3,)
-    assert (found.moved <= min(AMPLIFIED * gap, FARTHEST * width)).all()
-    assert (found.turned <= min(AMPLIFIED * gap / width, STEEPEST)).all()
-    assert (found.moved >= min(gap, FARTHEST * width)).all()  # a block that falls through the gap
+    assert (found.moved <= min(CLEARANCE.amplified * gap, CLEARANCE.farthest * width)).all()
+    assert (found.turned <= min(CLEARANCE.amplified * gap / width, CLEARANCE.steepest)).all()
+    assert (found.moved >= min(gap, CLEARANCE.farthest * width)).all()  # a block that falls through the gap
 
 
 @pytest.mark.parametrize("restack", ["set down", "left"])
@@ -203,5 +202,5 @@ def test_gaps_of_blocks_that_do_not_fit_count(restack):
             if row["id"].startswith("b2"):
                 row["vertices"] = [[x, y + 3e-4] for x, y in row["vertices"]]
     sim = simulation(case, "large")
-    assert sim.play.moved == pytest.approx(AMPLIFIED * 3e-4, rel=1e-3)
+    assert sim.play.moved == pytest.approx(CLEARANCE.amplified * 3e-4, rel=1e-3)
     assert not simulation(case, "fixed").play.moved.any()

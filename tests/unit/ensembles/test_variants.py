@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from dem_cli import api
-from dem_cli.ensembles.variants import LARGEST, Variant, other_sizes
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.ensembles.variants import Variant, other_sizes
 from dem_cli.model.places import undeformed
 
 CASE = """\
@@ -72,7 +73,7 @@ def test_errors_are_as_large_as_was_asked_for(built):
     shifts = np.array([(m.centroids - model.centroids)[free] for m in draws])
     leans = np.array([m.dead_loads[free, 0].sum() - 30.0 for m in draws]) / (9.81 * model.masses[free].sum())
     assert masses.std() == pytest.approx(0.01, rel=0.1)
-    assert np.abs(masses).max() <= LARGEST * 0.01 + 1e-15
+    assert np.abs(masses).max() <= DEFAULT.statistics.largest_draw * 0.01 + 1e-15
     assert shifts.std() == pytest.approx(0.01 * 0.25, rel=0.1)
     assert leans.std() == pytest.approx(0.01, rel=0.15)
 

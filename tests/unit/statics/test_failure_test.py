@@ -11,7 +11,7 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.measures import free_falls
 from dem_cli.kernels import records as slot
-from dem_cli.model.scales import depth, widths
+from dem_cli.model.scales import depth
 from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
 from dem_cli.statics.failure_load import compliance
 from dem_cli.statics.failure_test import FailureTest, displaced
@@ -37,7 +37,7 @@ CHAMFERED = [[0, 0], [0.25 - 1e-6, 0], [0.25, 1e-6], [0.25, 1], [0, 1]]
 def test_width_is_no_edge(corners):
     """A tiny edge at a corner makes no block narrow."""
     sim = simulation(tables(GROUND, block("b", corners)))
-    assert widths(sim.model)[1] == pytest.approx(0.25, rel=0.05)
+    assert sim.model.shapes.widths[1] == pytest.approx(0.25, rel=0.05)
 
 
 def watch(sim, looks: int, scale: float):
