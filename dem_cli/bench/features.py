@@ -28,7 +28,7 @@ FOLLOW = {"T21 μ 0.6": 0.02, "T231": 0.04}  # m, as in cases/verification
 
 @dataclass(frozen=True)
 class Feature:
-    """Something that a run may do besides finding a failure load."""
+    """Feature of a run: something that it may do besides finding a failure load."""
 
     name: str
     overrides: tuple[str, ...] = ()

@@ -30,7 +30,7 @@ class Measurement:
 
 @dataclass
 class GroupResult:
-    """What one group left; notes say what was skipped and why."""
+    """Records of one group of benchmarks; notes say what was skipped and why."""
 
     records: list[Measurement] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -38,7 +38,7 @@ class GroupResult:
 
 @dataclass(frozen=True)
 class BenchOptions:
-    """How much is measured."""
+    """Options of a benchmark: how much is measured."""
 
     quick: bool = False  # the smallest sizes, once: does it work?
     long: bool = False  # the largest ones as well: hours

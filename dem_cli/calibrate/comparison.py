@@ -15,7 +15,7 @@ OK = "ok"
 
 
 class TrialAnswer(NamedTuple):
-    """What one trial gave."""
+    """Answer of one trial of a calibration."""
 
     status: str
     failure_load: float | None = None

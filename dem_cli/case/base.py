@@ -17,7 +17,7 @@ Pair = tuple[float, float]  # a point, vector or force in the x–y plane
 
 
 class KeyProblem(ValueError):
-    """Raised in a validator to blame one key below the table being validated.
+    """Validation error of one key below the table being validated.
 
     `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`
     """
@@ -83,7 +83,7 @@ def sequence_of(table: Any) -> Any:
 
 
 class OneOrMoreSchema:
-    """Tells editors, by the JSON Schema, that one table will do."""
+    """JSON Schema of a list of tables for which one table will do."""
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
         several = handler(core_schema)

@@ -25,7 +25,7 @@ from dem_cli.errors import CaseProblem, KeyPath
 
 
 class ErrorLocation(NamedTuple):
-    """Where an error belongs.
+    """Location of a validation error.
 
     kinds: what may stand there; owner: the table around; union, choices: path and members of the union above.
     """

@@ -33,7 +33,7 @@ def describe(key: str) -> tuple[str, str]:
 
 
 class ColumnChoice(NamedTuple):
-    """Which columns a chart shows, in the user's words."""
+    """Columns that a chart shows, in the user's words."""
 
     x: str | None = None
     ys: Sequence[str] = ()

@@ -23,7 +23,7 @@ _SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
 
 
 class PictureSize(click.ParamType):
-    """1200x800, or 1200 and a height that suits."""
+    """Size of a picture in pixels: 1200x800, or 1200 and a height that suits."""
 
     name = "WIDTH[xHEIGHT]"
 
@@ -37,7 +37,7 @@ class PictureSize(click.ParamType):
 
 
 class AxisLimits(click.ParamType):
-    """0:0.02, the lower and the upper end of an axis."""
+    """Limits of an axis: 0:0.02, the lower and the upper end."""
 
     name = "LOW:HIGH"
 

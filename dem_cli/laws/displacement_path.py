@@ -14,7 +14,7 @@ from dem_cli.laws.law import Law
 
 
 class PathResponse(NamedTuple):
-    """What came out, one row a step; work and energy from the start up to there."""
+    """Response to a displacement path, one row a step; work and energy from the start up to there."""
 
     path: np.ndarray  # gap and total slide [m], (n, d)
     normal: np.ndarray  # normal force, compression positive [N], (n,)

@@ -20,7 +20,7 @@ MOST_SAMPLES = 100_000  # samples
 
 
 class IntensityMeasures(NamedTuple):
-    """Measures of one motion."""
+    """Intensity measures of one ground motion."""
 
     duration: float  # [s]
     acceleration: float  # largest absolute values [m/s2]
@@ -31,7 +31,7 @@ class IntensityMeasures(NamedTuple):
 
 
 class SpectrumFit(NamedTuple):
-    """A suite of motions against a target spectrum, in the terms of EN 1998-1 3.2.3.1.2(4)."""
+    """Fit of a suite of motions to a target spectrum, in the terms of EN 1998-1 3.2.3.1.2(4)."""
 
     periods: np.ndarray  # compared at [s], (n,)
     ratios: np.ndarray  # pseudo-acceleration over target, (n_motions, n)

@@ -13,7 +13,7 @@ ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves
 
 
 class Waveform(Protocol):
-    """A history that starts at t = 0 from rest; times given to it lie within [0, duration].
+    """Waveform of a motion, which starts at t = 0 from rest; times given to it lie within [0, duration].
 
     velocity is the exact integral of acceleration and displacement that of velocity, both 0 at t = 0.
     """
@@ -34,7 +34,7 @@ class Waveform(Protocol):
 
 @dataclass(frozen=True)
 class Motion:
-    """`factor` times a shape, from `start` on, along `direction`.
+    """Motion of the base: `factor` times a waveform, from `start` on, along `direction`.
 
     Before the start everything is 0; after the end the acceleration is 0 and the velocity stays what it was.
     Times are scalars or arrays of any shape [s]; results have the same shape, in m/s2, m/s and m.

@@ -14,8 +14,9 @@ RICKER_HALF = 1.5  # half length of the wavelet in periods: the acceleration is 
 
 
 class SineWave:
-    """amplitude · r(t) · sin(2π f t + phase); r rises from 0 to 1 over the first `ramp` seconds, and falls likewise.
+    """Sine with ramps, amplitude · r(t) · sin(2π f t + phase).
 
+    r rises from 0 to 1 over the first `ramp` seconds, and falls likewise.
     amplitude [m/s2], frequency [Hz], phase [rad], duration [s], ramp [s], at most half the duration.
     """
 
@@ -85,8 +86,9 @@ class SineWave:
 
 
 class RickerWavelet:
-    """amplitude · (1 − 2x²) exp(−x²), x = π f (t − 1.5/f): second derivative of a bell; f is where its spectrum peaks.
+    """Ricker wavelet, amplitude · (1 − 2x²) exp(−x²), x = π f (t − 1.5/f).
 
+    The second derivative of a bell; f is where its spectrum peaks.
     Source: N. Ricker, The form and laws of propagation of seismic wavelets, Geophysics 18 (1953).
     """
 
@@ -120,7 +122,7 @@ class RickerWavelet:
 
 
 class RectangularPulses:
-    """Acceleration that is constant for a while, then another constant: `values` [m/s2] for `durations` [s]."""
+    """Rectangular pulses of acceleration: `values` [m/s2] for `durations` [s], one after the other."""
 
     def __init__(self, durations: list[float], values: list[float]):
         lengths, self.values = np.array(durations), np.array(values)

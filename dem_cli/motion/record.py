@@ -14,7 +14,7 @@ BASELINE = 1  # order for baseline = true
 
 
 class Accelerogram:
-    """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Waveform`).
+    """Accelerogram as piecewise polynomial of time from 0 (the contract: motion.py, `Waveform`).
 
     times (n,) are the samples [s], the first one 0.
     """

@@ -13,7 +13,7 @@ AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium
 
 
 class EquilibriumMonitors:
-    """Remembers the monitors of a run, equilibrium by equilibrium."""
+    """Monitors of a run, remembered equilibrium by equilibrium."""
 
     def __init__(self, names: Sequence[str], quantities: Sequence[str]):
         self.names, self.units = tuple(names), [MONITOR_UNITS[quantity] for quantity in quantities]

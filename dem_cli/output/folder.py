@@ -110,7 +110,7 @@ def foreign_names(folder: Path) -> list[str]:
 
 
 class OutputFolder:
-    """`path` is where to write now; `commit()` gives it the final name, leaving the block discards it."""
+    """Output folder of a run: write to `path`; `commit()` gives it the final name, leaving the block discards it."""
 
     def __init__(self, final: Path | str, *, force: bool = False, recover: bool = True):
         self.name = str(final)

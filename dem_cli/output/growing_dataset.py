@@ -11,7 +11,7 @@ _FEWEST_ROWS = 64
 
 
 class GrowingDataset:
-    """One growing dataset."""
+    """HDF5 dataset that grows row by row."""
 
     def __init__(self, group: h5py.Group, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int):
         width = tuple(max(1, size) for size in shape)

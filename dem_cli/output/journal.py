@@ -22,7 +22,7 @@ Values = tuple[Any, ...]
 
 
 class Journal:
-    """`known()` are the runs of before; `add` keeps one more.
+    """Journal of finished runs: `known()` are those of before; `add` keeps one more.
 
     what    facts that must be the same for runs to be comparable: {words for users: text}
     resume  whether runs of before are wanted; raises UsageError where they were made of something else,

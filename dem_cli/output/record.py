@@ -97,7 +97,7 @@ class Samples(NamedTuple):
 
 
 class RunRow(NamedTuple):
-    """What became of one of many runs."""
+    """Outcome of one of many runs."""
 
     structure: int  # 0: that of the case; others are slightly different
     record: str  # the ground motion

@@ -46,7 +46,7 @@ class Peak(NamedTuple):
 
 
 class HistorySeries(NamedTuple):
-    """The histories of a run."""
+    """Time histories of a run."""
 
     time: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
@@ -55,7 +55,7 @@ class HistorySeries(NamedTuple):
 
 
 class SeriesWriter:
-    """Keeps what comes in memory until `flush`; remembers the peaks."""
+    """Writer of time histories: keeps what comes in memory until `flush`; remembers the peaks."""
 
     def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str]):
         self.names, self.quantities = tuple(names), tuple(quantities)

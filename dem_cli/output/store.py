@@ -48,7 +48,7 @@ _UNSAID = ("aliases",)  # of a model: the case file says them
 
 
 class ResultWriter:
-    """Give it frames and history rows as they come; `close(summary)` completes the folder."""
+    """Writer of results: give it frames and history rows as they come; `close(summary)` completes the folder."""
 
     def __init__(
         self,

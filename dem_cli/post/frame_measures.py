@@ -19,7 +19,7 @@ _LARGEST_TURN = 0.35  # rad, of a drawn rotation
 
 @dataclass(frozen=True)
 class Resultants:
-    """One force per joint that is pressed, for the thrust line."""
+    """Resultant forces of a frame: one per joint that is pressed, for the thrust line."""
 
     points: np.ndarray  # centre of pressure [m], (n, 2)
     forces: np.ndarray  # force on the second block [N], (n, 2)

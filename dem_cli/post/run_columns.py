@@ -26,7 +26,7 @@ _FRAGILITY = {
 
 
 class ColumnTable(NamedTuple):
-    """Columns of the same length."""
+    """Table of columns of the same length."""
 
     title: str
     quantities: dict[str, Quantity]

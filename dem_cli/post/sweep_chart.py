@@ -20,7 +20,7 @@ MOST_ENTRIES = 24  # of a legend
 
 
 class RunFamily(NamedTuple):
-    """Runs that differ in x alone."""
+    """Family of runs that differ in x alone."""
 
     first: Any  # value of the first key by which families differ: the colour
     rest: tuple[Any, ...]  # of the others: dashes and marker

@@ -20,7 +20,7 @@ ANSWER_COLUMNS = (  # what is drawn where nobody says: the first of these that h
 
 @dataclass(frozen=True)
 class SweepTable:
-    """Rows in the order of the plan."""
+    """Table of a sweep: rows in the order of the plan."""
 
     title: str
     keys: tuple[str, ...]  # swept

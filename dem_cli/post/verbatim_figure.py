@@ -27,7 +27,7 @@ class VerbatimFigure(Figure):
 
 
 class PowerFormatter(LogFormatterSciNotation):
-    """10³ instead of a formula for it."""
+    """Numbers at a logarithmic axis: 10³ instead of a formula for it."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         """The number beside a tick, its exponent raised."""

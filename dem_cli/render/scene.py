@@ -47,7 +47,7 @@ def camera(view: str, points: np.ndarray) -> Camera:
 
 
 class Scene:
-    """One picture after the other of the same structure; to be used only where `gl.choose_window` found a way."""
+    """One picture after the other of the same structure; to be used only where `opengl.choose_window` found a way."""
 
     def __init__(self, model: Model, eye: Camera, width: int, height: int, points: float, deep: bool):
         """points: pixels of a typographic point. deep: with shades in corners, for oblique views."""

@@ -24,7 +24,7 @@ class ColourBar(NamedTuple):
 
 
 class SheetLayout(NamedTuple):
-    """Sizes in pixels."""
+    """Layout of a sheet: sizes in pixels."""
 
     width: int
     height: int

@@ -22,7 +22,7 @@ _ALT = {"collapse.png": "The structure at failure and at the end", "modes.png": 
 
 
 class TerminalText(NamedTuple):
-    """What the command line says of a run."""
+    """Text of the command line on a run."""
 
     rows: Sequence[tuple[str, str]]  # label and text of each line
     verdicts: Sequence[tuple[str, str]]  # of [reference]: "good" or "bad", and in words

@@ -28,7 +28,7 @@ Summary = Mapping[str, Any]
 
 
 class SweepJob(NamedTuple):
-    """All that a process elsewhere needs to know of a run."""
+    """Job of a sweep: all that a process elsewhere needs to know of a run."""
 
     id: str
     path: str  # of the case file, for messages and records beside it

@@ -39,7 +39,7 @@ def seconds(value: float) -> str:
 
 
 class Progress:
-    """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
+    """Progress of a run: a bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
 
     def __init__(self, quiet: bool = False, stream: TextIO | None = None):
         self.quiet = quiet

@@ -15,7 +15,7 @@ RECENT = 200  # runs from which the speed is taken
 
 
 class RunCounter:
-    """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`.
+    """Progress of many runs: a bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`.
 
     total: runs in all; before: how many of them were there at the start.
     """
