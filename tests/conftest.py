@@ -9,4 +9,5 @@ ROOT = Path(__file__).resolve().parents[1]
 
 os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
-os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+FOLDERS = [str(ROOT), str(ROOT / "tests"), str(ROOT / "scripts")]  # of what tests and their processes import
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (*FOLDERS, os.environ.get("PYTHONPATH"))))

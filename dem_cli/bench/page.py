@@ -13,7 +13,7 @@ PAGE_NAME = "benchmarks"
 PAGE_HEAD = """\
 # Benchmarks
 
-Written by `scripts/benchmark -o docs` from `docs/benchmarks.json`; do not edit. Times are CPU seconds of one core
+Written by `scripts/benchmark -o docs` from `docs/data/benchmarks.json`; do not edit. Times are CPU seconds of one core
 (numerical libraries kept to one thread), without compilation. Everything is repeated in turn, each round measuring
 each thing once, and the best counts, because other work only ever adds time; what takes longer than {long:g} s is
 measured once. An error is that of the failure load against the exact or best-known load of the table below; a
@@ -77,10 +77,15 @@ def references() -> list[str]:
     return [text, "", *lines_of(head, rows)]
 
 
+def data_file(folder: Path) -> Path:
+    """The JSON of a page in a folder."""
+    return folder / "data" / f"{PAGE_NAME}.json"
+
+
 def keep(folder: Path, groups: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
     """Write the JSON and return what it holds; groups that were in it and are not in `groups` stay."""
-    folder.mkdir(parents=True, exist_ok=True)
-    data = folder / f"{PAGE_NAME}.json"
+    data = data_file(folder)
+    data.parent.mkdir(parents=True, exist_ok=True)
     merged = (read(data) if data.exists() else {}) | groups
     merged = {name: merged[name] for name in registry.GROUPS if name in merged}
     data.write_text(as_json(merged), encoding="utf-8", newline="\n")
@@ -90,7 +95,7 @@ def keep(folder: Path, groups: dict[str, dict[str, Any]]) -> dict[str, dict[str,
 def write(folder: Path, groups: dict[str, dict[str, Any]]) -> list[Path]:
     """Write JSON (see `keep`), page and pictures."""
     merged = keep(folder, groups)
-    written = [folder / f"{PAGE_NAME}.json", folder / f"{PAGE_NAME}.md"]
+    written = [data_file(folder), folder / f"{PAGE_NAME}.md"]
     written[1].write_text(render(merged), encoding="utf-8", newline="\n")
     for name in merged:
         for suffix, draw in registry.module(name).PICTURES.items():

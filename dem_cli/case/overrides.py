@@ -16,7 +16,7 @@ NAMED = ("materials", "joints")  # tables of named tables: a new name is taken f
 
 
 class Override(NamedTuple):
-    """Override of one value: a key path, as typed and resolved, the value, and where it stands (a sweep; () is --set)."""
+    """Override of one value: key path as typed and resolved, the value, and where it stands (a sweep; () is --set)."""
 
     text: str
     path: KeyPath

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     "folder",
     type=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
-    help="Write benchmarks.json, .md and pictures there; groups not measured now stay.",
+    help="Write benchmarks.md, pictures and data/benchmarks.json there; groups not measured now stay.",
 )
-@click.option("--redraw", is_flag=True, help="Measure nothing: page and pictures again from DIR/benchmarks.json.")
+@click.option("--redraw", is_flag=True, help="Measure nothing: page and pictures again from DIR/data/benchmarks.json.")
 def command(
     groups: Sequence[str],
     quick: bool,
@@ -46,13 +46,13 @@ def command(
     Groups: kernels, joints, precision, time_histories, growth, threads, sweeps, features, others, startup.
     """
     one_thread()
-    from dem_cli.bench.page import PAGE_NAME, keep, render, write
+    from dem_cli.bench.page import data_file, keep, render, write
     from dem_cli.bench.record import BenchOptions, as_json, read
 
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
     check_places(folder, json_file)
-    found = read(folder / f"{PAGE_NAME}.json") if redraw and folder is not None else {}
+    found = read(data_file(folder)) if redraw and folder is not None else {}
     for name in [] if redraw else checked(groups):
         found[name] = measured(name, BenchOptions(quick, long, repeats))
         if folder is not None:

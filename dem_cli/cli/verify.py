@@ -32,7 +32,7 @@ SHELF = click.Choice(["verification", "validation", "cross-code"])
 @click.option("--changed", is_flag=True, help="Only cases that changed since docs/verification.md was written.")
 @click.option("-j", "--jobs", type=click.IntRange(min=1), metavar="N", help="Processes; default: all cores.")
 @click.option("--write", type=click.Path(path_type=Path), metavar="PAGE",
-              help="Write the page, such as docs/verification.md, and its JSON beside it.")  # fmt: skip
+              help="Write the page, such as docs/verification.md, and its JSON in data/ beside it.")  # fmt: skip
 @click.option("--junit", "junit_file", type=click.Path(path_type=Path), metavar="FILE", help="Write JUnit XML.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of tables.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
@@ -53,12 +53,12 @@ def command(
     Exit code: 0 all as the cases say, 1 some are not, 2 wrong arguments or a wrong case file (the others are run).
     """
     from dem_cli.verify.case_selection import find
-    from dem_cli.verify.records import digest, load, on_shelves
+    from dem_cli.verify.records import data_file, digest, load, on_shelves
 
     began = time.perf_counter()
     found = find(paths or [Path("cases")], pattern, shelves)
     page = write or PAGE
-    before = load(page.with_suffix(".json"))
+    before = load(data_file(page))
     costs = {record["case"]: record["seconds"] for record in before}
     cases, slow = split(found.cases, costs, at_most)
     if changed:
@@ -76,7 +76,7 @@ def command(
     show(records, time.perf_counter() - began, as_json)  # before anything that a full disk can stop
     if write:
         write_page(write, records)
-        remarks.append(f"written: {write}, {write.with_suffix('.json')}")
+        remarks.append(f"written: {write}, {data_file(write)}")
     if junit_file:
         from dem_cli.verify.junit import junit
 
@@ -156,10 +156,10 @@ def verified(path: Path) -> Record:
 def write_page(page: Path, records: list[Record]) -> None:
     """The page and its JSON: new records, and those there of cases that were not run now."""
     from dem_cli.verify.page import page as text
-    from dem_cli.verify.records import dump, load, merged
+    from dem_cli.verify.records import data_file, dump, load, merged
 
-    kept = dump(merged(load(page.with_suffix(".json")), records), page, __version__)
-    put(page.with_suffix(".json"), kept)
+    kept = dump(merged(load(data_file(page)), records), page, __version__)
+    put(data_file(page), kept)
     put(page, text(json.loads(kept)["cases"], __version__))
 
 

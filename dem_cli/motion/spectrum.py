@@ -16,7 +16,7 @@ TERMS = 16  # of the series of exp(x), |x| ≤ 0.5: the next one is below 1e-18
 
 
 class ResponseSpectrum(NamedTuple):
-    """Response spectrum, largest absolute responses; every field but `periods` is (..., n_periods), as the records given."""
+    """Response spectrum, largest absolute responses; all but `periods` are (..., n_periods), as the records given."""
 
     periods: np.ndarray  # [s], (n_periods,)
     displacement: np.ndarray  # SD: relative to the base [m]

@@ -85,21 +85,27 @@ def all_well(records: Iterable[Record]) -> bool:
     return not (found["failed"] or found["met"] or found["not solved"])
 
 
+def data_file(page: Path) -> Path:
+    """The JSON of a page."""
+    return page.parent / "data" / f"{page.stem}.json"
+
+
 def load(file: Path) -> list[Record]:
-    """Records of an earlier `dem verify --write`, their cases as seen from here; none where there is no such file."""
+    """Records of an earlier `dem verify --write`, cases as seen from here; none where there is no such file."""
     if not file.is_file():
         return []
     try:
         kept = json.loads(file.read_text(encoding="utf-8"))["cases"]
-        return [{**one, "case": moved(one["case"], file.parent, Path())} for one in kept]
+        return [{**one, "case": moved(one["case"], file.parent.parent, Path())} for one in kept]
     except (ValueError, KeyError, TypeError, OSError) as error:
         raise UsageError(f"{file}: is not what `dem verify --write` left ({error}); remove it") from None
 
 
-def dump(records: Iterable[Record], file: Path, version: str) -> str:
-    """JSON text of records, their cases as seen from the file."""
-    cases = sorted(({**r, "case": moved(r["case"], Path(), file.parent)} for r in records), key=lambda r: r["case"])
-    return json.dumps({"version": version, "cases": cases}, indent=1, ensure_ascii=False) + "\n"
+def dump(records: Iterable[Record], page: Path, version: str) -> str:
+    """JSON text of records, one per line, their cases as seen from the page."""
+    cases = sorted(({**r, "case": moved(r["case"], Path(), page.parent)} for r in records), key=lambda r: r["case"])
+    lines = ",\n".join(json.dumps(case, ensure_ascii=False) for case in cases)
+    return f'{{"version": {json.dumps(version)}, "cases": [\n{lines}\n]}}\n'
 
 
 def moved(path: str, before: Path, after: Path) -> str:

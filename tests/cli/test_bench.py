@@ -47,7 +47,7 @@ def test_quick_leaves_a_page_and_pictures(quick):
     folder, groups = quick
     text = (folder / "page" / "benchmarks.md").read_text("utf-8")
     assert all(f"## {title}" in text for title in registry.GROUPS.values())
-    assert json.loads((folder / "page" / "benchmarks.json").read_text("utf-8"))["groups"] == groups
+    assert json.loads((folder / "page" / "data" / "benchmarks.json").read_text("utf-8"))["groups"] == groups
     assert {path.name for path in (folder / "page").glob("*.png")} == {
         f"benchmarks_{suffix}.png" for name in registry.GROUPS for suffix in registry.module(name).PICTURES
     }

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
-import sys
 import tomllib
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 from shown import blocks, parse
+from studies.site import build, generated, links
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-
-docs, generated, site_module = (import_module(name) for name in ("docs", "docpages.generated", "docpages.site"))
 
 
 @pytest.mark.parametrize("path", generated.PAGES)
@@ -25,7 +21,7 @@ def test_generated_page_is_the_current_one(path):
 
 def test_the_site_builds_and_holds_together(tmp_path, capfd):
     site, pages = tmp_path / "site", ROOT / "docs"
-    assert docs.main(["-o", str(site)]) == 0, capfd.readouterr().err
+    assert build.main(["-o", str(site)]) == 0, capfd.readouterr().err
     for path in pages.rglob("*.md"):
         assert (site / path.relative_to(pages)).with_suffix(".html").exists()
 
@@ -39,7 +35,7 @@ def test_what_is_broken_is_found(tmp_path):
         '<script src="//cdn.example.org/x.js"></script>'
     )
     (tmp_path / "a.html").write_text(page)
-    found = sorted(site_module.problems(tmp_path))
+    found = sorted(links.problems(tmp_path))
     assert [line.split(": ")[0] for line in found] == ["a.html"] * 4 + ["style.css"]
     for word in ("c.html", "there", "no.png", "cdn", "fonts"):
         assert any(word in line for line in found), word

@@ -72,7 +72,7 @@ def test_no_python_at_all(project):
     assert "needs Python 3.11 or newer" in done.stderr
 
 
-@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/loads", ".ci/run"])
+@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", ".ci/run"])
 def test_executable(script):
     assert os.access(ROOT / script, os.X_OK)
 

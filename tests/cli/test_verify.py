@@ -206,11 +206,11 @@ def test_page_and_its_record(folder):
     write(folder, good=GOOD, missed=MISSED, stands=STANDS)
     verify("--write", "docs/verification.md")
     text = (folder / "docs" / "verification.md").read_text(encoding="utf-8")
-    kept = json.loads((folder / "docs" / "verification.json").read_text(encoding="utf-8"))
+    kept = json.loads((folder / "docs" / "data" / "verification.json").read_text(encoding="utf-8"))
     assert page(kept["cases"], kept["version"]) == text
     assert "[cases/good](../cases/good.toml)<br>A block on a floor | `failure_load` | 0.4 | 0.4 |" in text
     assert "* [cases/missed](../cases/missed.toml), `failure_load`: the floor was wet." in text
-    assert [record["case"] for record in load(folder / "docs" / "verification.json")] == [
+    assert [record["case"] for record in load(folder / "docs" / "data" / "verification.json")] == [
         "cases/good.toml", "cases/missed.toml", "cases/stands.toml",
     ]  # fmt: skip
 
@@ -221,7 +221,7 @@ def test_a_part_of_the_page_written_again(folder):
     (folder / "cases" / "missed.toml").unlink()
     write(folder, good=WRONG)
     verify("-k", "good", "--write", "docs/verification.md", code=1)
-    records = {record["case"]: record for record in load(folder / "docs" / "verification.json")}
+    records = {record["case"]: record for record in load(folder / "docs" / "data" / "verification.json")}
     assert set(records) == {"cases/good.toml", "cases/stands.toml"}
     assert records["cases/good.toml"]["references"][0]["state"] == "failed"
 
@@ -240,7 +240,7 @@ def test_only_what_changed(folder):
 def test_those_known_to_take_long_are_left_out(folder):
     write(folder, good=GOOD, stands=STANDS)
     verify("--write", "docs/verification.md")
-    file = folder / "docs" / "verification.json"
+    file = folder / "docs" / "data" / "verification.json"
     kept = json.loads(file.read_text(encoding="utf-8"))
     kept["cases"][1]["seconds"] = 100.0
     file.write_text(json.dumps(kept), encoding="utf-8")
@@ -252,9 +252,9 @@ def test_those_known_to_take_long_are_left_out(folder):
 
 def test_a_spoilt_record_is_said(folder):
     write(folder, good=GOOD)
-    (folder / "docs").mkdir()
-    (folder / "docs" / "verification.json").write_text("[]", encoding="utf-8")
-    assert "docs/verification.json: is not what `dem verify --write` left" in verify(code=2).stderr
+    (folder / "docs" / "data").mkdir(parents=True)
+    (folder / "docs" / "data" / "verification.json").write_text("[]", encoding="utf-8")
+    assert "docs/data/verification.json: is not what `dem verify --write` left" in verify(code=2).stderr
 
 
 def test_side_by_side(folder):

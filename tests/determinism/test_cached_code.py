@@ -46,8 +46,7 @@ def test_second_law_of_a_machine(tmp_path):
     """Four processes share a cache; in the last two the loop over profiles was compiled by two of them."""
     script = tmp_path / "column.py"
     script.write_text(COLUMN, encoding="utf-8")
-    paths = [entry for entry in sys.path if entry]
-    environment = os.environ | {"DEM_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": os.pathsep.join(paths)}
+    environment = os.environ | {"DEM_CACHE_DIR": str(tmp_path / "cache")}
 
     def weight(*words: str) -> float:
         command = [sys.executable, str(script), *words]

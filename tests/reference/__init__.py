@@ -22,3 +22,9 @@ def result(name: str, result_id: str) -> dict:
 def value(name: str, result_id: str) -> float:
     """The value of one result."""
     return result(name, result_id)["value"]
+
+
+@cache
+def results(name: str) -> dict[str, dict]:
+    """All [[result]] of a file by their id."""
+    return {row["id"]: row for row in book(name)["result"]}

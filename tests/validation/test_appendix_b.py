@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from reference import result, value
+from reference import result, results, value
+from studies import storage
+from studies.appendix_b import failure_loads, sweep
+from studies.appendix_b.study import STUDY
 
 from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
 from dem_cli.sweep.plan import plan_of
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-from appendixb import runs, tests  # noqa: E402
-from appendixb.page import PAGE  # noqa: E402
 
 BOOK = "thesis_appendix_b"
-TABLE = PAGE.read(ROOT / "docs")
-ROWS = {row["name"]: row for row in TABLE["tests"]["rows"]}
-LOADS = {name: tests.load_of(row) for name, row in ROWS.items()}
+TABLE = storage.read("appendix_b")
+ROWS = {row["name"]: row for row in TABLE["failure_loads"]["rows"]}
+LOADS = {name: failure_loads.load_of(row) for name, row in ROWS.items()}
 
 
 @pytest.fixture(scope="module")
 def planned():
-    case = load_case(runs.CASE).case
+    case = load_case(sweep.CASE).case
     return {run.values["name"]: run for run in plan_of(case.sweep, case.seed).runs}
 
 
@@ -35,7 +34,7 @@ def test_every_test_is_one_run(planned):
     for name, run in planned.items():
         said = run.values
         for kind in ("num", "exp"):
-            if (row := f"B{name.split()[-1]}_{kind}") in tests.book():
+            if (row := f"B{name.split()[-1]}_{kind}") in results(BOOK):
                 book = result(BOOK, row)
                 bricks = {4.6: "stretchers", 2.3: "headers"}[book["bh"]]
                 assert (said["bricks"], said["condition"]) == (bricks, book["load"]), name
@@ -49,7 +48,7 @@ def test_every_test_is_one_run(planned):
 )
 def test_blocks_and_masses(planned, name, bricks, top):
     """As many bricks as the thesis says, loads of the mass and at the place that the data book gives."""
-    model = assembly(load_case(runs.CASE, planned[name].overrides).case).model
+    model = assembly(load_case(sweep.CASE, planned[name].overrides).case).model
     material = np.array(model.material_names)[model.block_material]
     free = ~model.fixed
     loads = free & (material == "load")
@@ -64,7 +63,7 @@ def test_runs_near_the_thesis(name):
     """A coarse bracket; within what docs/appendix_b.md says of them."""
     row = ROWS[name]
     kg = {} if row["condition"] == "A" else {"materials.load.density": 61035.0 * row["kg"] / 250}
-    found = runs.changed(row["bricks"], row["condition"], kg | {"analysis.resolution": 0.01, "analysis.limit": False})
+    found = sweep.changed(row["bricks"], row["condition"], kg | {"analysis.resolution": 0.01, "analysis.limit": False})
     assert found["status"] == "ok"
     assert np.mean(found["bracket"]) == pytest.approx(LOADS[name], rel=0.01)
     assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, f"B{name.split()[-1]}_num")), rel=0.065)
@@ -83,7 +82,7 @@ def test_all_runs_came_to_an_answer_below_the_bound():
 def test_conditions_as_in_the_thesis():
     """Walls that turn within 7 % of its DEM; sliding at the friction; a beam makes square bricks turn as one."""
     for name, row in ROWS.items():
-        if row["condition"] != "A" and (theirs := tests.thesis_dem(row)) is not None:
+        if row["condition"] != "A" and (theirs := failure_loads.thesis_dem(row)) is not None:
             assert LOADS[name] == pytest.approx(np.mean(theirs), rel=0.07), name
     assert (ROWS["test 10"]["mode"], ROWS["test 11"]["mode"]) == ("sliding", "rocking")
     assert LOADS["test 10"] == pytest.approx(0.5, rel=0.005)
@@ -94,8 +93,8 @@ def test_conditions_as_in_the_thesis():
 
 
 def test_measured_loads_are_lower_by_a_tenth():
-    ratios = tests.our_ratios(list(ROWS.values()))
-    mean = np.mean([ratios[name] for name in tests.RATIOS])
+    ratios = failure_loads.our_ratios(list(ROWS.values()))
+    mean = np.mean([ratios[name] for name in failure_loads.RATIOS])
     assert mean == pytest.approx(value(BOOK, "ratio_exp_num"), abs=0.02)
 
 
@@ -108,4 +107,4 @@ def test_self_weight_is_not_explained():
 
 def test_the_page_is_what_was_measured():
     found = (ROOT / "docs/appendix_b.md").read_text(encoding="utf-8")
-    assert found == PAGE.render(TABLE), "scripts/appendix_b --write"
+    assert found == STUDY.page(TABLE), "scripts/study appendix_b --write"

@@ -6,39 +6,34 @@ its own test (0.008 against 0.007 rad, 6.2.1, "compares reasonably well").
 
 from __future__ import annotations
 
-import importlib
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from reference import value
+from studies import storage
+from studies.chapter6 import arch, blocks, column, records, shaken_case
+from studies.chapter6.study import STUDY
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-sys.path.insert(0, str(ROOT / "scripts"))
-page, arch, blocks, column, records, runs = (
-    importlib.import_module(f"thesis6.{name}") for name in ("page", "arch", "blocks", "column", "records", "runs")
-)
-book = importlib.import_module("thesis7.runs").book
-
-page = page.PAGE
-TABLE, TEXT = page.read(DOCS), (DOCS / "chapter6.md").read_text(encoding="utf-8")
+TABLE, TEXT = storage.read("chapter6"), (DOCS / "chapter6.md").read_text(encoding="utf-8")
 RESTITUTION, ROTATION = 0.05, 1.0 / 7.0
 
 
 def thesis(name: str) -> float:
-    return book("thesis_arch_shaking")[name]["value"]
+    return value("thesis_arch_shaking", name)
 
 
 def test_the_page_is_made_from_its_json():
-    assert list(TABLE) == list(page.sections)
-    assert page.render(TABLE) == TEXT
+    assert list(TABLE) == list(STUDY.sections)
+    assert STUDY.page(TABLE) == TEXT
 
 
 def test_pictures_are_there():
     named = set(re.findall(r"\]\((chapter6_\w+\.png)\)", TEXT))
-    drawn = {f"chapter6_{suffix}.png" for name in page.sections for suffix in page.section(name).PICTURES}
+    drawn = {f"chapter6_{suffix}.png" for suffix in STUDY.pictures}
     assert named == drawn
     assert all((DOCS / name).stat().st_size > 10_000 for name in named)
 
@@ -50,8 +45,8 @@ def test_every_case_is_there():
 
 
 def test_restitution_of_the_column():
-    found = runs.run("column_arch_rocking", "output.frames=0")
-    swings = np.concatenate([[column.TILT], runs.extremes(found.times, found.values[:, 0])[1][:4]])
+    found = shaken_case.run("column_arch_rocking", "output.frames=0")
+    swings = np.concatenate([[column.TILT], shaken_case.extremes(found.times, found.values[:, 0])[1][:4]])
     heights = np.cos(column.ALPHA - swings) - np.cos(column.ALPHA)
     assert (heights[1:] / heights[:-1]).mean() == pytest.approx(thesis("col_r_dem"), rel=RESTITUTION)
 
@@ -79,7 +74,7 @@ def test_the_arch_stands_where_blocks_do_not_slide():
 
 
 def test_restitution_falls_towards_housner():
-    means = blocks.table(TABLE["blocks"])
+    means = blocks.means_of(TABLE["blocks"])
     for row in blocks._housner().values():
         ratios = [means[row["aspect"], zeta] for zeta in blocks.FRACTIONS]
         assert ratios == sorted(ratios, reverse=True)

@@ -2,42 +2,38 @@
 
 from __future__ import annotations
 
-import importlib
 import re
-import sys
 from pathlib import Path
 
 import pytest
+from studies import storage
+from studies.chapter7 import block, heights, shapes
+from studies.chapter7.study import STUDY
+from studies.study import runs_of
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-sys.path.insert(0, str(ROOT / "scripts"))
-page, shapes, heights, block = (
-    importlib.import_module(f"thesis7.{name}") for name in ("page", "shapes", "heights", "block")
-)
-
-page = page.PAGE
-TABLE, TEXT = page.read(DOCS), (DOCS / "chapter7.md").read_text(encoding="utf-8")
+TABLE, TEXT = storage.read("chapter7"), (DOCS / "chapter7.md").read_text(encoding="utf-8")
 
 
 def test_the_page_is_made_from_its_json():
-    assert list(TABLE) == list(page.sections)
-    assert page.render(TABLE) == TEXT
+    assert list(TABLE) == list(STUDY.sections)
+    assert STUDY.page(TABLE) == TEXT
 
 
 def test_pictures_are_there():
     named = set(re.findall(r"\]\((chapter7_\w+\.png)\)", TEXT))
-    drawn = {f"chapter7_{suffix}.png" for name in page.sections for suffix in page.section(name).PICTURES}
+    drawn = {f"chapter7_{suffix}.png" for suffix in STUDY.pictures}
     assert named == drawn
     assert all((DOCS / name).stat().st_size > 10_000 for name in named)
 
 
 def test_every_case_is_there_and_named():
-    commands = [one["command"] for one in importlib.import_module("sectioned").runs_of(TABLE)]
+    commands = [one["command"] for one in runs_of(TABLE)]
     cases = {command.split()[2] for command in commands}
     assert all((ROOT / case).exists() for case in cases)
     assert all(Path(case).name in TEXT for case in cases)
-    assert page.unanswered(TABLE) == []
+    assert STUDY.problems("", TABLE) == []
 
 
 def test_table_7_2_keeps_the_promise():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,18 +9,19 @@ import numpy as np
 import pytest
 from engine import solve
 from reference import value
+from studies import storage
+from studies.church import cases
+from studies.church.geometry import Slice
+from studies.church.mechanism import solved
+from studies.church.seven_bodies import body_of, mass_and_centroid, seven_bodies
+from studies.church.study import STUDY
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-from churches import cases, runs  # noqa: E402
-from churches.geometry import Slice  # noqa: E402
-from churches.page import PAGE  # noqa: E402
-from churches.statics import body_of, mass_and_centroid, seven_bodies  # noqa: E402
 
 BOOK = "thesis_church"
 RESULT = {"church_a": "modelA", "church_a_no_slip": "modelA_no_slip", "church_b": "modelB"}
 QUICK = {name: path for name, path in cases.PRINTED.items() if name not in ("church_wall_b", "church_wall_c")}
-TABLE = PAGE.read(ROOT / "docs")
+TABLE = storage.read("church")
 
 
 def of_the_book(name: str) -> float:
@@ -32,7 +32,7 @@ def of_the_book(name: str) -> float:
 
 
 def test_case_files_are_the_geometry():
-    """`scripts/church --cases` was run."""
+    """`scripts/study church --cases` was run."""
     for name, text in cases.files().items():
         assert (cases.FOLDER / f"{name}.toml").read_text(encoding="utf-8") == text, name
 
@@ -78,7 +78,7 @@ def test_seven_bodies_of_walls_alone():
 
 def test_roofs_slide_and_nave_walls_turn():
     """Model A: a tenth above the thesis, on lengths that are inferred; the mechanism is of its kind."""
-    found = runs.solve("church_a", cases.model("church_a"))
+    found = solved("church_a", cases.model("church_a"))
     assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelA")), rel=0.10)
     turns, slips = found["moves"]["turns"], found["moves"]["slips"]
     assert turns["b"] == pytest.approx(turns["c"], rel=0.02)
@@ -90,14 +90,14 @@ def test_roofs_slide_and_nave_walls_turn():
 
 def test_light_aisle_roofs_slide_off_the_left_wall():
     """The mechanism of the thesis, at its load."""
-    found = runs.solve("church_a", cases.model("church_a", replace(Slice(), aisle_roof=52.0)))
+    found = solved("church_a", cases.model("church_a", replace(Slice(), aisle_roof=52.0)))
     assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelA")), rel=0.02)
     assert abs(found["moves"]["turns"]["a"]) < 0.01
     assert found["moves"]["slips"]["left beam on side wall"] < -0.3
 
 
 def test_the_buttress_holds_the_left_nave_wall():
-    found = runs.solve("church_b", cases.model("church_b"))
+    found = solved("church_b", cases.model("church_b"))
     assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelB")), rel=0.05)
     assert abs(found["moves"]["turns"]["b"]) < 0.05 < found["moves"]["turns"]["c"]
 
@@ -105,7 +105,7 @@ def test_the_buttress_holds_the_left_nave_wall():
 @pytest.mark.slow
 def test_without_slip_seven_bodies_turn():
     """A little above virtual work, as beams are no lines, and below what dilating joints carry."""
-    found = runs.solve("church_a_no_slip", cases.model("church_a_no_slip", resolution=0.01))
+    found = solved("church_a_no_slip", cases.model("church_a_no_slip", resolution=0.01))
     low, high = found["bracket"]
     assert 0.5 * (low + high) == pytest.approx(np.mean(value(BOOK, "modelA_no_slip")), rel=0.05)
     assert seven_bodies(Slice()) < high
@@ -116,6 +116,6 @@ def test_without_slip_seven_bodies_turn():
 
 
 def test_the_page_is_what_was_measured():
-    assert (ROOT / "docs/church.md").read_text(encoding="utf-8") == PAGE.render(TABLE), "scripts/church --write"
+    assert (ROOT / "docs/church.md").read_text(encoding="utf-8") == STUDY.page(TABLE), "scripts/study church --write"
     for name, one in TABLE["models"]["cases"]["runs"].items():
         assert np.mean(one["bracket"]) == pytest.approx(np.mean(value(BOOK, RESULT[name])), rel=cases.ALLOWED[name])

@@ -5,20 +5,13 @@ Statics are written twice, here as a column that only falls (oracle.rolling_colu
 
 from __future__ import annotations
 
-import importlib
 import math
-import sys
-from pathlib import Path
 
 import pytest
+from oracle import rolling_polygons as statics
 from oracle.rolling_column import fall, foot
 from reference import book, value
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-heights, runs, shapes, statics = (
-    importlib.import_module(f"thesis7.{name}") for name in ("heights", "runs", "shapes", "statics")
-)
+from studies.chapter7 import heights, load_path, shapes
 
 FOURTEEN = "thesis_14_block_column"
 ROWS = {row["id"]: row for row in book(FOURTEEN)["result"] if row["id"].startswith("T72_")}
@@ -51,34 +44,34 @@ def test_statics_are_near_the_thesis():
 @pytest.mark.parametrize("name", ["T72_B_0.57", "T72_C_0.46", "T72_D_0.69", "T72_E_0.34"])
 def test_table_7_2_is_statics(name):
     row = ROWS[name]
-    found = runs.run("validation/column_14_profile", *shapes.overrides(row), QUICK)
+    found = load_path.run("validation/column_14_profile", *shapes.overrides(row), QUICK)
     last = statics.raised(shapes.column_of(row))[-1]
     low, high = found["bracket"]
     assert low <= last.ends * (1 + SOFT)
     assert high >= last.ends * (1 - SOFT)
-    assert runs.top(found["curve"][-1], 0.0175) == pytest.approx(last.top[0], rel=0.01)
-    assert runs.middle(found) / shapes.PLANE == pytest.approx(row["value"], rel=0.03)
+    assert load_path.top(found["curve"][-1], 0.0175) == pytest.approx(last.top[0], rel=0.01)
+    assert load_path.middle(found) / shapes.PLANE == pytest.approx(row["value"], rel=0.03)
 
 
 def test_the_calibrated_column():
     """Table 7-3: 0.80 of plane joints and 10.5 mm, to the thesis's digits and half a step of its load."""
-    found = runs.run("validation/column_14_profile")
-    assert runs.middle(found) == pytest.approx(0.80 * shapes.PLANE, abs=0.005 * shapes.PLANE + STEP / 2)
-    assert runs.top(found["curve"][-1], 0.0175) == pytest.approx(0.0105, rel=0.08)
+    found = load_path.run("validation/column_14_profile")
+    assert load_path.middle(found) == pytest.approx(0.80 * shapes.PLANE, abs=0.005 * shapes.PLANE + STEP / 2)
+    assert load_path.top(found["curve"][-1], 0.0175) == pytest.approx(0.0105, rel=0.08)
 
 
 def test_five_sides_on_the_way():
     """7.5.1.2; where it turns first is statics, and so is where it does not go (docs/chapter7.md)."""
-    found, made = runs.run("validation/column_14_five_sides", QUICK), shapes.five_sides()
+    found, made = load_path.run("validation/column_14_five_sides", QUICK), shapes.five_sides()
     stages = statics.raised(made)
     assert stages[0].ends == pytest.approx(0.004 / 0.1225, rel=1e-3)  # half the middle side over half the height
     for load in (0.04, 0.06, 0.084, 0.116):
         stage = next(s for s in stages if s.begins <= load < s.ends)
         row = min(found["curve"], key=lambda r: abs(r[0] - load))
         assert row[0] == pytest.approx(load)
-        assert runs.top(row, 0.0175) == pytest.approx(stage.top[0], rel=0.01)
-    assert runs.top(found["curve"][8], 0.0175) < value(FOURTEEN, "nc_E_top_032")  # joints deform, none turns
-    assert value(FOURTEEN, "nc_E_lo") < runs.middle(found) < 1.06 * value(FOURTEEN, "nc_E_hi")
+        assert load_path.top(row, 0.0175) == pytest.approx(stage.top[0], rel=0.01)
+    assert load_path.top(found["curve"][8], 0.0175) < value(FOURTEEN, "nc_E_top_032")  # joints deform, none turns
+    assert value(FOURTEEN, "nc_E_lo") < load_path.middle(found) < 1.06 * value(FOURTEEN, "nc_E_hi")
 
 
 @pytest.mark.parametrize("name", ["T74_B1", "T74_C1", "T75_A2", "T75_B2", "T75_C2"])
@@ -92,7 +85,7 @@ def test_tables_7_4_and_7_5(name):
     assert low <= expected * (1 + SOFT)
     assert high >= expected * (1 - SOFT)
     theirs = (1 - value("thesis_columns_table_7_4_7_5", name)) * plane
-    assert runs.middle(found) == pytest.approx(theirs, abs=STEP)
+    assert load_path.middle(found) == pytest.approx(theirs, abs=STEP)
 
 
 @pytest.mark.parametrize(("blocks", "height"), [(5, 0.0175), (10, 0.0175), (5, 0.07)])
@@ -102,7 +95,7 @@ def test_closed_form_on_two_sides(blocks, height):
     rigid = heights.load_of(blocks, height, heights.HALVES, heights.SHALLOW)
     assert rigid == pytest.approx(plane * (1 - lost), rel=2e-3)
     found = heights._run(blocks, height, heights.TWO_SIDES, QUICK)
-    assert runs.middle(found) == pytest.approx(plane * (1 - lost), rel=5e-3)
+    assert load_path.middle(found) == pytest.approx(plane * (1 - lost), rel=5e-3)
 
 
 def test_closed_form_is_the_sum_that_it_comes_from():
@@ -122,12 +115,12 @@ def test_thirty_blocks_stand():
     assert statics.weakest(30, 0.0175, 0.04, 0.00625)[0] > 0.0 > statics.weakest(31, 0.0175, 0.04, 0.00625)[0]
     closed = [statics.column(n, 0.0175, heights.HALVES, heights.SHALLOW) for n in (30, 31)]
     assert [statics.limits(made, [1] * made.blocks)[:, 1].min() > 0.0 for made in closed] == [True, False]
-    assert runs.run("validation/leaning_column_30", "analysis.max_load=0.004")["status"].startswith("no failure")
-    assert runs.run("validation/leaning_column_31")["status"] == heights.FALLS
+    assert load_path.run("validation/leaning_column_30", "analysis.max_load=0.004")["status"].startswith("no failure")
+    assert load_path.run("validation/leaning_column_31")["status"] == heights.FALLS
 
 
 def test_a_straight_column_of_33_blocks_stands_on_its_middle_sides():
     below = ("structure.0.courses=33", "analysis.max_load=0.01", "analysis.step=0.005")
-    found = runs.run("validation/column_14_profile", *below)
+    found = load_path.run("validation/column_14_profile", *below)
     assert found["status"].startswith("no failure")
-    assert runs.top(found["curve"][-1], 0.0175) < 1e-3
+    assert load_path.top(found["curve"][-1], 0.0175) < 1e-3

@@ -6,20 +6,12 @@ not known.
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-from pathlib import Path
-
 import numpy as np
 import pytest
+from oracle import maxwell, tapered_column
 from reference import result, value
+from studies.pulses import column, domain, voussoirs
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-
-column, domain, elements, monolith, vault = (
-    import_module(f"pulsetable.{name}") for name in ("column", "domain", "elements", "monolith", "vault")
-)
 COLUMN, ARCH = "dimitri_column_arch", "lemos_arch_pulse"
 UDEC = dict(zip(result(COLUMN, "col_domain_udec")["tp_s"], result(COLUMN, "col_domain_udec")["value"], strict=True))
 
@@ -31,7 +23,7 @@ def shaker():
 
 def test_static_load_of_the_column():
     """Half the foot over the height of the centroid, as `drum_column` without a cap; 0.3 %."""
-    block, _ = monolith.block()
+    block, _ = tapered_column.block()
     assert np.tan(block.alpha) == pytest.approx(value(COLUMN, "col_static"), abs=5e-5)
     assert np.mean(column.static()["bracket"]) == pytest.approx(value(COLUMN, "col_static"), rel=3e-3)
 
@@ -73,7 +65,7 @@ def test_arch_under_a_half_sine(name, peak, time):
     """3DEC's peaks and their times, to both sides; that to the other side with Maxwell elements changes by 3 % with the
     time step.
     """
-    found, book = vault.peaks(vault.run(name)), result(ARCH, f"pulse_{name}")
+    found, book = voussoirs.peaks(voussoirs.run(name)), result(ARCH, f"pulse_{name}")
     theirs = np.atleast_1d(book["value"])
     assert found["values"][: len(theirs)] == pytest.approx(theirs, rel=peak)
     assert found["times"][: len(theirs)] == pytest.approx(np.atleast_1d(book["time_s"]), rel=time)
@@ -82,22 +74,22 @@ def test_arch_under_a_half_sine(name, peak, time):
 
 def test_elastic_arch_swings_as_published():
     """After the pulse, read from 3DEC's series: 11.08 Hz, 5.05 %. Ours is 1.5 % lower, so a little less damped."""
-    found = vault.free(lambda _: None)
-    first = vault.frequencies(domain.table_of(vault.ELASTIC))[0]
+    found = voussoirs.free()
+    first = voussoirs.frequencies(domain.table_of(voussoirs.ELASTIC))[0]
     assert first == pytest.approx(11.08, rel=0.02)
     assert found["elastic_s5"]["frequency"] == pytest.approx(first, rel=5e-3)
     assert found["elastic_s5"]["ratio"] == pytest.approx(0.05 * first / 11.0, rel=0.02)
-    ratio, frequency = elements.of_mode(first)
+    ratio, frequency = maxwell.of_mode(first)
     assert found["elastic_mx5"]["frequency"] == pytest.approx(frequency, rel=5e-3)
     assert found["elastic_mx5"]["ratio"] == pytest.approx(ratio, rel=0.05)
 
 
 def test_three_maxwell_elements_damp_5_percent_over_two_decades():
     """0.0385 at 1 Hz, 0.0335 at 7.1 Hz, 0.052 at 50 Hz: within a fifth of 5 % from 1 to 50 Hz."""
-    found = [elements.of_mode(f)[0] for f in np.geomspace(1.0, 50.0, 25)]
+    found = [maxwell.of_mode(f)[0] for f in np.geomspace(1.0, 50.0, 25)]
     assert min(found) > 0.04
     assert max(found) < 0.06
-    ratio, frequency = elements.of_mode(3.0, [(0.02, 3.0)])
+    ratio, frequency = maxwell.of_mode(3.0, [(0.02, 3.0)])
     assert ratio == pytest.approx(0.02, rel=0.03)
     assert frequency > 3.0
-    assert elements.stiffness(3.0, [(0.02, 3.0)]).imag == pytest.approx(0.04, rel=1e-12)
+    assert maxwell.stiffness(3.0, [(0.02, 3.0)]).imag == pytest.approx(0.04, rel=1e-12)

@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
-from pathlib import Path
-
 import pytest
 from reference import result, value
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-block, runs = (importlib.import_module(f"thesis7.{name}") for name in ("block", "runs"))
+from studies.chapter7 import block, load_path
 
 BOOK = "thesis_single_block_noncoplanar"
 EXACT = block.rolling()
@@ -20,7 +13,7 @@ ASKED = 0.005  # of the load and of displacements
 
 @pytest.fixture(scope="module")
 def raised():
-    return runs.run("validation/block_on_polygon")
+    return load_path.run("validation/block_on_polygon")
 
 
 def test_statics_are_those_of_the_data_book():
@@ -36,7 +29,7 @@ def test_statics_are_those_of_the_data_book():
 def test_it_turns_twice_at_loads_known_to_a_thousandth():
     first, second, _ = EXACT["loads"]
     path = [first * 0.999, first * 1.001, second * 0.999, second * 1.001]
-    found = runs.run("validation/block_on_polygon_cycle", f"analysis.path={path}", "analysis.step=0.05")
+    found = load_path.run("validation/block_on_polygon_cycle", f"analysis.path={path}", "analysis.step=0.05")
     assert [block.side(block.at(found["curve"], load)) for load in path] == [0, 1, 1, 2]
 
 
@@ -45,7 +38,7 @@ def test_it_turns_over(raised):
     assert high - low <= 0.001 * low
     assert low <= EXACT["loads"][2] * (1 + 1e-4)
     assert high >= EXACT["loads"][2] * (1 - 1e-4)
-    assert runs.middle(raised) == pytest.approx(value(BOOK, "lambda3_rolling"), rel=ASKED)
+    assert load_path.middle(raised) == pytest.approx(value(BOOK, "lambda3_rolling"), rel=ASKED)
 
 
 @pytest.mark.parametrize(("i", "load"), [(0, 0.22), (1, 0.6)])
@@ -56,7 +49,7 @@ def test_how_far_it_turns(raised, i, load):
 
 
 def test_a_plane_joint_deforms_by_hand():
-    found = runs.run("validation/block_on_plane", "analysis.start=gravity", "analysis.step=0.1")
+    found = load_path.run("validation/block_on_plane", "analysis.start=gravity", "analysis.step=0.1")
     load, moved = block.at(found["curve"], 0.2)[:2]
     assert load == pytest.approx(0.2)
     assert moved == pytest.approx(value(BOOK, "u_elastic_exact"), rel=1e-3)
@@ -64,7 +57,7 @@ def test_a_plane_joint_deforms_by_hand():
 
 def test_there_and_back_it_turns_eight_times():
     """At the loads of statics: where the resultant leaves a side, at one end going up, at the other coming down."""
-    found = runs.run("validation/block_on_polygon_cycle")
+    found = load_path.run("validation/block_on_polygon_cycle")
     turns = block.events(found["curve"])
     assert [(turn["from"], turn["to"]) for turn in turns] == [
         (0, 1), (1, 2), (2, 1), (1, 0), (0, -1), (-1, -2), (-2, -1), (-1, 0)

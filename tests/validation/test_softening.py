@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-softening = importlib.import_module("thesis7.softening")
+from studies.chapter7 import softening
 
 
 def test_friction_falls_as_the_law_says():

@@ -52,7 +52,7 @@ def test_a_polygon_over_each_joint_turns_about_a_point_inside_it():
 @pytest.mark.parametrize(("wall", "book"), [("110", "thesis_110_block"), ("231", "thesis_231_block")])
 def test_larger_walls_as_published(wall, book):
     """Runs of minutes: below plane joints, 3 to 9 % above the thesis, as the page says."""
-    runs = json.loads((ROOT / "docs/chapter7.json").read_text(encoding="utf-8"))["walls"]["walls"][wall]
+    runs = json.loads((ROOT / "docs/data/chapter7.json").read_text(encoding="utf-8"))["walls"]["walls"][wall]
     thesis = np.max(value(book, "nc"))
     for reading in ("joint", "face"):
         low, high = runs[reading]["bracket"]

@@ -1,25 +1,21 @@
 """DEM raised from gravity against limit analysis: two statements that share nothing but the joints' geometry and law.
 
 DEM must come within 1 % of the path of joints that do not dilate (`dem limit`), and none may lie above the associated
-load, here from the oracle, by more than 0.5 %. docs/loads.json, which has the long cases too, is held to the same.
+load, here from the oracle, by more than 0.5 %. docs/data/loads.json, which has the long cases too, is held to the same.
 """
 
 from __future__ import annotations
 
-import importlib
-import json
-import sys
 from pathlib import Path
 
 import pytest
 from casefiles import CASES, failure_load, scene
+from studies import storage
+from studies.loads import criteria, methods, tables
+from studies.loads.study import STUDY
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-sys.path.insert(0, str(ROOT / "scripts"))
-loads, judge, page, measure = (
-    importlib.import_module(name) for name in ("loads", "loadtable.judge", "loadtable.page", "loadtable.measure")
-)
 
 VERIFICATION = CASES / "verification"
 FAST = (
@@ -33,20 +29,20 @@ FAST = (
     "point_loads_mu060", "point_loads_mu070", "pushed_course_mu070", "heavy_beam",
 )  # fmt: skip
 LONG = ("wall_2", "wall_3", "top_load_b1", "top_load_b2")
-TABLE = page.rows_of(json.loads((DOCS / "loads.json").read_text(encoding="utf-8")))
+TABLE = tables.rows_of(storage.read("loads"))
 
 
 def agree(name: str) -> None:
     file = VERIFICATION / f"{name}.toml"
-    row = measure.measure(file, default=False)
-    assert judge.problems(row) == []
+    row = methods.measure(file, default=False)
+    assert criteria.problems(row) == []
     bound = scene(file).limit().multiplier
     assert row.associated.load == pytest.approx(bound, rel=1e-5)
-    assert judge.reference(row) <= bound * (1.0 + judge.ABOVE)
-    assert row.gravity.load <= bound * (1.0 + judge.ABOVE)
+    assert criteria.reference(row) <= bound * (1.0 + criteria.ABOVE)
+    assert row.gravity.load <= bound * (1.0 + criteria.ABOVE)
     said = failure_load(file)
     if said and said["source"].startswith("zero-dilation path"):
-        assert judge.reference(row) == pytest.approx(said["failure_load"], rel=2e-3)
+        assert criteria.reference(row) == pytest.approx(said["failure_load"], rel=2e-3)
 
 
 @pytest.mark.parametrize("name", FAST)
@@ -62,15 +58,15 @@ def test_dem_agrees_with_the_path_on_larger_walls(name):
 
 @pytest.mark.parametrize("name", ["wedged_block", "leaning_column"])
 def test_dem_and_limit_analysis_agree_that_there_is_no_load(name):
-    row = measure.measure(VERIFICATION / f"{name}.toml", default=False)
+    row = methods.measure(VERIFICATION / f"{name}.toml", default=False)
     assert row.associated.load is None
     assert row.gravity.status != "ok"
-    assert judge.problems(row) == []
+    assert criteria.problems(row) == []
 
 
 def test_dilating_joints_hold_a_stack_bond_that_real_ones_do_not():
     """The closed form b/H of one pile, a quarter below the associated load."""
-    row = measure.measure(VERIFICATION / "stack_bond_mu060.toml", default=False)
+    row = methods.measure(VERIFICATION / "stack_bond_mu060.toml", default=False)
     assert row.gravity.load == pytest.approx(1 / 3, rel=0.002)
     assert row.path.load == pytest.approx(1 / 3, rel=1e-4)
     assert row.associated.load > 1.25 / 3
@@ -83,21 +79,20 @@ def test_dem_agrees_with_the_path_round_a_fold():
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
 def test_the_table_keeps_the_promise(row):
-    """As it was measured by scripts/loads; what is known to fail is named and must still fail."""
-    assert bool(judge.problems(row)) == (row.name in page.KNOWN)
+    """As it was measured by scripts/study loads; what is known to fail is named and must still fail."""
+    assert bool(criteria.problems(row)) == (row.name in tables.KNOWN)
 
 
 def test_the_table_has_every_pushover_and_no_other():
-    assert [row.name for row in TABLE] == sorted(loads.name_of(file) for file in loads.pushovers())
+    assert [row.name for row in TABLE] == sorted(STUDY.sections)
 
 
 def test_the_page_is_made_from_its_json():
-    table = json.loads((DOCS / "loads.json").read_text(encoding="utf-8"))
-    assert (DOCS / "loads.md").read_text(encoding="utf-8") == page.render(table)
+    assert (DOCS / "loads.md").read_text(encoding="utf-8") == STUDY.page(storage.read("loads"))
 
 
 def way(load: float, **more) -> object:
-    return measure.Way(**{"status": "ok", "load": load, "high": load, "start": "gravity", "seconds": 1.0} | more)
+    return methods.MethodLoad(**{"status": "ok", "load": load, "high": load, "start": "gravity", "seconds": 1.0} | more)
 
 
 @pytest.mark.parametrize(
@@ -109,5 +104,5 @@ def way(load: float, **more) -> object:
 def test_disagreement_is_seen(gravity, found):
     """Path 0.4, associated 0.405."""
     explicit = way(gravity) if gravity else way(0.4, status="not converged")
-    row = measure.Row("some", 3, way(0.405), way(0.4), way(0.4), explicit)
-    assert len(judge.problems(row)) == found
+    row = methods.CaseLoads("some", 3, way(0.405), way(0.4), way(0.4), explicit)
+    assert len(criteria.problems(row)) == found

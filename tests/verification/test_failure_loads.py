@@ -9,7 +9,7 @@ import sys
 import pytest
 from casefiles import CASES, FILES, case_id, failure_load, read, scene
 
-LARGE = {"top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11"}  # 360 blocks: solved for docs/loads.json
+LARGE = {"top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11"}  # 360 blocks: solved for docs/data/loads.json
 SMALL = {  # of one or two blocks: solved by test_manual.py, all in one process
     "barton_block", "cohesion_block", "crushing_block", "groove_30", "incline_down", "incline_up", "interface_slides",
     "lever", "slope_of_slip", "stepped_column", "tension_block",

@@ -15,7 +15,7 @@ from engine import Records, block, rectangle, scene, simulation, solve, tables
 from dem_cli.cli.main import main
 
 RESOLUTION = 0.005
-PAGE = json.loads((CASES.parent / "docs" / "imperfections.json").read_text(encoding="utf-8"))["rows"]
+PAGE = json.loads((CASES.parent / "docs" / "data" / "imperfections.json").read_text(encoding="utf-8"))["rows"]
 DRAWN = {
     "height": [-0.001, 0.001],
     "length": {"mean": 0.0, "deviation": 0.0002},

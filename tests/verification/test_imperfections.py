@@ -1,24 +1,22 @@
-"""The 21-block wall of thesis 5.4 with one low block: docs/imperfections.json against closed forms, and its page."""
+"""The 21-block wall of thesis 5.4 with one low block: what is kept of it against closed forms, and its page."""
 
 from __future__ import annotations
 
-import importlib
-import json
 import math
-import sys
 from pathlib import Path
 
 import pytest
 from engine.limits import limit_loads
+from studies import storage
+from studies.imperfections import low_blocks, tables
+from studies.imperfections.study import STUDY
 
 from dem_cli.engine.properties import joint_properties, law_of
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-sys.path.insert(0, str(ROOT / "scripts"))
-page, script = (importlib.import_module(name) for name in ("imperfectiontable.page", "imperfections"))
 
-TABLE = json.loads((DOCS / "imperfections.json").read_text(encoding="utf-8"))
+TABLE = storage.read("imperfections")
 ROWS = TABLE["rows"]
 RESOLUTION = 0.005
 
@@ -30,13 +28,13 @@ def load(block: str, size: float, shape: str = "whole top", way: str = "last") -
 
 
 def test_the_page_is_made_from_its_json():
-    assert (DOCS / "imperfections.md").read_text(encoding="utf-8") == page.render(TABLE)
+    assert (DOCS / "imperfections.md").read_text(encoding="utf-8") == STUDY.page(TABLE)
 
 
 def test_every_block_was_tried_and_every_run_ended():
     tried = {(row["size"], row["shape"], row["block"]) for row in ROWS if row["block"]}
     assert len(tried) == 2 * 3 * 21
-    assert not [row for row in ROWS if page.gave_up(row)]
+    assert not [row for row in ROWS if tables.gave_up(row)]
     assert {row["last"]["status"] for row in ROWS} == {"ok"}
 
 
@@ -67,7 +65,7 @@ def test_the_first_motion_does_not_know_how_far_a_joint_is_open(block):
 @pytest.mark.parametrize("block", [block for block in JUMPS if block != "wall-3-2"])  # whose path does not end
 def test_the_first_motion_is_the_limit_load_of_open_joints(block):
     """Sliding without dilation, by another method; 1 % below: the bracket, and loads that depend on the way to them."""
-    case, model = script.build({"block": block, "height": -1e-3}, script.FIRST)
+    case, model = low_blocks.build({"block": block, "height": -1e-3}, low_blocks.FIRST)
     found = limit_loads(model, joint_properties(case, model), law_of(case))
     path = found.non_associated.load
     assert load(block, 1.0, way="first") == pytest.approx(path, rel=0.01)
@@ -87,6 +85,6 @@ def test_low_blocks_that_hover_are_other_walls():
     differ = []
     for block in (f"wall-{course}-{number}" for course in range(1, 7) for number in (1, 2, 3)):
         laid = {"block": block, "height": -0.001}
-        if not script.same(laid, laid | {"restack": False}):
+        if not low_blocks.same(laid, laid | {"restack": False}):
             differ.append(block)
     assert differ == ["wall-2-1", "wall-2-3", "wall-4-1", "wall-4-3"]

@@ -19,7 +19,7 @@ from dem_cli.verify.page import page
 from dem_cli.verify.records import all_well, digest, on_shelves
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-TABLE = json.loads((DOCS / "verification.json").read_text(encoding="utf-8"))
+TABLE = json.loads((DOCS / "data" / "verification.json").read_text(encoding="utf-8"))
 RECORDS = {(DOCS / record["case"]).resolve(): record for record in TABLE["cases"]}
 REFERENCED = [path for path in FILES if references(path)]
 VERIFICATION = CASES / "verification"

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
-from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-
-Rule, walls = import_module("thesis7.own_joint").Rule, import_module("thesis7.own_walls")
-statics = import_module("thesis7.statics")
+from oracle import microrotation_walls as walls
+from oracle import rolling_polygons as statics
+from oracle.microrotation import Rule
 
 ANGLE = 1.0 / 60.0  # between two sides of the single block's polygon
 

@@ -5,40 +5,34 @@ Joints give by about 1e-6 of the height under the weight of a block.
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-from pathlib import Path
-
 import numpy as np
 import pytest
 from casefiles import CASES
 from oracle.housner import Block, rock
 from oracle.two_blocks import Rectangle
 from oracle.two_blocks import rock as rock_two
+from studies.rocking import ensembles, free_rocking, overturning, single_block, sliding
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-
-scene, free, pulses, ensembles, others = (
-    import_module(f"rockingtable.{name}") for name in ("scene", "free", "pulses", "ensembles", "others")
-)
 CASE_FILES = CASES / "verification"
 
 
-@pytest.mark.parametrize("aspect", free.ASPECTS)
+@pytest.mark.parametrize("aspect", free_rocking.ASPECTS)
 def test_free_rocking(aspect):
     """One peak over the one before, and all times, within 1 %, down to swings of 0.02 α."""
-    found = free.compared(aspect, output={"rate": 2000.0})
+    found = free_rocking.compared(aspect, output={"rate": 2000.0})
     assert abs(found["decay"]) < 0.01
     assert abs(found["times"]) < 0.01
     assert abs(found["impacts"]) < 0.01
     assert found["swings"] >= 4
 
 
-@pytest.mark.parametrize("aspect", free.ASPECTS)
+@pytest.mark.parametrize("aspect", free_rocking.ASPECTS)
 def test_restitution_falls_to_housners(aspect):
     """The map of numerics.md: never below Housner's, at twice critical within 1e-3 of it."""
-    found = [free.restitution(aspect, {"contact_fraction": f}, output={"rate": 2000.0}) for f in free.FRACTIONS]
+    found = [
+        free_rocking.restitution(aspect, {"contact_fraction": f}, output={"rate": 2000.0})
+        for f in free_rocking.FRACTIONS
+    ]
     housner = Block(1.0, aspect).restitution
     assert found == sorted(found, reverse=True)
     assert housner - 5e-4 < found[-1] < housner + 1e-3
@@ -53,13 +47,13 @@ def test_restitution_falls_to_housners(aspect):
 
 def test_wanted_restitution():
     """0.8 for h/b = 2, whose Housner ratio is 0.7; it is sought at half the tilt, and varies by 1 % with that."""
-    assert free.restitution(2.0, {"restitution": 0.8}, output={"rate": 2000.0}) == pytest.approx(0.8, abs=1e-2)
+    assert free_rocking.restitution(2.0, {"restitution": 0.8}, output={"rate": 2000.0}) == pytest.approx(0.8, abs=1e-2)
 
 
 def test_case_of_free_rocking():
     """As its file says."""
     exact = rock(Block(0.5, 1.0), angle=0.25, duration=1.6)
-    found = scene.solve_file(CASE_FILES / "rocking_free.toml")
+    found = single_block.solve_file(CASE_FILES / "rocking_free.toml")
     assert found.zeros()[:3] == pytest.approx(exact.impacts[:3], rel=0.01)
     times, peaks = found.extremes()
     assert times[:2] == pytest.approx(exact.extremes()[0][:2], rel=0.01)
@@ -69,20 +63,20 @@ def test_case_of_free_rocking():
 @pytest.mark.parametrize("ratio", [2.0, 4.0, 6.0])
 def test_bounds_of_overturning(ratio):
     """Every bound of the oracle is one of dem, within 3 %: dem answers as the oracle does below and above it."""
-    found = pulses.around(pulses.bounds(pulses.BLOCK, ratio))
+    found = overturning.around(overturning.bounds(overturning.BLOCK, ratio))
     assert len(found) == 3
     for bound in found:
         assert bound.high < bound.low * 1.062
-        assert bound.met(lambda x: pulses.dem(pulses.BLOCK, ratio, x)), bound
+        assert bound.met(lambda x: overturning.dem(overturning.BLOCK, ratio, x)), bound
 
 
 def test_cases_of_pulses():
     """On either side of the bound: one stands, one falls."""
-    block = pulses.BLOCK
-    first = pulses.bounds(block, 2.0 * np.pi * 1.7 / block.p)[0] * pulses.unit(block)
+    block = overturning.BLOCK
+    first = overturning.bounds(block, 2.0 * np.pi * 1.7 / block.p)[0] * overturning.unit(block)
     assert 4.3 < first < 4.45
-    assert not scene.solve_file(CASE_FILES / "rocking_pulse_stands.toml").overturned
-    assert scene.solve_file(CASE_FILES / "rocking_pulse_falls.toml").overturned
+    assert not single_block.solve_file(CASE_FILES / "rocking_pulse_stands.toml").overturned
+    assert single_block.solve_file(CASE_FILES / "rocking_pulse_falls.toml").overturned
 
 
 def test_ensemble():
@@ -98,17 +92,17 @@ def test_ensemble():
     assert all(row["dem"] == pytest.approx(row["exact"], rel=0.1) for row in calm)
 
 
-@pytest.mark.parametrize("name", others.STACKS)
+@pytest.mark.parametrize("name", sliding.STACKS)
 def test_two_blocks_until_the_first_closure(name):
     """Angles within 0.1 % of the largest, the time within 0.2 % and one sample."""
-    found = others.stack(name, output={"rate": 5000.0})
+    found = sliding.stack(name, output={"rate": 5000.0})
     assert found["angles"] < 1e-3
     assert abs(found["closure"]) < 2e-3 + 1.0 / (5000.0 * found["time"])
 
 
 def test_case_of_two_blocks():
     exact = rock_two(Rectangle(0.5, 1.0), Rectangle(0.4, 1.2), (0.06, -0.04))
-    found = scene.solve_file(CASE_FILES / "two_blocks.toml")
+    found = single_block.solve_file(CASE_FILES / "two_blocks.toml")
     apart = found.values[:, 1] - found.values[:, 0]
     closed = found.times[np.flatnonzero(apart >= 0.0)[0]]
     assert closed == pytest.approx(exact.times[-1], rel=0.01)

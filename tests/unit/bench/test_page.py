@@ -14,12 +14,12 @@ MACHINE = {"cores": 2, "processor": "some", "system": "Linux", "load": 0.5, "dem
 
 
 def test_the_page_is_made_from_its_json():
-    groups = read(DOCS / "benchmarks.json")
+    groups = read(DOCS / "data" / "benchmarks.json")
     assert (DOCS / "benchmarks.md").read_text(encoding="utf-8") == page.render(groups)
 
 
 def test_the_page_shows_every_group_and_picture():
-    groups = read(DOCS / "benchmarks.json")
+    groups = read(DOCS / "data" / "benchmarks.json")
     text = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
     assert list(groups) == list(registry.GROUPS)
     for name, title in registry.GROUPS.items():
@@ -30,7 +30,7 @@ def test_the_page_shows_every_group_and_picture():
 
 def test_pictures_can_be_drawn_again(tmp_path):
     pytest.importorskip("matplotlib")
-    groups = read(DOCS / "benchmarks.json")
+    groups = read(DOCS / "data" / "benchmarks.json")
     for name in registry.GROUPS:
         for suffix, draw in registry.module(name).PICTURES.items():
             draw(records_of(groups[name]), tmp_path / f"{suffix}.png")
@@ -49,7 +49,7 @@ def test_groups_measured_elsewhere_say_so(tmp_path):
     text = (tmp_path / "benchmarks.md").read_text("utf-8")
     assert "* kernels: 2 cores" in text
     assert "* startup: 64 cores" in text
-    assert list(read(tmp_path / "benchmarks.json")) == ["kernels", "startup"]
+    assert list(read(tmp_path / "data" / "benchmarks.json")) == ["kernels", "startup"]
 
 
 def test_measuring_again_replaces_a_group(tmp_path):

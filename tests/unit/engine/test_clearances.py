@@ -2,30 +2,18 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracle import rolling_polygons as statics
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.engine.clearances import (
-    beyond,
-    gap_play,
-    joint_angles,
-    open_gaps,
-    play,
-)
+from dem_cli.engine.clearances import beyond, gap_play, joint_angles, open_gaps, play
 from dem_cli.engine.settings import DEFAULT
 
 CLEARANCE = DEFAULT.clearance
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
-statics = importlib.import_module("thesis7.statics")
 
 HEIGHT, WIDTH = 0.0175, 0.04
 

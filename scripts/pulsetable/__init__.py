@@ -1,1 +1,0 @@
-"""A column and arches under pulses of the base, beside published results: docs/pulses.md and its pictures."""

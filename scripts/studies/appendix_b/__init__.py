@@ -1,0 +1,1 @@
+"""Thesis Appendix B: walls with loads on top, pushed in their plane."""

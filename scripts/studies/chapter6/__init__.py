@@ -1,0 +1,1 @@
+"""Thesis chapter 6: blocks, a column and an arch that are shaken."""

@@ -1,0 +1,122 @@
+"""Shapes and rotations near failure: steady oscillation (Figure 6-11), a record near failure (6-12, 6-13)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli import api
+from dem_cli.motion.ground_motions import motions_of
+from dem_cli.post import style
+from studies.chapter6.arch import UNIT
+from studies.chapter6.shaken_case import ShakenCase, run
+from studies.places import CASES
+from studies.storage import rounded
+from studies.template import commands, table
+
+HARMONIC = ("motion.frequency=5", f"motion.amplitude={1.5 * UNIT:.5g}")
+STEPS = tuple(round(1.3 + 0.1 * k, 2) for k in range(20))  # a tried for the record, up to the first collapse
+BEFORE = (1.5, 0.6, 0.3, 0.15, 0.0)  # [s] before the collapse of the record
+
+
+def measure() -> dict[str, Any]:
+    """Two motions at 5 Hz, a = 1.5, and record 3 at the lowest collapse and the level below."""
+    falls = run("arch_8_harmonic", *HARMONIC, "output.frames=500", "analysis.after_collapse=0.0")
+    steady = run("arch_8_harmonic", *HARMONIC, "output.frames=500", "joints.dry.friction=0.8")
+    end = falls.summary["collapse_time"] or 5.0
+    stood, fell = _record()
+    return {
+        "falls": _picked(falls, [0.4 * end, 0.6 * end, 0.8 * end, end]),
+        "steady": _picked(steady, [4.75, 4.8, 4.85, 4.9]) | {"curve": _curve(steady)},
+        "stood": {"run": stood[1].answer, "a": stood[0], "curve": _curve(stood[1])},
+        "record": _picked(fell[1], [(fell[1].summary["collapse_time"] or 20.0) - before for before in BEFORE])
+        | {"a": fell[0], "curve": _curve(fell[1])},
+    }
+
+
+def _record() -> tuple[tuple[float, ShakenCase], tuple[float, ShakenCase]]:
+    """Record 3 at the highest level below its first collapse, and at that."""
+    case = api.load_case(CASES / "validation" / "arch_8_record.toml").case
+    (motion,), before = motions_of(case), None
+    for a in STEPS:
+        found = run("arch_8_record", f"motion.scale={a * UNIT / motion.peak:.5g}", "output.frames=400")
+        if before is not None and found.summary.get("collapsed") is not False:
+            break
+        before = (a, found)
+    assert before is not None
+    return before, (a, found)
+
+
+def _picked(found: ShakenCase, times: Sequence[float]) -> dict[str, Any]:
+    """Shapes nearest to some times."""
+    near = [min(found.frames, key=lambda frame, t=t: abs(frame["time"] - t)) for t in times]
+    return {"run": found.answer, "frames": near}
+
+
+def _curve(found: ShakenCase) -> list[list[float]]:
+    """Time, rotations of the right and the left column, crown; 25 per second."""
+    every = max(1, round(0.04 / (found.times[1] - found.times[0])))
+    return rounded(np.column_stack([found.times, found.values[:, :3]])[::every])
+
+
+def values(found: dict[str, Any]) -> dict[str, Any]:
+    """What near_collapse.md.j2 shows."""
+    steady, record = np.array(found["steady"]["curve"]), found["record"]
+    late = steady[steady[:, 0] > 4.0]
+    rows = [
+        (name, f"{1e3 * late[:, k].mean():.1f}", f"{1e3 * np.ptp(late[:, k]) / 2:.1f}")
+        for k, name in ((1, "right column [mrad]"), (2, "left column [mrad]"), (3, "crown [mm]"))
+    ]
+    stood, curve = np.array(found["stood"]["curve"]), np.array(record["curve"])
+    until = curve[curve[:, 0] < record["run"]["collapse_time"] - 0.5]
+    return {
+        "steady": table(("", "mean", "half of the range"), rows),
+        "stood": found["stood"]["a"], "fell": record["a"], "at": record["run"]["collapse_time"],
+        "block": record["run"]["collapse_block"], "how": record["run"]["collapse"],
+        "rest": 1e3 * np.abs(stood[-1, 1:3]).max(), "crown": -1e3 * stood[-1, 3],
+        "peak": np.abs(until[:, 1]).max(),
+        "commands": commands(found["falls"]["run"], found["steady"]["run"], found["stood"]["run"], record["run"]),
+    }  # fmt: skip
+
+
+def _arch(axis: Any, frame: dict[str, Any], title: str) -> None:
+    for corners in frame["blocks"]:
+        axis.fill(*np.array(corners).T, facecolor=style.STONE, edgecolor=style.STONE_EDGE, lw=0.7)
+    axis.set(xlim=(-0.62, 0.62), ylim=(-0.06, 0.66), aspect="equal")
+    axis.set_title(title, fontsize=9, fontweight="normal")
+    axis.axis("off")
+
+
+def draw_harmonic(found: dict[str, Any], path: Path) -> None:
+    """As Figure 6-11: collapse with the friction of the thesis, steady oscillation with more."""
+    with style.figure(path, figsize=(10.0, 3.9)) as figure:
+        axes = figure.subplots(2, 4)
+        for row, (name, label) in zip(axes, (("falls", "friction 0.6"), ("steady", "friction 0.8"))):
+            for axis, frame in zip(row, found[name]["frames"]):
+                _arch(axis, frame, f"{label}, {frame['time']:.2f} s")
+
+
+def draw_record(found: dict[str, Any], path: Path) -> None:
+    """As Figure 6-12."""
+    frames = found["record"]["frames"]
+    with style.figure(path, figsize=(11.0, 1.9)) as figure:
+        for axis, frame in zip(figure.subplots(1, len(frames)), frames):
+            _arch(axis, frame, f"{frame['time']:.2f} s")
+
+
+def draw_rotation(found: dict[str, Any], path: Path) -> None:
+    """As Figure 6-13."""
+    with style.figure(path, figsize=(9.0, 3.4)) as figure:
+        axis = figure.subplots()
+        for name, colour, word in (("record", style.COLLAPSE, "collapses"), ("stood", style.THRUST, "stands")):
+            times, right = np.array(found[name]["curve"])[:, :2].T
+            axis.plot(times, 1e3 * right, color=colour, lw=1.0, label=f"a = {found[name]['a']:g}, {word}")
+        axis.axvline(found["record"]["run"]["collapse_time"], color=style.GREY, ls=":", lw=1.0)
+        axis.set(xlabel="time [s]", ylabel="rotation of the right column [mrad]", xlim=(0, 20.5))
+        axis.legend(loc="lower left")
+
+
+PICTURES = {"harmonic": draw_harmonic, "record": draw_record, "rotation": draw_rotation}

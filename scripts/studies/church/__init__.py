@@ -1,0 +1,1 @@
+"""Thesis Appendix A: a slice of a church, pushed out of the plane of its walls."""

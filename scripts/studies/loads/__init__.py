@@ -1,0 +1,1 @@
+"""Failure loads of all pushover cases by limit analysis and by DEM."""

@@ -1,0 +1,1 @@
+"""A column and arches under pulses of the base, beside published results."""

@@ -1,0 +1,20 @@
+"""Registry of the studies: name of the command, module, what it is about."""
+
+from __future__ import annotations
+
+STUDIES = {  # module with STUDY, sentence of the list
+    "appendix_b": ("studies.appendix_b.study", "thesis Appendix B: walls with loads on top"),
+    "chapter6": ("studies.chapter6.study", "thesis chapter 6: shaken blocks, column and arch"),
+    "chapter7": ("studies.chapter7.study", "thesis chapter 7: joints that are not plane"),
+    "church": ("studies.church.study", "thesis Appendix A: the slice of a church"),
+    "gallery": ("studies.gallery", "the pictures of docs/gallery.md"),
+    "imperfections": ("studies.imperfections.study", "the 21-block wall with one block too low (thesis 5.4)"),
+    "laws": ("studies.laws.study", "a page and a picture of every joint law"),
+    "loads": ("studies.loads.study", "failure loads by limit analysis and by DEM"),
+    "motions": ("studies.motions", "artificial accelerograms and response spectra"),
+    "profile": ("studies.profile", "the moment that a joint with a profile carries"),
+    "pulses": ("studies.pulses.study", "published pulse tests of a column and two arches"),
+    "rocking": ("studies.rocking.study", "blocks that rock, slide and bounce, against exact motions"),
+    "stress": ("studies.stress.study", "the stability stress test: try to break the program"),
+    "thesis_joint": ("studies.thesis_joint", "one structure on the thesis's own joint"),
+}

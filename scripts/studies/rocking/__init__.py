@@ -1,0 +1,1 @@
+"""Blocks that rock, slide and bounce, against exact motions."""

@@ -1,0 +1,80 @@
+"""README.md with its table of verification made from docs/data/verification.json."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from dem_cli.bench.table import percent
+from studies import storage
+from studies.places import ROOT
+from studies.template import minus
+from studies.template import table as markdown
+
+MARKED = re.compile(r"(<!-- verification -->\n).*?(<!-- end -->)", re.DOTALL)
+FROM = {"exact": "mechanics", "experiment": "a test", "code": "another program"}
+ROWS = (  # case, kind of its reference (the first of that kind is shown), what it is
+    ("wall_21_mu050", "exact", "21-block wall, friction 0.5: its top course slides"),
+    ("wall_21", "exact", "the same, friction 0.6"),
+    ("wall_21_mu075", "exact", "the same, friction 0.75: it turns over"),
+    ("wall_3", "exact", "wall of 231 blocks"),
+    ("column_14", "exact", "column of 14 blocks"),
+    ("arch_21", "exact", "arch of 21 voussoirs: four hinges"),
+    ("arch_21_mu040", "exact", "the same, friction 0.4: joints slide"),
+    ("cohesion_block", "exact", "block held by friction and cohesion"),
+    ("least_thickness_arch", "exact", "least ring of a semicircular arch of radius 10 m [m]"),
+    ("safety_incline", "exact", "factor of safety of a block on an incline"),
+    ("settlement_portal", "exact", "keystone of an arch whose support settles [m]"),
+    ("rocking_free", "exact", "first swing of a block that rocks [rad]"),
+    ("sliding_pulse", "exact", "slip left by a pulse [m]"),
+    ("column_14_profile", "experiment", "column of 14 real blocks, calibrated joints"),
+    ("wall_21_profile", "experiment", "wall of 21 real blocks, joints as in the column"),
+    ("griffith_wall", "experiment", "wall bent out of its plane"),
+    ("shear_wall_ws100", "experiment", "dry-stone wall under 100 kN, pushed [N]"),
+    ("church_a", "code", "slice of a church as it is, sizes inferred"),
+    ("church_b", "code", "the same before 1954, sizes inferred"),
+)
+
+
+def text() -> str:
+    """The page as it should be."""
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    table = markdown(("case", "known from", "known", "dem", "error"), rows())
+    return MARKED.sub(lambda found: f"{found[1]}{table}\n\n{met()}\n{found[2]}", page)
+
+
+def records() -> list[dict[str, Any]]:
+    """What `dem verify` found, a record per case."""
+    return storage.read("verification")["cases"]
+
+
+def rows() -> list[tuple[str, ...]]:
+    """A row for each of ROWS."""
+    found = {Path(record["case"]).stem: record["references"] for record in records()}
+    return [row(about, kind, found[name]) for name, kind, about in ROWS]
+
+
+def met() -> str:
+    """How many references there are of each kind, and how many are met."""
+    answers = [answer for record in records() for answer in record["references"]]
+    said = []
+    for kind, source in (("exact", "mechanics"), ("experiment", "tests"), ("code", "other programs")):
+        passed = [answer["passed"] for answer in answers if answer["kind"] == kind]
+        said.append(f"{sum(passed)} of {len(passed)} from {source}")
+    failed = sum(answer["state"] == "failed" for answer in answers)
+    reasons = f"Misses without a reason: {failed}" if failed else "Every miss is declared in its case, with the reason"
+    return f"References that are met: {', '.join(said)}. {reasons}."
+
+
+def row(about: str, kind: str, answers: list[dict[str, Any]]) -> tuple[str, ...]:
+    """What it is, where the reference comes from, the reference, ours, the error; a miss is said."""
+    answer = next(one for one in answers if one["kind"] == kind)
+    found, wanted = answer["found"], answer["value"]
+    error = percent(found / wanted - 1.0) + ("" if answer["passed"] else ": missed")
+    return about, FROM[kind], number(wanted), number(found), error
+
+
+def number(value: float) -> str:
+    """Four digits."""
+    return minus(f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.4g}")

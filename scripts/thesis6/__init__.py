@@ -1,1 +1,0 @@
-"""Thesis chapter 6, section by section."""
