@@ -11,3 +11,6 @@ os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
 FOLDERS = [str(ROOT), str(ROOT / "tests"), str(ROOT / "scripts")]  # of what tests and their processes import
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (*FOLDERS, os.environ.get("PYTHONPATH"))))
+# As `dem bench` has it: threads of libraries beside two workers of the tests gain nothing.
+for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(name, "1")

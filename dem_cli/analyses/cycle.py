@@ -15,8 +15,8 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
+from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import FALLS, settle, settle_or_fail
-from dem_cli.statics.failure_load import compliance
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

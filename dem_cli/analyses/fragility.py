@@ -132,9 +132,9 @@ class FragilityStudy:
         if not self.analysis.bisects:
             answer |= {"levels": levels, "share": [_share(found.values(), level) for level in levels]}
         above = [
-            {"record": self.names[r], "structure": s, "collapsed": bounds[s, r].upper, "survived": survived_above(runs)}
+            {"record": self.names[r], "structure": s, "collapsed": fell.upper, "survived": survived_above(runs)}
             for (s, r), runs in found.items()
-            if survived_above(runs)
+            if survived_above(runs) and (fell := bounds[s, r]) is not None
         ]
         answer["non_monotone"] = above
         self._warn_about(answer, len(np.unique(table.reshape(-1, 2), axis=0)))

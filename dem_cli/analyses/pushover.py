@@ -13,7 +13,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.statics import post_peak
 from dem_cli.statics.equilibrium import FALLS, settle
-from dem_cli.statics.failure_load import FailureSearch, find_failure
+from dem_cli.statics.failure_load import FailureLoad, LoadSearch, SearchRange
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.warm_start import GRAVITY, LIMIT, PATH, find_start
 
@@ -28,7 +28,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     warm_start = settings.warm_start
     job = Job.start(case, model, observer, settings)
     search, sim = _search(job)
-    sims, found = [sim], {"failure_mode": None, "displacement_at_failure": None}
+    sims = [sim]
+    found: dict[str, Any] = {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
     if search.found and search.start["kind"] == LIMIT:
         job.warnings.append(
@@ -39,15 +40,15 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         job.warnings.append(
             f"more than {warm_start.large} blocks raised from gravity: the true failure load may be higher"
         )
-    if search.found and None not in (search.crept, search.high) and search.crept * sim.live_scale > search.high:
+    if search.crept is not None and search.crept_beyond:
         job.warnings.append(
             f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
             "how much this structure carries depends on the way it is loaded"
         )
     if search.status == "ok":
-        found |= describe(sim, search.held)
+        found |= describe(sim, search.standing)
         failing = sim.save()
-        sim.restore(search.held)
+        sim.restore(search.standing)
         track.frame("loading")
         sim.restore(failing)
         track.frame("collapse")
@@ -67,10 +68,10 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome(sims, _answer(search, sim) | found)
 
 
-def _search(job: Job) -> tuple[FailureSearch, Simulation]:
+def _search(job: Job) -> tuple[FailureLoad, Simulation]:
     """Gravity and the failure search; again with moving geometry where given joints are too soft to freeze it."""
     analysis = job.case.analysis
-    search, sim = FailureSearch(), job.first_simulation()
+    search, sim = FailureLoad(), job.first_simulation()
     rigid: float | None = None  # failure load of the same blocks on stiff joints
     while True:
         track = job.track(sim)
@@ -78,9 +79,8 @@ def _search(job: Job) -> tuple[FailureSearch, Simulation]:
             if settle(sim, track, job.budget).state == "equilibrium":
                 start, search.start = find_start(job, sim)
                 search.limits = start.limits if start is not None else None
-                find_failure(
-                    sim, analysis.resolution, analysis.max_load, job.budget, track, search, start, analysis.step
-                )
+                wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
+                LoadSearch(sim, wanted, job.budget, track, search).run(start)
             else:
                 search.status = FALLS
         except SolverError as error:
@@ -88,23 +88,26 @@ def _search(job: Job) -> tuple[FailureSearch, Simulation]:
         except KeyboardInterrupt:
             search.status = INTERRUPTED
         moved = search.peak_displacement / sim.smallest
-        soft = moved > job.settings.load_search.soft * analysis.resolution and any(
-            j.kn != "auto" for j in job.case.joints.values()
-        )
+        given = any(joint.kn != "auto" for joint in job.case.joints.values())
+        soft = given and moved > job.settings.load_search.soft * analysis.resolution
         if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
-            if rigid and search.found and abs(search.low - rigid) > job.settings.doubts.lowered * rigid:
-                change = f"by {100 * abs(search.low / rigid - 1):.2g} %"
-                job.warnings.append(
-                    f"the given kn {'lowers' if search.low < rigid else 'raises'} the failure load {change}: "
-                    f"on stiff joints it is {rigid:.5g}"
-                )
+            if rigid and search.found:
+                job.warnings += _changed(search.carried, rigid, job.settings.doubts.lowered)
             if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):
                 track.flush()  # else the rows of the collapse tell the whole way
             return search, sim
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
         job.warnings.clear()
-        rigid = search.low if search.found else None
-        search, sim = FailureSearch(), job.simulation("large")
+        rigid = search.carried if search.found else None
+        search, sim = FailureLoad(), job.simulation("large")
+
+
+def _changed(load: float, rigid: float, lowered: float) -> list[str]:
+    """A word where joints of the given stiffness carry another load than stiff ones."""
+    if abs(load - rigid) <= lowered * rigid:
+        return []
+    change = f"{'lowers' if load < rigid else 'raises'} the failure load by {100 * abs(load / rigid - 1):.2g} %"
+    return [f"the given kn {change}: on stiff joints it is {rigid:.5g}"]
 
 
 def _too_fast(peak: float | None, high: float | None, overshoot: float) -> list[str]:
@@ -117,7 +120,7 @@ def _too_fast(peak: float | None, high: float | None, overshoot: float) -> list[
     ]
 
 
-def _limit_analysis(job: Job, search: FailureSearch) -> dict[str, Any]:
+def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
     from dem_cli.limit.analysis import limit_loads, taken_as_plane
     from dem_cli.limit.path import OK
@@ -138,9 +141,9 @@ def _limit_analysis(job: Job, search: FailureSearch) -> dict[str, Any]:
         summary["non_associated" if status == OK else "non_associated_at_least"] = load
         summary["non_associated_status"] = status
     bound = loads.associated.upper
-    if search.found and bound is not None and search.low > (1.0 + job.settings.doubts.above) * bound:
+    if search.found and bound is not None and search.carried > (1.0 + job.settings.doubts.above) * bound:
         job.warnings.append(
-            f"the failure load {search.low:.5g} is above the associated limit load {bound:.5g}, "
+            f"the failure load {search.carried:.5g} is above the associated limit load {bound:.5g}, "
             "which rigid blocks cannot exceed: do not trust this run"
         )
     return summary
@@ -153,10 +156,10 @@ def _by_load(job: Job) -> bool:
     return wanted == "load" or (wanted == "auto" and snaps)
 
 
-def _fall(job: Job, sim: Simulation, search: FailureSearch) -> tuple[Simulation, dict[str, float | None]]:
+def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, dict[str, float | None]]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
-    load = search.low / sim.live_scale
+    load = search.carried / sim.live_scale
     by_load = _by_load(job)
     ratio, softer = sim.settings.stiffness.statics, 1.0
     if not by_load:
@@ -167,7 +170,7 @@ def _fall(job: Job, sim: Simulation, search: FailureSearch) -> tuple[Simulation,
     rate = min(fast, search.compliance / search.elastic * until / sim.settings.post_peak.fewest)
     try:
         if by_load:
-            impossible = search.high / sim.live_scale
+            impossible = search.failed / sim.live_scale
             post_peak.follow_load(falling, job.track(falling), impossible, until, frames, job.budget)
             return falling, {"load": None, "displacement": search.peak_displacement}
         return falling, post_peak.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
@@ -179,7 +182,7 @@ def _fall(job: Job, sim: Simulation, search: FailureSearch) -> tuple[Simulation,
     return falling, {"load": None, "displacement": None}
 
 
-def _answer(search: FailureSearch, sim: Simulation) -> dict[str, Any]:
+def _answer(search: FailureLoad, sim: Simulation) -> dict[str, Any]:
     """The failure load and how it was obtained."""
     status = search.status
     if status == "no failure":

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.cross_references import check_names
-from dem_cli.errors import CaseError, CaseProblem, dotted
+from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import cross
 from dem_cli.model.blocks import Block
@@ -95,10 +95,11 @@ def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:
 
 def _explicit(table: BlockTable, i: int) -> Block:
     """The block of the i-th [[block]]; raises CaseError with a problem for each bad piece."""
-    shapes = [("vertices",)] if table.parts is None else [("parts", k) for k in range(len(table.parts))]
-    pieces = (table.vertices,) if table.parts is None else table.parts
+    pieces: list[tuple[KeyPath, Sequence[Any]]] = [(("parts", k), part) for k, part in enumerate(table.parts or ())]
+    if table.vertices is not None:
+        pieces = [(("vertices",), table.vertices)]
     parts, problems = [], []
-    for key, corners in zip(shapes, pieces):
+    for key, corners in pieces:
         try:
             parts.append(polygon.in_order(corners))
         except ValueError as error:

@@ -89,14 +89,16 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     profiles = {name: table.profile for name, table in case.joints.items() if getattr(table, "profile", None)}
     if not profiles:
         return []
-    from dem_cli.contact.assemble import END_TO_END, STEEP, overlap_lengths
+    from dem_cli.contact.chains import END_TO_END, STEEP
+    from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
 
     corners = undeformed(model)
     faces = find_joints(model, corners, TOUCH * float(model.parts.sizes.min()))
-    along = corners[faces.edges[:, 1]] - corners[faces.edges[:, 0]]
+    edges = edges_of(model, faces)
+    along = corners[edges[:, 1]] - corners[edges[:, 0]]
     beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
-    blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(faces.edges, corners)
-    whole = np.hypot(*(corners[faces.edges[:, 3]] - corners[faces.edges[:, 2]]).T)
+    blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(edges, corners)
+    whole = lengths_of(edges, corners)[:, 1]
     pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
     named = np.array([case.joint_between(*pair) for pair in pairs])
     found = []
@@ -152,13 +154,13 @@ def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
     wrong = np.nonzero(slim < SLIVER)[0]
     if not wrong.size:
         return []
-    worst = np.argmin(slim)
+    worst = int(np.argmin(slim))
     more = f" (and {wrong.size - 1} more)" if wrong.size > 1 else ""
     return [f"block '{names[worst]}'{more} is a sliver (width / length = {slim[worst]:.1e}): expect tiny steps"]
 
 
 def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -> list[str]:
-    large, small = np.argmax(values), np.argmin(values)
+    large, small = int(np.argmax(values)), int(np.argmin(values))
     ratio = values[large] / values[small]
     if ratio <= limit:
         return []

@@ -15,7 +15,9 @@ def make_bare(contact_forces: Callable, drift: Callable, ledger_on: bool) -> Cal
     """The loop for one contact loop and one way to move the blocks, with the arguments of `make_advance`."""
 
     @kernel
-    def advance(n_steps, mode, dt, bodies, shape, joints, contacts, loads, control, ledger, like, like_rotation):
+    def advance(
+        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, like, like_rotation,
+    ):  # fmt: skip
         """Advance by n_steps at constant load with local damping; returns the steps done."""
         velocities, forces, residuals = bodies.velocities.ravel(), bodies.forces.ravel(), bodies.unbalanced.ravel()
         dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
@@ -24,7 +26,7 @@ def make_bare(contact_forces: Callable, drift: Callable, ledger_on: bool) -> Cal
         dead, live, damp = control[DEAD_FACTOR], control[LIVE_FACTOR], control[DAMP]
         for _ in range(n_steps):
             forces[:] = 0.0
-            friction = contact_forces(joints, contacts, bodies, dt, like, like_rotation)
+            friction = contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             for i in range(forces.size):
                 old, inverse = velocities[i], inverse_masses[i]
                 applied = dead * dead_loads[i] + live * live_loads[i]

@@ -132,7 +132,7 @@ def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
     from dem_cli.kernels import records as slot
 
     return lambda: loop(
-        steps, slot.HOLD_LOAD, 1.0, sim.bodies, sim.shape, sim.joints, sim.contacts, sim.loads,
+        steps, slot.HOLD_LOAD, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
         sim.control, sim.ledger, sim.like, sim.like_rotation,
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from dem_cli.contact.assemble import empty_contacts
+from dem_cli.contact.joints import empty_contacts
 from dem_cli.kernels.records import Contacts, Joints
 
 if TYPE_CHECKING:

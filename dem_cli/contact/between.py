@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.assemble import overlap_ends
-from dem_cli.contact.detect import Faces, find_joints
+from dem_cli.contact.detect import find_joints
+from dem_cli.contact.edges import edges_of, overlap_ends
 from dem_cli.contact.start import TOUCH
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -31,11 +31,12 @@ class StartJoints:
         self.model, self.corners = model, undeformed(model)
         edge = smallest_edge(model)
         faces = find_joints(model, self.corners, REACH * edge)
-        low, high = overlap_ends(faces.edges, self.corners)
+        edges = edges_of(model, faces)
+        low, high = overlap_ends(edges, self.corners)
         keep = high - low > TOUCH * edge
-        self.faces = Faces(*(field[keep] for field in faces))
+        self.edges = edges[keep]
         self.lengths = (high - low)[keep]
-        self.blocks = model.part_blocks[self.faces.parts]
+        self.blocks = model.part_blocks[faces.parts[keep]]
 
     def neighbours(self, block: int) -> list[int]:
         """Blocks that share a joint with this one."""
@@ -48,7 +49,7 @@ class StartJoints:
         if not len(shared):
             return None
         joint = shared[self.lengths[shared].argmax()]
-        edges = self.faces.edges[joint]
+        edges = self.edges[joint]
         if self.blocks[joint, 0] != first:
             edges = edges[[2, 3, 0, 1]]
         places = np.array(overlap_ends(edges[np.newaxis], self.corners))  # (2, 1) along the first edge

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.geometry.rotation import across
+from dem_cli.geometry.rotation import frames
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
 
@@ -22,20 +22,17 @@ if TYPE_CHECKING:
 
 
 def directions(joints: Joints, dimension: int) -> np.ndarray:
-    """Unit normal and tangents of every point, (n_points, d, d); in 2D only normals are kept up to date."""
-    if dimension == 2:
-        normals = joints.frames[:, :2]
-        return np.stack([normals, across(normals)], axis=1)
-    return joints.frames.reshape(-1, dimension, dimension)
+    """Unit normal and tangents of every point, (n_points, d, d)."""
+    return frames(joints.frames, dimension)
 
 
 def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
     """∂(motion of b against a)/∂(motion of a, of b), (n_points, d directions, 2 blocks, n_dof)."""
     d = dimension
-    frames = directions(joints, d)
-    n_points = len(frames)
+    along = directions(joints, d)
+    n_points = len(along)
     levers = joints.levers.reshape(n_points, 2, d, joints.levers.shape[1] // (2 * d)).swapaxes(1, 2)
-    one = np.concatenate([np.repeat(frames[:, :, None], 2, axis=2), levers], axis=3)
+    one = np.concatenate([np.repeat(along[:, :, None], 2, axis=2), levers], axis=3)
     return one * np.array([-1.0, 1.0])[:, None]
 
 

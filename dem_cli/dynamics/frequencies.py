@@ -86,7 +86,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     rows.eliminate_zeros()
     turning = None
     if geometric:
-        turning = (per_mass @ geometric_stiffness(model, joints, contacts, sim.bodies) @ per_mass).tocsr()
+        turning = (per_mass @ geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies) @ per_mass).tocsr()
     return System(rows, turning, masses, blocks, sim.settings.frequency)
 
 

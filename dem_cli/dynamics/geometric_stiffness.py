@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.compatibility import directions, free_columns
+from dem_cli.contact.geometry import JointGeometry, geometry_of
 from dem_cli.geometry.rotation import across
 
 if TYPE_CHECKING:
@@ -26,7 +27,9 @@ if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
 
-def geometric_stiffness(model: Model, joints: Joints, contacts: Contacts, bodies: Bodies) -> csr_array:
+def geometric_stiffness(
+    model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies
+) -> csr_array:
     """Of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be current."""
     from scipy.sparse import coo_array
 
@@ -35,7 +38,7 @@ def geometric_stiffness(model: Model, joints: Joints, contacts: Contacts, bodies
     forces = np.column_stack([contacts.normal, contacts.shear])
     along = np.einsum("pd,pdk->pk", forces, frames)  # force on b [N], (n_points, 2)
     normal = across(along)
-    share = shares(joints, bodies)[:, None]
+    share = geometry_of(model.dimension).corner_shares(joints, geometry, bodies.corners)[:, None]
     arms = joints.points[:, None] - bodies.positions[blocks]
     lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
     one, two = share[:, 0], 1.0 - share[:, 0]
@@ -51,15 +54,3 @@ def geometric_stiffness(model: Model, joints: Joints, contacts: Contacts, bodies
     used = (rows >= 0) & (columns >= 0)
     n = 3 * int((~model.fixed).sum())
     return coo_array((-local[used], (rows[used], columns[used])), shape=(n, n)).tocsr()
-
-
-def shares(joints: Joints, bodies: Bodies) -> np.ndarray:
-    """1: a corner of b on the edge of a; 0: one of a on the edge of b; between: both corners meet, (n_points,)."""
-    a0, a1, b0, b1 = (bodies.corners[joints.edges[:, i]] for i in range(4))
-    along = (a1 - a0) * joints.scales[:, [1]]
-    low = ((b1 - a0) * along).sum(axis=1)
-    high = joints.scales[:, 0] - ((b0 - a0) * along).sum(axis=1)
-    found = np.ones(len(joints.kn))
-    for inside, ends in ((low, joints.starts[:-1]), (high, joints.starts[1:] - 1)):
-        found[ends] = np.clip(0.5 + inside * joints.scales[:, 3], 0.0, 1.0)
-    return found

@@ -193,7 +193,8 @@ class TimeHistory:
 def damping_of_start(case: Case, model: Model, settings: Settings = DEFAULT) -> Damping:
     """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
     properties = joint_properties(case, model, settings.stiffness.dynamics)
-    joints, _ = joints_of_start(model, bodies_at_rest(model, origin_of(model)), properties, smallest_edge(model))
+    rest = bodies_at_rest(model, origin_of(model))
+    joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
     return damping_of(case, model, joints, settings)
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.geometry import JointGeometry, geometry_of
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.records import Joints
@@ -54,25 +55,19 @@ def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: Clearance
     )
 
 
-def joint_angles(joints: Joints) -> np.ndarray:
-    """Largest microrotation of each joint from the side that it rests on at the start [rad], (n_joints,)."""
-    angles = np.zeros(len(joints.blocks))
-    if not len(joints.profile):
-        return angles
-    sides = np.diff(joints.profile, axis=0)
-    inner = np.ones(len(sides), bool)
-    inner[joints.starts[1:-1] - 1] = False  # from the last point of a joint to the first of the next
-    np.maximum.at(angles, joints.owners[:-1][inner], np.abs(sides[inner, 1] / sides[inner, 0]))
-    return angles
-
-
-def play(model: Model, joints: Joints, positions: np.ndarray, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
+def play(
+    model: Model,
+    joints: Joints,
+    geometry: JointGeometry,
+    positions: np.ndarray,
+    clearance: ClearanceSettings = DEFAULT.clearance,
+) -> Play:
     """Of every block on the way from the supports on which it can move least; joints: those of the start, 2D.
 
     A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
     """
     found = Play(np.where(model.fixed, 0.0, np.inf), np.where(model.fixed, 0.0, np.inf))
-    angles = joint_angles(joints)
+    angles = geometry_of(model.dimension).microrotations(joints, geometry)
     if not angles.any():
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
     owner = joints.owners

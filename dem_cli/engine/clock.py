@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
@@ -13,6 +13,8 @@ from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.model.model import Model
+
+AnySimulation = TypeVar("AnySimulation", bound="Simulation")
 
 
 class Clock(Observer):
@@ -51,7 +53,7 @@ class Clock(Observer):
         self.observer.progress(stage, load, displacement, fraction)
         self.observing += time.perf_counter() - begun
 
-    def compiled(self, make: Callable[[], Simulation]) -> Simulation:
+    def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
         """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
         cold, begun = cache_is_cold(), time.perf_counter()
         if cold:

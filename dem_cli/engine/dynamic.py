@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointProperties
+from dem_cli.contact.joints import JointProperties
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Books, Simulation
 from dem_cli.kernels import records as slot
@@ -144,8 +144,9 @@ class DynamicSimulation(Simulation):
     def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
         run = compiled_shake(self.law, self.properties.profiled, self.damping.in_joints)
         return run(
-            first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.contacts, self.loads,
-            self.control, self.ledger, ground, self.dampers, watch, self.like, self.like_rotation,
+            first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.geometry,
+            self.contacts, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,
+            self.like_rotation,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------

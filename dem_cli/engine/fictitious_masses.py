@@ -33,7 +33,7 @@ def fictitious_masses(
     for side in (0, 1):
         reach += (rows[:, :, side] * (weights * free[:, None])[blocks[:, side]][:, None, :]).sum(axis=2)
     stiffness = np.stack([joints.kn, *[joints.ks] * (model.dimension - 1)], axis=1)
-    masses = np.zeros(inverse_out.shape)
+    masses = np.zeros_like(inverse_out)
     for side in (0, 1):
         share = (rows[:, :, side] * (stiffness * reach)[:, :, None]).sum(axis=1)
         np.add.at(masses, blocks[:, side], share / weights[blocks[:, side]])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.assembly.assemble import joint_table
-from dem_cli.contact.assemble import JointProperties
+from dem_cli.contact.joints import JointProperties
 from dem_cli.contact.layout import PointLayout
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.laws.law import Law

@@ -7,12 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.assemble import (
-    LIKE,
-    LIKE_ROTATION,
-    JointProperties,
-)
+from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.detect import block_shape, world_corners
+from dem_cli.contact.edges import edges_of
+from dem_cli.contact.geometry import JointGeometry
+from dem_cli.contact.joints import JointProperties
 from dem_cli.contact.start import TOUCH, bodies_at_rest
 from dem_cli.engine.clearances import Play, gap_play, open_gaps, play
 from dem_cli.engine.fictitious_masses import fictitious_masses
@@ -47,6 +46,7 @@ class SavedState(NamedTuple):
     bodies: Bodies
     contacts: Contacts
     joints: Joints
+    geometry: JointGeometry
     control: np.ndarray  # as kernels.records
     ledger: np.ndarray  # as kernels.records
     inverse_masses: np.ndarray  # as Loads.inverse_masses
@@ -94,7 +94,7 @@ class Simulation:
         self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
         d, r = model.dimension, model.inertias.shape[1]
         n = model.n_blocks
-        self.like, self.like_rotation = LIKE[d], LIKE_ROTATION[d]
+        self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
         self.shape = block_shape(model)
         self.origin = origin_of(model)
         self.bodies = bodies_at_rest(model, self.origin)
@@ -148,6 +148,11 @@ class Simulation:
         return self.tracking.joints
 
     @property
+    def geometry(self) -> JointGeometry:
+        """Their geometry."""
+        return self.tracking.geometry
+
+    @property
     def contacts(self) -> Contacts:
         """Their contact points."""
         return self.tracking.contacts
@@ -160,11 +165,11 @@ class Simulation:
     def _play(self) -> Play:
         """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
         clearance = self.settings.clearance
-        found = play(self.model, self.joints, self.bodies.positions, clearance)
+        found = play(self.model, self.joints, self.geometry, self.bodies.positions, clearance)
         if self.kinematics == "fixed":
             return found
         faces = self.tracking.faces_within(self.bodies, clearance.widest * self.smallest)
-        gaps = open_gaps(self.bodies.corners, faces.edges, clearance)
+        gaps = open_gaps(self.bodies.corners, edges_of(self.model, faces), clearance)
         gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= clearance.widest * self.smallest)]
         if not len(gaps):
             return found
@@ -210,8 +215,8 @@ class Simulation:
         left, load = n_steps, 0.0
         while left > 0:
             done = run(
-                min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
-                self.control, self.ledger, self.like, self.like_rotation,
+                min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
+                self.loads, self.control, self.ledger, self.like, self.like_rotation,
             )  # fmt: skip
             left -= done
             self.steps += done
@@ -224,14 +229,14 @@ class Simulation:
         """Compile or load the stepping loop; no step is done."""
         control = self.control.copy()
         compiled_advance(self.kinematics, self.law, self.properties.profiled)(
-            0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.contacts, self.loads,
-            self.control, self.ledger, self.like, self.like_rotation,
+            0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
+            self.loads, self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
         self.control[:] = control
 
-    def accelerations(self, block: int) -> np.ndarray:
-        """Of the last step, per unit of the solver's time, (n_dof,)."""
-        return self.bodies.unbalanced[block] * self.loads.inverse_masses[block]
+    def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
+        """Of the last step, per unit of the solver's time, (..., n_dof)."""
+        return self.bodies.unbalanced[blocks] * self.loads.inverse_masses[blocks]
 
     def rest(self) -> None:
         """Stop all free blocks; their kinetic energy goes to damping."""
@@ -356,6 +361,7 @@ class Simulation:
             Bodies(*(a.copy() for a in self.bodies)),
             Contacts(*(a.copy() for a in self.contacts)),
             self.joints,
+            self.geometry.kept(),
             self.control.copy(),
             self.ledger.copy(),
             self.loads.inverse_masses.copy(),
@@ -366,7 +372,8 @@ class Simulation:
         """Back to a saved state (steps go on counting)."""
         for target, source in zip(self.bodies, saved.bodies, strict=True):
             target[...] = source
-        self.tracking.joints, self.tracking.contacts = saved.joints, Contacts(*(a.copy() for a in saved.contacts))
+        contacts = Contacts(*(a.copy() for a in saved.contacts))
+        self.tracking.take(JointArrays(saved.joints, saved.geometry.kept(), contacts))
         self.control[:], self.ledger[:] = saved.control, saved.ledger
         self.loads.inverse_masses[:] = saved.inverse_masses
         self.safety = saved.safety

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from dem_cli.contact.assemble import (
-    Chains,
-    JointProperties,
-    build_joints,
-    carry_memory,
-    chains_of_start,
-    measure_points,
-)
-from dem_cli.contact.detect import Faces, find_joints, inner_edges
+from dem_cli.contact.assemble import JointArrays, build_joints
+from dem_cli.contact.geometry import NarrowPhase, geometry_of
+from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.keys import same_rows
+from dem_cli.contact.memory import carry_memory
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
 from dem_cli.engine.settings import DEFAULT, DetectionSettings
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.kernels.records import Bodies, Contacts
 from dem_cli.model.model import Model
 
 
@@ -26,7 +20,8 @@ class JointTracking:
     n_memory   numbers that each contact point remembers
     smallest   shortest edge of a block [m]
     reach      how near faces are that may soon touch [m]
-    joints, contacts, detections   the present ones, and how often they were looked for
+    joints, geometry, contacts     the present ones
+    detections                     how often they were looked for
     """
 
     def __init__(
@@ -35,27 +30,38 @@ class JointTracking:
     ):  # fmt: skip
         self.model, self.properties, self.moves, self.n_memory = model, properties, moves, n_memory
         self.smallest, self.reach, self.settings = smallest, reach, settings
-        self.inner = inner_edges(model)
-        self.chains: Chains | None = None
+        self.chains = None  # what comes back of the joints of the start
         self.detections = 0
-        self.joints, self.contacts = self._first(bodies)
+        self.take(self._first(bodies))
 
-    def _first(self, bodies: Bodies) -> tuple[Joints, Contacts]:
+    @property
+    def narrow(self) -> NarrowPhase:
+        """Who finds and places contact points; a module, which no copy of a simulation could take along."""
+        return geometry_of(self.model.dimension)
+
+    def take(self, arrays: JointArrays) -> None:
+        """From here on these are the joints."""
+        self.joints, self.geometry, self.contacts = arrays
+
+    def arrays(self) -> JointArrays:
+        """All of the joints that there are now."""
+        return JointArrays(self.joints, self.geometry, self.contacts)
+
+    def _first(self, bodies: Bodies) -> JointArrays:
         model, n_memory = self.model, self.n_memory
         self.detections += 1
         if not self.moves:
             return joints_of_start(model, bodies, self.properties, self.smallest, n_memory)
         faces = self.faces_within(bodies, self.reach)
-        if self.properties.profiled:
-            self.chains = chains_of_start(model, faces, bodies, self.properties)
-        joints, contacts = build_joints(model, faces, bodies, self.properties, n_memory, self.chains)
-        close_touching(contacts, self.smallest)
-        bond_touching(model, joints, contacts, self.properties)
-        return joints, contacts
+        self.chains = self.narrow.chains_of(model, faces, bodies.corners, self.properties)
+        built = build_joints(model, faces, bodies, self.properties, n_memory, self.chains)
+        close_touching(built.contacts, self.smallest)
+        bond_touching(model, built.joints, built.contacts, self.properties)
+        return built
 
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:
         """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
-        return find_joints(self.model, bodies.corners, distance, self.inner)
+        return self.narrow.find(self.model, bodies.corners, distance)
 
     def due(self, bodies: Bodies) -> bool:
         """Whether a block has moved so far, or a corner so passed an edge, that there may be other faces."""
@@ -63,21 +69,21 @@ class JointTracking:
 
     def detect(self, bodies: Bodies) -> None:
         """New faces after large motion; memory follows the contact points."""
-        old, memory = self.joints, self.contacts
+        old = self.arrays()
         self.measured(bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
-        joints, contacts = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
-        carry_memory(old, memory, joints, contacts)
+        new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
+        carry_memory(self.narrow, old, new)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
-            asked = {tuple(row) for row in old.edges[memory.stale[:-1] == 1].tolist()}
-            contacts.stale[:-1] |= np.array([tuple(row) in asked for row in joints.edges.tolist()], bool)
-        self.joints, self.contacts = joints, contacts
+            asked = old.geometry.faces[old.contacts.stale[:-1] == 1]
+            new.contacts.stale[:-1] |= same_rows(asked, new.geometry.faces) >= 0
+        self.take(new)
         self.detections += 1
 
     def measured(self, bodies: Bodies) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
         contacts = Contacts(*(a.copy() for a in self.contacts))
         if self.moves:
-            measure_points(self.joints, contacts, bodies)
+            self.narrow.place(self.joints, self.geometry.kept(), contacts, bodies)
         return contacts

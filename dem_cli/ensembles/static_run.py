@@ -10,8 +10,8 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import Verdict, settle_or_fail, stand
-from dem_cli.statics.failure_load import compliance
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.post_peak import fall_under, soften_falls
 from dem_cli.statics.warm_start import LIMIT, find_start, place

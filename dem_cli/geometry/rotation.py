@@ -31,6 +31,14 @@ def across(vectors: np.ndarray) -> np.ndarray:
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
+def beside(normals: np.ndarray) -> np.ndarray:
+    """A unit vector square to each unit vector, (n, d): in the plane turned by +90°."""
+    if normals.shape[1] == 2:
+        return across(normals)
+    found = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    return found / np.linalg.norm(found, axis=1)[:, np.newaxis]
+
+
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Cross product in the plane, (...): how far b lies to the left of a, times the length of a."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
@@ -44,6 +52,13 @@ def moments(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
 def swept(spins: np.ndarray, arms: np.ndarray) -> np.ndarray:
     """Velocities of the tips of arms (..., d) that turn with spins (..., r): ω × arm, (..., d)."""
     return spins * across(arms) if arms.shape[-1] == 2 else np.cross(spins, arms)
+
+
+def frames(stored: np.ndarray, dimension: int) -> np.ndarray:
+    """Unit normal and tangents, (n, d, d), from frames (n, d·d); in the plane only normals are up to date."""
+    if dimension == 2:
+        return np.stack([stored[:, :2], across(stored[:, :2])], axis=1)
+    return stored.reshape(-1, dimension, dimension)
 
 
 def unturned(n: int, dimension: int) -> np.ndarray:

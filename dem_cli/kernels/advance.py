@@ -170,7 +170,9 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
     """The compiled stepping loop for one contact loop and one way to move the blocks."""
 
     @kernel
-    def advance(n_steps, mode, dt, bodies, shape, joints, contacts, loads, control, ledger, like, like_rotation):
+    def advance(
+        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, like, like_rotation,
+    ):  # fmt: skip
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
         velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
         previous = bodies.unbalanced.ravel()
@@ -190,7 +192,7 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         done = 0
         for _ in range(n_steps):
             forces[:] = 0.0
-            ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
+            ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)

@@ -137,7 +137,7 @@ def of_bodies(loop: Callable) -> Callable:
     """The same loop, called with the bodies."""
 
     @inline
-    def bodies_forces(joints, contacts, bodies, dt, like, like_rotation):
+    def bodies_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         return loop(joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation)
 
     return named(bodies_forces, loop)

@@ -54,7 +54,7 @@ def cache_folder() -> Path:
 
 def cache_is_cold() -> bool:
     """True where nothing was compiled yet for these sources."""
-    return next(Path(numba.config.CACHE_DIR).rglob("*.nbi"), None) is None
+    return next(Path(CACHE).rglob("*.nbi"), None) is None
 
 
 def _load_numba_without_blas() -> None:
@@ -70,7 +70,10 @@ def _load_numba_without_blas() -> None:
             del sys.modules["scipy.linalg"]
 
 
-numba.config.CACHE_DIR = str(cache_folder())
+CACHE = str(cache_folder())
+# Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on keep
+# compiled code beside the sources, where nothing tells old code from new.
+vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
 _load_numba_without_blas()
 
 

@@ -26,9 +26,9 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False,
     press = make_press(law, bonded)
 
     @inline
-    def planar_forces(joints, contacts, bodies, dt, like, like_rotation):
+    def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
-        blocks, starts, edges, scales = joints.blocks, joints.starts, joints.edges, joints.scales
+        blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
         kns, kss, parameters, frames, levers = joints.kn, joints.ks, joints.law, joints.frames, joints.levers
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
         slips, memory, stale = contacts.slip, contacts.memory, contacts.stale

@@ -97,9 +97,9 @@ def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
 
 
 @kernel
-def measure(joints, contacts, bodies):
+def measure(joints, geometry, contacts, bodies):
     """Frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
-    edges, scales, frames = joints.edges, joints.scales, joints.frames
+    edges, scales, frames = geometry.edges, geometry.scales, joints.frames
     levers, points = joints.levers, joints.points
     gaps, normals, stale = contacts.gaps, contacts.normal, contacts.stale
     for number in range(joints.blocks.shape[0]):

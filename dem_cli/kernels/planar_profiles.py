@@ -58,15 +58,15 @@ def make_profiled_forces(
     press = make_press(law, bonded)
 
     @inline
-    def profiled_forces(joints, contacts, bodies, dt, like, like_rotation):
+    def profiled_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
         blocks, starts, edges, scales, profile = (
-            joints.blocks, joints.starts, joints.edges, joints.scales, joints.profile
+            joints.blocks, joints.starts, geometry.edges, geometry.scales, geometry.profile
         )  # fmt: skip
         frames, levers, places_out = joints.frames, joints.levers, joints.points
         kns, kss, parameters = joints.kn, joints.ks, joints.law
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, contacts.sunk
+        slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         lost = 0.0
@@ -189,6 +189,6 @@ _place_points = make_profiled_forces(_no_law, places=True)
 
 
 @kernel
-def measure_profiles(joints, contacts, bodies):
+def measure_profiles(joints, geometry, contacts, bodies):
     """Frames, levers, places and gaps of all points from the corners of the blocks, for detection and records."""
-    _place_points(joints, contacts, bodies, 0.0, (0.0, 0.0), (0.0,))
+    _place_points(joints, geometry, contacts, bodies, 0.0, (0.0, 0.0), (0.0,))

@@ -43,10 +43,6 @@ class Joints(NamedTuple):
     frames: np.ndarray  # unit normal from a to b, then tangent(s) (2D: normal turned by +90°), (n_points, d·d)
     levers: np.ndarray  # moments of unit forces along the frame about both centroids [m], (n_points, 2·d·r)
     points: np.ndarray  # where the points are [m], (n_points, d)
-    edges: np.ndarray  # 2D: corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
-    profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are planar
-    scales: np.ndarray  # 2D: length of edge a [m]; 1/length of a, of b, of normal blending [1/m]; cotangents of the
-    # inner angles at the corners of `edges`, (n_joints, 8)
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
@@ -57,6 +53,22 @@ class Joints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
 
+class PlanarGeometry(NamedTuple):
+    """What the two edges of each joint are in the plane, row by row as `Joints`; all of it constant but `sunk`."""
+
+    faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
+    features: np.ndarray  # place of each point among those of its joint, by which it is known again, (n_points,)
+    edges: np.ndarray  # corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
+    scales: np.ndarray  # length of edge a [m]; 1/length of a, of b, of normal blending [1/m]; cotangents of the inner
+    # angles at the corners of `edges`, (n_joints, 8)
+    profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are plane
+    sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
+
+    def kept(self) -> PlanarGeometry:
+        """The same with a copy of what changes."""
+        return self._replace(sunk=self.sunk.copy())
+
+
 class Contacts(NamedTuple):
     """Changing state of the contact points."""
 
@@ -65,7 +77,6 @@ class Contacts(NamedTuple):
     normal: np.ndarray  # normal force, compression positive [N], (n_points,)
     slip: np.ndarray  # accumulated slip path [m], (n_points,)
     memory: np.ndarray  # whatever the law remembers, then what the dampers do, (n_points, n_memory)
-    sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
 
 

@@ -99,8 +99,8 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
 
     @kernel
     def shake(
-        first, n_steps, dt, bodies, shape, joints, contacts, loads, control, ledger, ground, dampers, watch,
-        like, like_rotation,
+        first, n_steps, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, ground, dampers,
+        watch, like, like_rotation,
     ):  # fmt: skip
         """Steps first, first + 1 ... of a stretch, up to n_steps; returns those done (fewer when detection is due)."""
         velocities, forces, unbalanced = bodies.velocities, bodies.forces, bodies.unbalanced
@@ -111,7 +111,7 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
         done = 0
         for step in range(first, first + n_steps):
             forces[:] = 0.0
-            ledger[FRICTION] += contact_forces(joints, contacts, bodies, dt, like, like_rotation)
+            ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if damped:
                 met = meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
             _kick(

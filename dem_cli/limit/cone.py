@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from dem_cli.contact.assemble import STEEP
+from dem_cli.contact.chains import STEEP
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import Joints
 from dem_cli.laws.law import Law

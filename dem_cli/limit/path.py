@@ -53,6 +53,13 @@ class Path:
     highest: int = 0  # increment at which the load was highest: the state is that
     factorisations: int = 0
 
+    @property
+    def state(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
+        """Normal and shear forces, gaps and displacements at the highest load, where there is one."""
+        if self.normal is None or self.shear is None or self.gaps is None or self.displacements is None:
+            return None
+        return self.normal, self.shear, self.gaps, self.displacements
+
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
         return {

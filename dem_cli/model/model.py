@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.compounds import inner_edges
 from dem_cli.geometry.topology import Topology, topology_of_polygons
 from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
 
@@ -66,6 +67,11 @@ class Model(ModelArrays):
     def topology(self) -> Topology:
         """Faces of the parts, and their corners."""
         return topology_of_polygons(self.part_starts)
+
+    @cached_property
+    def inner_faces(self) -> np.ndarray:
+        """Faces inside a block of several parts, that nothing else can touch, (n_faces,) bool."""
+        return inner_edges(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
 
     @cached_property
     def parts(self) -> PartMeasures:

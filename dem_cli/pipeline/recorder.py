@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Recorder(Observer):
-    """Keeps what comes, says where the run stands, lets nothing interrupt a write."""
+    """The observer of a run: keeps what comes, says where the run stands, lets nothing interrupt a write."""
 
     def __init__(self, writer: ResultWriter, listener: RunListener, interrupts: Interrupts):
         self.writer, self.listener, self.interrupts = writer, listener, interrupts

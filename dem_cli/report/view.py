@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.geometry.rotation import across, matrices, unturned
+from dem_cli.geometry.rotation import beside, matrices, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
@@ -165,7 +165,7 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
     middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
     if alone.any():
         along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * frame_measures.size(model)
-        tangents = _tangents(contacts) * np.where(alone, along, 0.0)[:, np.newaxis]
+        tangents = beside(contacts.normals) * np.where(alone, along, 0.0)[:, np.newaxis]
         ends, middles = ends - tangents, middles + tangents
     first = contacts.blocks[:, 0]
     hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame)
@@ -176,16 +176,6 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
         "strokes": pack(strokes.reshape(-1, 6)),
         "states": pack(states, "u1"),
     }
-
-
-def _tangents(contacts: ContactRecord) -> np.ndarray:
-    """A direction in each contact plane, (n, d)."""
-    normals = contacts.normals
-    if normals.shape[1] == 2:
-        return across(normals)
-    helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
-    tangents = np.cross(normals, helper)
-    return tangents / np.linalg.norm(tangents, axis=1)[:, np.newaxis]
 
 
 def _forces(frame: Frame) -> dict[str, Any]:

@@ -25,7 +25,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
     external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
     released = max(external, 0.0) + max(-lifted, 0.0)
-    same = joints.edges.shape == sim.joints.edges.shape and bool((joints.edges == sim.joints.edges).all())
+    same = np.array_equal(held.geometry.faces, sim.geometry.faces)
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
     if sim.law.bonded:  # the ledger holds what bonds lost as well
         slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
@@ -37,15 +37,13 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     translates = turned < mechanism.turns * motion.max(initial=0.0)
     mode = "sliding" if translates else "rocking" if share < mechanism.rocking else "mixed"
     moving = np.flatnonzero(motion > mechanism.takes_part * motion.max(initial=0.0))
-    found = {"failure_mode": mode, "friction_share": share, "mechanism": {"moving_blocks": _names(sim, moving)}}
-    if same and len(joints.edges):
+    parts: dict[str, Any] = {"moving_blocks": _names(sim, moving)}
+    if same and len(joints.blocks):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
-            found["mechanism"][key] = _pairs(
-                sim, np.flatnonzero(values > mechanism.takes_part * motion.max(initial=0.0))
-            )
-    return found
+            parts[key] = _pairs(sim, np.flatnonzero(values > mechanism.takes_part * motion.max(initial=0.0)))
+    return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
 
 
 def _size(sim: Simulation) -> float:

@@ -46,7 +46,7 @@ def softness(
 
 def follow(
     sim: Simulation, track: Track, rate: float, failure: float, until: float, frames: int, budget: Budget
-) -> dict[str, float]:
+) -> dict[str, float | None]:
     """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
 
     failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is

@@ -99,7 +99,7 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),
     )  # fmt: skip
     report |= path.summary()
-    if path.load is None or path.load <= 0.0:
+    if path.load is None or path.load <= 0.0 or path.state is None:
         report["note"] = "no path; the load is raised from gravity"
         return None
     if path.status != OK:
@@ -110,7 +110,7 @@ def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[
     upto = path.highest + 1
     work = _work(path.loads[:upto], path.live_displacements[:upto])
     at_the_end = path.status == OK and path.highest >= len(path.loads) - warm_start.at_the_end
-    return WarmStart(PATH, path.load, path.normal, path.shear, path.gaps, path.displacements, work, at_the_end)
+    return WarmStart(PATH, path.load, *path.state, work, at_the_end)
 
 
 def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: dict[str, Any]) -> WarmStart | None:
@@ -125,7 +125,7 @@ def _by_limit_analysis(structure: Structure, job: Job, sim: Simulation, report: 
     most = limit_load(structure, friction)
     limits = LimitLoads(structure, friction, most, None, time.perf_counter() - begun, None)
     report |= {"load": safe.multiplier, "status": safe.status, "residual": safe.residual, "associated": most.multiplier}
-    if safe.status != OK or most.status != OK:
+    if safe.status != OK or safe.multiplier is None or most.status != OK:
         report["note"] = f"limit analysis: {safe.status}; the load is raised from gravity"
         return None
     still = np.zeros((structure.model.n_blocks, structure.n_dof))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +44,7 @@ def case_id(path: Path) -> str:
     return str(path.relative_to(CASES).with_suffix(""))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """Convex polygons and the bodies that they are parts of; everything else by body."""
 
@@ -58,16 +59,21 @@ class Scene:
 
     def limit(self, heads: bool = True) -> LimitLoad:
         """The associated failure load, with or without friction in joints steeper than 45°."""
-        friction = self.friction if heads else frictionless_heads(self.friction)
-        return limit_load(
-            self.polygons,
-            self.fixed,
-            friction,
-            weights=self.weights,
-            live=self.live,
-            dead=self.dead,
-            bodies=self.bodies,
-        )
+        return _limit(self, heads)
+
+
+@cache
+def _limit(scene: Scene, heads: bool) -> LimitLoad:
+    """Several tests ask for the same one."""
+    return limit_load(
+        scene.polygons,
+        scene.fixed,
+        scene.friction if heads else frictionless_heads(scene.friction),
+        weights=scene.weights,
+        live=scene.live,
+        dead=scene.dead,
+        bodies=scene.bodies,
+    )
 
 
 def blocks_of(tables: dict) -> list[tuple[str, tuple[np.ndarray, ...], str, float, bool]]:
@@ -97,6 +103,7 @@ def lower(block: tuple, by: float) -> tuple:
     return (block[0], (corners,), *block[2:])
 
 
+@cache
 def scene(path: Path) -> Scene:
     """The structure of a case file with its loads; its limit load needs one joint law for all (Coulomb)."""
     tables = read(path)

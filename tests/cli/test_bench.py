@@ -4,22 +4,33 @@ from __future__ import annotations
 
 import json
 
+import numba
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.bench import others, registry
+from dem_cli.bench import joints, others, registry, sweeps
+from dem_cli.bench.cases import KNOWN_STRUCTURES
 from dem_cli.cli import main as cli
 from dem_cli.cli.bench import command
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.kernels import jit
 
 
 def bench(*words: str):
     return CliRunner().invoke(cli.main, ["bench", *words])
 
 
+COMPILED = ("coulomb", "mohr-coulomb, 5 points", "coulomb, profile of 3 sides")  # of the joint models
+
+
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
+    """All groups; of the joint models, each of which is compiled twice, and of the runs of a sweep only some."""
     folder = tmp_path_factory.mktemp("bench")
-    done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(joints, "VARIANTS", {name: joints.VARIANTS[name] for name in COMPILED})
+        patch.setattr(sweeps, "FEW", 4)
+        done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
     assert done.exit_code == 0, done.output
     return folder, json.loads((folder / "all.json").read_text("utf-8"))["groups"]
 
@@ -32,6 +43,19 @@ def test_quick_measures_every_group(quick):
         for record in group["records"]:
             assert 0.0 < record["best"] <= record["median"], record
         assert {"cores", "processor", "numpy", "numba", "load"} <= set(group["machine"])
+
+
+@pytest.mark.parametrize("name", joints.VARIANTS)
+def test_joint_models_are_valid(name):
+    case, model = joints.with_joint(KNOWN_STRUCTURES[joints.QUICK_CASE], joints.VARIANTS[name], joints.OTHER).build()
+    assert set(case.joints) == {"dry", "other"}
+    assert law_of(case).bonded  # as the other joint is
+    joint_properties(case, model)
+
+
+def test_compiled_code_stays_in_its_folder(quick):
+    """Elsewhere it would not be told apart from that of older sources."""
+    assert str(jit.cache_folder()) == numba.config.CACHE_DIR
 
 
 def test_quick_answers_are_right(quick):

@@ -16,10 +16,11 @@ from dem_cli.assembly.assemble import assembly
 from dem_cli.case.schema import Case
 from dem_cli.engine.kinematics import live_scale
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, HistoryRow, Samples
+from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
 
 MU, DENSITY = 0.6, 2000.0
 
@@ -35,7 +36,7 @@ class Scene(NamedTuple):
 
 
 @dataclass
-class Records:
+class Records(Observer):
     """An observer that only remembers."""
 
     rows: list[HistoryRow] = field(default_factory=list)
@@ -59,9 +60,6 @@ class Records:
     def history(self) -> Samples:
         """The whole time history."""
         return Samples(*(np.concatenate(parts) for parts in zip(*self.stretches, strict=True)))
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        pass
 
 
 def rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:
@@ -102,10 +100,10 @@ def scene(case: dict | Path, *overrides: str) -> Scene:
     return Scene(loaded.case, assembly(loaded.case).model)
 
 
-def solve(case: dict | Path, *overrides: str) -> tuple[dict[str, Any], Records]:
+def solve(case: dict | Path, *overrides: str, settings: Settings = DEFAULT) -> tuple[dict[str, Any], Records]:
     """Summary of a run and what its observer saw."""
     made, records = scene(case, *overrides), Records()
-    return solver.solve(made.case, made.model, records).summary, records
+    return solver.solve(made.case, made.model, records, settings=settings).summary, records
 
 
 def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6) -> Simulation:
@@ -125,7 +123,7 @@ def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6)
 def steps(sim: Simulation, n: int, mode: int = slot.HOLD_LOAD, dt: float = 1.0) -> int:
     """Straight to the compiled loop, with a time step and without detection."""
     return compiled_advance(sim.kinematics, sim.law, sim.properties.profiled)(
-        n, mode, dt, sim.bodies, sim.shape, sim.joints, sim.contacts, sim.loads,
+        n, mode, dt, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
         sim.control, sim.ledger, sim.like, sim.like_rotation,
     )  # fmt: skip
 

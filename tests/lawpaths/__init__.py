@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.case.base import CaseModel
-from dem_cli.contact.assemble import empty_contacts
+from dem_cli.contact.joints import empty_contacts
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.jit import kernel
 from dem_cli.kernels.records import Joints
@@ -85,7 +85,7 @@ def through_loop(
     arrays = Joints(
         blocks=np.array([[0, 1 + i] for i in range(n)]), starts=np.arange(n + 1),
         frames=np.tile(np.eye(d).reshape(1, -1), (n, 1)), levers=np.zeros((n, 2 * d * len(like_rotation))),
-        points=np.zeros((n, d)), edges=np.zeros((n, 4), int), profile=np.zeros((0, 2)), scales=np.ones((n, 4)),
+        points=np.zeros((n, d)),
         kn=np.array([j.kn * j.area for j in joints]), ks=np.array([j.ks * j.area for j in joints]),
         law=np.stack([row(laws, j.law, j.columns, max(len(i.columns) for i in joints)) for j in joints]),
     )  # fmt: skip

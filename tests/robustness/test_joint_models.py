@@ -94,9 +94,9 @@ def test_same_seed_same_bytes():
     one, two, other = (simulation(c, "large") for c in (case, case, case | {"seed": 2}))
     for sim in (one, two):
         sim.advance(500, slot.HOLD_LOAD)
-    assert one.joints.profile.tobytes() == two.joints.profile.tobytes()
+    assert one.geometry.profile.tobytes() == two.geometry.profile.tobytes()
     assert one.bodies.positions.tobytes() == two.bodies.positions.tobytes()
-    assert one.joints.profile.tobytes() != other.joints.profile.tobytes()
+    assert one.geometry.profile.tobytes() != other.geometry.profile.tobytes()
 
 
 def test_at_rest_on_a_profile_nothing_drifts():

@@ -15,6 +15,7 @@ from dem_cli.analyses.time_history import run as repeated
 from dem_cli.ensembles import shaken_run
 from dem_cli.ensembles.batch import Batch
 from dem_cli.errors import SolverError
+from dem_cli.output.record import Observer
 
 BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rocking_pulse_falls.toml"
 EXACT = Block(0.5, 2.0)
@@ -23,23 +24,18 @@ GRID = [4.2, 4.3, 4.45, 8.0, 12.6, 13.2]  # of pulses [m/s2]; 12.6 is in the gap
 SMALL = ["analysis.duration=3.0", "analysis.coda=1.0"]
 
 
-class Kept:
+class Kept(Observer):
     """An observer that keeps the table of all runs."""
 
     def runs(self, rows):
         self.rows = rows
-
-    def frame(self, *_): ...
-    def row(self, *_): ...
-    def samples(self, *_): ...
-    def progress(self, *_): ...
 
 
 def study(*overrides, threads=1, kind="fragility", solve=run):
     """Summary and table of a study of the block of the case file under its pulse and others."""
     loaded = api.load_case(BLOCK, [f"analysis.kind={kind}", *overrides])
     kept = Kept()
-    summary = solve(loaded.case, api.build_model(loaded), kept, Batch(threads)).summary
+    summary = solve(loaded.case, api.build_model(loaded), kept, batch=Batch(threads)).summary
     return summary, kept.rows
 
 
@@ -94,7 +90,7 @@ def test_a_block_that_is_falling_when_the_motion_ends_has_fallen():
     short = loaded.case.analysis.model_copy(update={"duration": None})
     case = loaded.case.model_copy(update={"analysis": short})
     kept = Kept()
-    assert run(case, api.build_model(loaded), kept, Batch()).summary["collapse_intensities"] == [4.45]
+    assert run(case, api.build_model(loaded), kept, batch=Batch()).summary["collapse_intensities"] == [4.45]
     assert kept.rows[0].time > 1.0 / FREQUENCY
 
 

@@ -7,19 +7,14 @@ from casefiles import CASES
 
 from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.output.record import Observer
 
 
-class ImpatientObserver:
+class ImpatientObserver(Observer):
     """Presses Ctrl-C at the third report of a stage."""
 
     def __init__(self, stage: str):
         self.stage, self.reports = stage, 0
-
-    def frame(self, frame):
-        pass
-
-    def row(self, row):
-        pass
 
     def progress(self, stage, load, displacement, fraction):
         self.reports += stage == self.stage

@@ -68,7 +68,7 @@ def settled(*stones: dict):
     assert stand(sim, Budget(10**6)).state == "equilibrium"
     loop = make_planar_forces(sim.law.function)
     sim.bodies.velocities[:] = 0.0
-    loop(sim.joints, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
+    loop(sim.joints, sim.geometry, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
     return sim, loop
 
 
@@ -89,7 +89,7 @@ def test_geometric_stiffness_is_that_of_the_contact_loop(name, error):
         else:
             sim.bodies.orientations[number, 0] += motion
         sim.bodies.corners[:] = world_corners(sim.shape, sim.bodies.positions, sim.bodies.orientations)
-        loop(sim.joints, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
+        loop(sim.joints, sim.geometry, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
         return sim.bodies.forces.ravel()[free].copy()
 
     found = np.column_stack([(forces(dof, -small) - forces(dof, small)) / (2 * small) for dof in free])

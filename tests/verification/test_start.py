@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +10,15 @@ import pytest
 from engine import solve
 
 from dem_cli.analyses import pushover
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.statics import warm_start
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 QUICK = "analysis.follow=0.0"
 
 
-def run(name: str, *overrides: str) -> dict:
-    return solve(CASES / f"{name}.toml", QUICK, *overrides)[0]
+def run(name: str, *overrides: str, settings: Settings = DEFAULT) -> dict:
+    return solve(CASES / f"{name}.toml", QUICK, *overrides, settings=settings)[0]
 
 
 @pytest.mark.parametrize("name", ["wall_21", "wall_21_mu075", "wall_2", "column_14", "arch_21_mu040", "portal"])
@@ -98,9 +100,10 @@ def test_limit_analysis_beside_the_failure_load():
     assert summary["failure_load"] == pytest.approx(limits["non_associated"], rel=5e-3)
 
 
-def test_a_failure_load_above_the_bound_is_not_trusted(monkeypatch):
-    monkeypatch.setattr(pushover, "ABOVE", -0.1)
-    assert any("do not trust this run" in text for text in run("wall_21", "analysis.limit=true")["warnings"])
+def test_a_failure_load_above_the_bound_is_not_trusted():
+    settings = replace(DEFAULT, doubts=replace(DEFAULT.doubts, above=-0.1))
+    warnings = run("wall_21", "analysis.limit=true", settings=settings)["warnings"]
+    assert any("do not trust this run" in text for text in warnings)
 
 
 def test_a_path_whose_load_drops_is_no_start():

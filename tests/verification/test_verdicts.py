@@ -14,8 +14,8 @@ from engine import block, moved, rectangle, simulation, solve, tables
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.kernels import records as slot
+from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import settle_or_fail, stand
-from dem_cli.statics.failure_load import compliance
 
 VERIFICATION = CASES / "verification"
 QUIET = ("analysis.follow=0.0", "output.frames=0")

@@ -123,7 +123,7 @@ def test_thousands_of_blocks_are_read_quickly(case_file):
         f'[[block]]\nid = "b{i}"\nvertices = [[{i}, 0], [{i + 1}, 0], [{i + 1}, 1], [{i}, 1]]\nfixed = true\n'
         for i in range(3000)
     )
-    start = time.perf_counter()
+    start = time.process_time()
     case = load_case(case_file(WALL + blocks)).case
     assert len(case.block) == 3000
-    assert time.perf_counter() - start < 3.0
+    assert time.process_time() - start < 3.0

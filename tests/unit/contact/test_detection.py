@@ -8,7 +8,9 @@ from engine import block, rectangle, running_wall, scene, simulation, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.detect import Faces, block_shape, find_joints, inner_edges, world_corners
+from dem_cli.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.contact.edges import edges_of
+from dem_cli.contact.joints import Faces
 from dem_cli.model.model import Model
 
 REACH = 0.05
@@ -102,8 +104,9 @@ def test_order_of_the_blocks_does_not_matter(seed, n):
     order = rng.permutation(n)
 
     def edges(shapes):
-        corners, faces = np.concatenate(shapes), faces_of(model_of(shapes))
-        ends = corners[faces.edges].round(9)
+        corners, model = np.concatenate(shapes), model_of(shapes)
+        faces = faces_of(model)
+        ends = corners[edges_of(model, faces)].round(9)
         keys = [frozenset((e[:2].tobytes(), e[2:].tobytes())) for e in ends]
         return dict(zip(keys, faces.separation))
 
@@ -257,7 +260,7 @@ def test_an_edge_that_is_covered_in_part_is_a_face():
     ell = {"id": "ell", "parts": [rectangle(0, 0, 1, 3), rectangle(1, 0, 2, 1)], "fixed": True}
     case = tables(ell, block("b", rectangle(1, 1, 2, 2)))
     model = scene(case).model
-    assert inner_edges(model).sum() == 1  # the left side of the foot
+    assert model.inner_faces.sum() == 1  # the left side of the foot
     assert len(simulation(case).joints.blocks) == 2
 
 
@@ -266,7 +269,7 @@ def test_pieces_that_cover_an_edge_together():
     block_of_three = {"id": "b", "parts": [rectangle(0, 0, 2, 1), rectangle(0, 1, 1, 2), rectangle(1, 1, 2, 2)]}
     ground = block("ground", rectangle(-1, -1, 3, 0), fixed=True)
     model = scene(tables(ground, block_of_three)).model
-    assert inner_edges(model).sum() == 1 + 2 + 2
+    assert model.inner_faces.sum() == 1 + 2 + 2
 
 
 def test_a_corner_on_a_face_is_a_joint_of_the_start():

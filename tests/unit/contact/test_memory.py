@@ -29,7 +29,7 @@ def settled(sim: Simulation, load: float = 0.0) -> Simulation:
 def memory(sim: Simulation) -> dict[tuple, tuple]:
     """What each loaded point carries, by its joint's edges and its end."""
     rows = {}
-    for j, edges in enumerate(sim.joints.edges[:, [0, 2]].tolist()):
+    for j, edges in enumerate(sim.geometry.faces.tolist()):
         for end in (0, 1):
             p = 2 * j + end
             if sim.contacts.normal[p] > 0:
@@ -110,7 +110,7 @@ def test_corner_turns_over_to_its_other_edge():
     for _ in range(360):
         sim.advance(1000, slot.CREEP)
         (loaded,) = np.flatnonzero(sim.contacts.normal > 0)
-        edges.add(tuple(sim.joints.edges[loaded // 2].tolist()))
+        edges.add(tuple(sim.geometry.edges[loaded // 2].tolist()))
         assert sim.bodies.corners[pivot] == pytest.approx(corner, abs=1e-3)
         carried.append(sim.contacts.normal[loaded] / W)
     assert -sim.bodies.orientations[1, 0] > np.radians(60)

@@ -135,7 +135,7 @@ def test_stiffness_is_that_of_the_contact_loop():
         sim.bodies.forces[:] = 0.0
         if dof is not None:
             sim.bodies.velocities.ravel()[dof] = small
-        loop(sim.joints, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
+        loop(sim.joints, sim.geometry, sim.contacts, sim.bodies, 1.0, sim.like, sim.like_rotation)
         return sim.bodies.forces.ravel()[free].copy()
 
     before = forces(None)

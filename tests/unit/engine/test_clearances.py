@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from oracle import rolling_polygons as statics
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.engine.clearances import beyond, gap_play, joint_angles, open_gaps, play
+from dem_cli.contact.edges import edges_of
+from dem_cli.contact.planar import microrotations
+from dem_cli.engine.clearances import beyond, gap_play, open_gaps, play
 from dem_cli.engine.settings import DEFAULT
 
 CLEARANCE = DEFAULT.clearance
@@ -82,7 +84,8 @@ def test_every_block_of_a_wall_has_play_by_its_nearest_support():
     assert sim.play.moved[names.index("base")] == sim.play.turned[names.index("base")] == 0.0
     assert all(max(low) < min(high) for low, high in zip(courses, courses[1:]))
     own = (sim.joints.blocks == [names.index("base"), names.index("b0-1")]).all(axis=1)
-    assert sim.play.turned[names.index("b0-1")] == pytest.approx(CLEARANCE.margin * joint_angles(sim.joints)[own][0])
+    angles = microrotations(sim.joints, sim.geometry)[own]
+    assert sim.play.turned[names.index("b0-1")] == pytest.approx(CLEARANCE.margin * angles[0])
 
 
 def test_plane_closed_joints_have_none():
@@ -98,7 +101,7 @@ def test_what_touches_nothing_has_none():
     stones = [block(name, rectangle(x, y, x + 1, y + 1)) for name, x, y in (("low", 0, 0), ("flying", 5, 5))]
     base = block("base", rectangle(-1, -1, 2, 0), fixed=True)
     sim = simulation(tables(base, *stones, joints={"dry": {"friction": 0.6, "profile": profile}}), "large")
-    found = play(sim.model, sim.joints, sim.bodies.positions)
+    found = play(sim.model, sim.joints, sim.geometry, sim.bodies.positions)
     moved = dict(zip(sim.model.block_ids, found.moved.tolist()))
     assert moved["base"] == moved["flying"] == 0.0
     assert moved["low"] > 0.0
@@ -117,7 +120,7 @@ def test_beyond_play():
 def gap_of(*blocks: dict, reach: float = 0.25) -> float:
     sim = simulation(tables(*blocks), "large")
     faces = find_joints(sim.model, sim.bodies.corners, reach)
-    return float(open_gaps(sim.bodies.corners, faces.edges).max(initial=0.0))
+    return float(open_gaps(sim.bodies.corners, edges_of(sim.model, faces)).max(initial=0.0))
 
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
-from dem_cli.contact.assemble import LIKE, LIKE_ROTATION
 from dem_cli.engine.simulation import Simulation, compiled_advance
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.jit import kernel
 from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.registry import LAWS
 
+LIKE = {2: (0.0,) * 2, 3: (0.0,) * 3}
+LIKE_ROTATION = {2: (0.0,), 3: (0.0,) * 3}
 PLANAR = [0, 1, 5]  # where x, y and the angle stand in space
 
 
@@ -87,7 +88,7 @@ def test_planar_twin_of_the_loop(kinematics):
     states = sim.contacts.normal > 0
     assert states.any()
     assert not states.all()
-    loop = numba.njit(error_model="numpy")(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
+    loop = kernel(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
     rng, work = np.random.default_rng(3), []
     for _ in range(5):
         kick = rng.normal(size=sim.bodies.velocities.shape) * 1e-6
@@ -118,11 +119,11 @@ def test_planar_twin_of_a_run(mode):
     other, control, ledger = twin(sim), sim.control.copy(), sim.ledger.copy()
     run = compiled_advance("fixed", sim.law)
     run(
-        1000, mode, 1.0, sim.bodies, sim.shape, sim.joints, sim.contacts, sim.loads,
+        1000, mode, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
         sim.control, sim.ledger, LIKE[2], LIKE_ROTATION[2],
     )  # fmt: skip
     run(
-        1000, mode, 1.0, other.bodies, sim.shape, other.joints, other.contacts, other.loads,
+        1000, mode, 1.0, other.bodies, sim.shape, other.joints, sim.geometry, other.contacts, other.loads,
         control, ledger, LIKE[3], LIKE_ROTATION[3],
     )  # fmt: skip
     assert np.array_equal(other.bodies.velocities[:, PLANAR], sim.bodies.velocities)

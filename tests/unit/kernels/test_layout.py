@@ -14,7 +14,7 @@ NAMES = ("wall_21", "sliding_block", "arch_21", "tilted_block")
 def test_arrays_are_contiguous(name, kinematics):
     sim = simulation(CASES / "verification" / f"{name}.toml", kinematics)
     for _ in range(2):
-        for record in (sim.bodies, sim.shape, sim.joints, sim.contacts, sim.loads):
+        for record in (sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads):
             for field, array in zip(record._fields, record, strict=True):
                 assert array.flags.c_contiguous, field
                 assert array.dtype.name in ("float64", "int64", "int8"), field

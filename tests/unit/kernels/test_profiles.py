@@ -53,10 +53,10 @@ def stored(sim, x: float, y: float, angle: float) -> float:
 
 def vertices(sim) -> np.ndarray:
     """World coordinates of the chain on block b, from its right end to its left, (n, 2)."""
-    _, _, b0, b1 = sim.bodies.corners[sim.joints.edges[0]]
+    _, _, b0, b1 = sim.bodies.corners[sim.geometry.edges[0]]
     along = (b0 - b1) / np.hypot(*(b0 - b1))
     into_b = np.array([along[1], -along[0]])
-    return b1 + sim.joints.profile[:, :1] * along + sim.joints.profile[:, 1:] * into_b
+    return b1 + sim.geometry.profile[:, :1] * along + sim.geometry.profile[:, 1:] * into_b
 
 
 small = st.floats(-2e-3, 2e-3)
@@ -109,8 +109,8 @@ def test_a_chain_without_rise_is_a_plane_joint():
     for sim in sims:
         sim.set_load(0.3)
         sim.advance(2000, slot.HOLD_LOAD)
-    assert len(sims[1].joints.profile) == 2
-    assert not len(sims[0].joints.profile)
+    assert len(sims[1].geometry.profile) == 2
+    assert not len(sims[0].geometry.profile)
     for field in ("positions", "orientations", "velocities"):
         one, other = (getattr(sim.bodies, field) for sim in sims)
         assert one == pytest.approx(other, abs=1e-12)
@@ -137,15 +137,15 @@ def test_points_of_all_joints_are_carried_over():
     sim = simulation(table, "large")
     sim.set_load(0.1)
     sim.advance(3000, slot.HOLD_LOAD)
-    old, contacts = sim.joints, sim.contacts
-    before = {tuple(e): (old.starts[j], old.starts[j + 1]) for j, e in enumerate(old.edges.tolist())}
+    old, geometry, contacts = sim.joints, sim.geometry, sim.contacts
+    before = {tuple(e): (old.starts[j], old.starts[j + 1]) for j, e in enumerate(geometry.edges.tolist())}
     sim.detect()
     assert sum(end - start > 2 for start, end in before.values()) >= 1
-    for j, edges in enumerate(sim.joints.edges.tolist()):
+    for j, edges in enumerate(sim.geometry.edges.tolist()):
         first, last = before[tuple(edges)]
         mine = slice(sim.joints.starts[j], sim.joints.starts[j + 1])
         for now, then in (
-            (sim.joints.profile, old.profile), (sim.joints.kn, old.kn), (sim.contacts.normal, contacts.normal),
+            (sim.geometry.profile, geometry.profile), (sim.joints.kn, old.kn), (sim.contacts.normal, contacts.normal),
             (sim.contacts.shear, contacts.shear),
         ):  # fmt: skip
             np.testing.assert_array_equal(now[mine], then[first:last])
@@ -156,7 +156,7 @@ def test_another_block_changes_no_profile():
     profile = {"sides": [3, 7], "aperture": [1e-3, 1e-2]}
     alone, joined = stacked(profile=profile), stacked(profile=profile)
     joined["block"].insert(0, block("far", rectangle(-9.0, -9.0, -8.0, -8.5), fixed=True))
-    one, other = (simulation(case, "large").joints for case in (alone, joined))
+    one, other = (simulation(case, "large").geometry for case in (alone, joined))
     assert len(one.profile) >= 4
     np.testing.assert_array_equal(one.profile, other.profile)
 

@@ -21,7 +21,7 @@ def structure(case):
     made = scene(case)
     model = made.model
     properties = joint_properties(made.case, model)
-    joints, _ = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
+    joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
     return structure_of(model, joints)
 
 

@@ -12,8 +12,8 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.measures import free_falls
 from dem_cli.kernels import records as slot
 from dem_cli.model.scales import depth
+from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
-from dem_cli.statics.failure_load import compliance
 from dem_cli.statics.failure_test import FailureTest, displaced
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)

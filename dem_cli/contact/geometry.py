@@ -1,0 +1,82 @@
+"""Geometry of contact by dimension: the one place that knows which narrow phase belongs to which.
+
+A narrow phase finds the faces that meet, makes contact points between them and places these where the blocks are.
+Everything else in the package asks for it by `geometry_of` and does not know how many dimensions there are.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from dem_cli.contact import planar
+from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.errors import UsageError
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints
+from dem_cli.model.model import Model
+
+
+class JointGeometry(Protocol):
+    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
+
+    @property
+    def faces(self) -> np.ndarray:
+        """The two faces of each joint, (n_joints, 2): with the features, the key of a contact point."""
+
+    @property
+    def features(self) -> np.ndarray:
+        """What each point is within its joint, (n_points,)."""
+
+    def kept(self) -> Any:
+        """The same with a copy of what changes."""
+
+
+class NarrowPhase(Protocol):
+    """The contract of a module like contact/planar.py."""
+
+    def find(self, model: Model, corners: np.ndarray, reach: float) -> Faces:
+        """All pairs of faces of different blocks that are closer than `reach` [m]."""
+
+    def points(
+        self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Any = None
+    ) -> tuple[Joints, Any]:
+        """Joints between faces with their stiffness, and their geometry; not yet placed."""
+
+    def place(self, joints: Joints, geometry: Any, contacts: Contacts, bodies: Bodies) -> None:
+        """Gaps, frames, levers and points where the blocks are now."""
+
+    def corners_of(self, shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+        """Corners of all parts in place [m], (n_vertices, d)."""
+
+    def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
+        """Of faces that are near each other, those that can carry force between blocks that do not move."""
+
+    def level(self, joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
+        """Gives all points of each joint one frame."""
+
+    def chains_of(self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Any:
+        """What of the joints of the start comes back wherever the same faces meet again; None: nothing."""
+
+    def take_over(self, old: Any, new: Any, match: np.ndarray) -> None:
+        """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
+
+    def microrotations(self, joints: Joints, geometry: Any) -> np.ndarray:
+        """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""
+
+    def corner_shares(self, joints: Joints, geometry: Any, corners: np.ndarray) -> np.ndarray:
+        """1: a point is a corner of b on the face of a; 0: the other way round; between: both, (n_points,)."""
+
+    def sink(self, geometry: Any, joint: int, depth: float) -> None:
+        """A joint that takes over from another one starts from its penetration [m]."""
+
+
+GEOMETRY: dict[int, NarrowPhase] = {2: planar}
+
+
+def geometry_of(dimension: int) -> NarrowPhase:
+    """The narrow phase for blocks in so many dimensions. Raises UsageError where there is none."""
+    if dimension not in GEOMETRY:
+        known = " or ".join(map(str, sorted(GEOMETRY)))
+        raise UsageError(f"blocks in {dimension} dimensions cannot touch: contact is known in {known} dimensions")
+    return GEOMETRY[dimension]

@@ -1,0 +1,88 @@
+"""Joints as arrays, before and after their geometry is known: properties, pairs of faces, stiffness, empty contacts."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.layout import PointLayout
+from dem_cli.kernels.records import Contacts, Joints
+from dem_cli.model.model import Model
+
+
+class Faces(NamedTuple):
+    """Pairs of faces of convex parts that touch or may touch, ordered by parts."""
+
+    parts: np.ndarray  # the two parts a < b, (n, 2) int64
+    faces: np.ndarray  # the two faces, as Model.topology numbers them, (n, 2) int64
+    separation: np.ndarray  # distance along the best separating axis [m], negative: overlap, (n,)
+
+    def where(self, kept: np.ndarray) -> Faces:
+        """Those of a mask (n,) bool."""
+        return Faces(*(field[kept] for field in self))
+
+
+class JointProperties(NamedTuple):
+    """Properties of each named joint, by its number."""
+
+    names: tuple[str, ...]
+    by_material: np.ndarray  # joint of each pair of materials, (n_materials, n_materials) int64
+    kn: np.ndarray  # [Pa/m], (n_named,)
+    ks: np.ndarray  # [Pa/m], (n_named,)
+    law: np.ndarray  # parameters of the law, (n_named, n_parameters)
+    intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
+    layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
+
+    @property
+    def profiled(self) -> bool:
+        """Whether any joint has points elsewhere than at its two ends."""
+        return any(layout is not None for layout in self.layouts)
+
+    def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """The named joint of each pair of blocks (n, 2), (n,) int64."""
+        materials = model.block_material[blocks]
+        return self.by_material[materials[:, 0], materials[:, 1]]
+
+
+def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:
+    """Contacts that carry nothing."""
+    return Contacts(
+        gaps=np.zeros(n_points),
+        shear=np.zeros((n_points, dimension - 1)),
+        normal=np.zeros(n_points),
+        slip=np.zeros(n_points),
+        memory=np.zeros((n_points, n_memory)),
+        stale=np.zeros(n_joints + 1, np.int8),
+    )
+
+
+def joints_of(
+    model: Model, faces: Faces, properties: JointProperties, starts: np.ndarray, areas: np.ndarray, shares: np.ndarray
+) -> Joints:
+    """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
+
+    starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
+    belong to each point, (n_points,).
+    """
+    d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
+    blocks = model.part_blocks[faces.parts]
+    named = properties.between(model, blocks)
+    owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
+    return Joints(
+        blocks=blocks,
+        starts=starts,
+        frames=np.zeros((n_points, d * d)),
+        levers=np.zeros((n_points, 2 * d * r)),
+        points=np.zeros((n_points, d)),
+        kn=(properties.kn[named] * areas)[owners] * shares,
+        ks=(properties.ks[named] * areas)[owners] * shares,
+        law=np.ascontiguousarray(properties.law[named]),
+    )
+
+
+def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
+    """All points of these joints, joint by joint."""
+    counts = starts[joints + 1] - starts[joints]
+    before = np.concatenate([[0], np.cumsum(counts)])[:-1]
+    return np.repeat(starts[joints] - before, counts) + np.arange(counts.sum())

@@ -1,0 +1,62 @@
+"""Memory of contact points across a detection, carried by key: (face of a, face of b, feature)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.contact.assemble import JointArrays
+from dem_cli.contact.geometry import NarrowPhase
+from dem_cli.contact.joints import points_of
+from dem_cli.contact.keys import same_rows
+
+
+def carry_memory(narrow: NarrowPhase, old: JointArrays, new: JointArrays) -> None:
+    """Gives the points of `new` what the same points of `old` remember, and their stiffness.
+
+    A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
+    that is nearest takes over.
+    """
+    points = same_rows(point_keys(old), point_keys(new))
+    target = np.flatnonzero(points >= 0)
+    _copy(old, new, target, points[target])
+    match = same_rows(old.geometry.faces, new.geometry.faces)
+    narrow.take_over(old.geometry, new.geometry, match)
+    orphans = np.setdiff1d(np.flatnonzero(_loaded(old)), match[match >= 0])
+    newborn = np.flatnonzero(match < 0)
+    if len(orphans) and len(newborn):
+        _adopt(narrow, old, new, orphans, newborn)
+
+
+def point_keys(of: JointArrays) -> np.ndarray:
+    """Face of a, face of b and feature of every point, (n_points, 3) int64."""
+    return np.column_stack([of.geometry.faces[of.joints.owners], of.geometry.features])
+
+
+def _loaded(of: JointArrays) -> np.ndarray:
+    if not len(of.joints.blocks):
+        return np.zeros(0, bool)
+    return np.maximum.reduceat(np.abs(of.contacts.normal), of.joints.starts[:-1]) > 0.0
+
+
+def _copy(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+    for name in ("shear", "normal", "slip", "memory"):
+        getattr(new.contacts, name)[target] = getattr(old.contacts, name)[source]
+    new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
+
+
+def _adopt(narrow: NarrowPhase, old: JointArrays, new: JointArrays, orphans: np.ndarray, newborn: np.ndarray) -> None:
+    """Memory of loaded joints whose faces changed goes to the nearest point of a new joint of the same blocks."""
+    joints, contacts, memory = new.joints, new.contacts, old.contacts
+    for i in orphans:
+        heirs = np.array([j for j in newborn if (joints.blocks[j] == old.joints.blocks[i]).all()], int)
+        if not len(heirs):
+            continue
+        candidates = points_of(joints.starts, heirs)
+        for source in range(old.joints.starts[i], old.joints.starts[i + 1]):
+            if memory.normal[source] != 0.0:
+                distance = ((joints.points[candidates] - old.joints.points[source]) ** 2).sum(axis=1)
+                heir = candidates[[distance.argmin()]]
+                _copy(old, new, heir, np.array([source]))
+                deeper = max(-contacts.gaps[heir[0]] - memory.normal[source] / old.joints.kn[source], 0.0)
+                joint = int(np.searchsorted(joints.starts, heir[0], side="right")) - 1
+                narrow.sink(new.geometry, joint, deeper)

@@ -1,0 +1,165 @@
+"""Narrow phase in the plane: edges of convex polygons that face each other, the contact points between them, and where
+these are when the blocks move. One of the modules of contact/geometry.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.contact.chains import Chains, come_back, made_chains
+from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
+from dem_cli.contact.joints import Faces, JointProperties, joints_of
+from dem_cli.geometry.rotation import cross
+from dem_cli.kernels.neighbours import find_pairs, place_corners
+from dem_cli.kernels.planar_geometry import BLEND, measure
+from dem_cli.kernels.planar_profiles import measure_profiles
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, PlanarGeometry
+from dem_cli.model.model import Model
+
+PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
+
+
+def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
+    """All pairs of faces of different blocks that are closer than `reach` [m].
+
+    corners: world coordinates of all corners [m], (n_vertices, 2). Two fixed blocks have no joint. Two convex parts
+    have one, and more where they meet corner to corner: those that may come to touch next.
+    """
+    starts, inner = model.part_starts, model.inner_faces
+    low = np.minimum.reduceat(corners, starts[:-1], axis=0)
+    high = np.maximum.reduceat(corners, starts[:-1], axis=0)
+    boxes = np.ascontiguousarray(np.column_stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]]))
+    order = np.argsort(boxes[:, 0], kind="stable")
+    capacity = 8 * model.n_parts + 16
+    while True:
+        parts = np.empty((capacity, 2), np.int64)
+        edges = np.empty((capacity, 2), np.int64)
+        separation = np.empty(capacity)
+        n = find_pairs(order, boxes, corners, starts, model.part_blocks, model.fixed, reach, parts, edges, separation)
+        if n <= capacity:
+            break
+        capacity = n
+    # Where a piece touches another block with an inner edge only, it is at a corner that another piece has too.
+    by_part = np.lexsort((edges[:n, 1], edges[:n, 0], parts[:n, 1], parts[:n, 0]))
+    by_part = by_part[~inner[edges[by_part]].any(axis=1)]
+    return Faces(parts[by_part], edges[by_part], separation[by_part])  # an edge starts at the corner of its number
+
+
+def points(
+    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Chains | None = None
+) -> tuple[Joints, PlanarGeometry]:
+    """Joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
+
+    chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
+    """
+    n, edges = len(faces.parts), edges_of(model, faces)
+    lengths = lengths_of(edges, corners)
+    shortest = lengths.min(axis=1, initial=np.inf)
+    overlap = np.clip(overlap_lengths(edges, corners), 0.1 * shortest, shortest)
+    areas = overlap * model.thickness[model.part_blocks[faces.parts]].min(axis=1, initial=np.inf)
+    starts, profile, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
+    if properties.profiled:
+        chains = made_chains(model, faces, corners, properties) if chains is None else chains
+        starts, profile, shares = come_back(chains, faces, edges, corners)
+    joints = joints_of(model, faces, properties, starts, areas, shares)
+    scales = [lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest), _cotangents(model)[edges]]
+    geometry = PlanarGeometry(
+        faces=faces.faces,
+        features=np.arange(len(joints.kn)) - starts[joints.owners],
+        edges=edges,
+        scales=np.ascontiguousarray(np.column_stack(scales)),
+        profile=profile,
+        sunk=np.zeros(n),
+    )
+    return joints, geometry
+
+
+def place(joints: Joints, geometry: PlanarGeometry, contacts: Contacts, bodies: Bodies) -> None:
+    """Gaps of all contacts, frames, levers and points of all joints, where the blocks are now; compiled."""
+    (measure_profiles if len(geometry.profile) else measure)(joints, geometry, contacts, bodies)
+
+
+def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
+    """Those that share a length; faces that meet corner to corner cannot carry force, to first order. reach: [m]."""
+    edges = edges_of(model, faces)
+    return faces.where((overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach))
+
+
+def level(joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
+    """Gives all points of each joint one frame, that of its closer end; positions: of the blocks [m], (n_blocks, 2)."""
+    first, last = joints.starts[:-1], joints.starts[1:] - 1
+    source = np.where(contacts.gaps[last] < contacts.gaps[first], last, first)
+    joints.frames[:] = joints.frames[source][joints.owners]
+    normals = joints.frames[:, :2]
+    for side in (0, 1):
+        arms = joints.points - positions[joints.blocks[joints.owners, side]]
+        joints.levers[:, 2 * side] = cross(arms, normals)
+        joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
+
+
+def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
+    """Edges under an angle that meet with an end each, closer than `reach` [m], (n,) bool; 2D."""
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    a, b = ((end - start) / np.hypot(*(end - start).T)[:, None] for start, end in ((a0, a1), (b0, b1)))
+    angled = np.abs(cross(a, b)) > PARALLEL
+    apart = np.minimum(np.hypot(*(a0 - b1).T), np.hypot(*(a1 - b0).T))
+    return angled & (apart <= reach)
+
+
+def _cotangents(model: Model) -> np.ndarray:
+    """Cotangent of the inner angle at each corner, (n_vertices,)."""
+    first, after = model.topology.ends.T
+    leaving = model.vertices[after] - model.vertices[first]
+    arriving = np.empty_like(leaving)
+    arriving[after] = leaving
+    turn = cross(arriving, leaving)
+    size = np.sqrt((arriving**2).sum(axis=1) * (leaving**2).sum(axis=1))
+    return -(arriving * leaving).sum(axis=1) / np.maximum(turn, 1e-9 * size)
+
+
+def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+    """Corners of all parts in place [m], (n_vertices, 2)."""
+    corners = np.empty_like(shape.corner_arms)
+    place_corners(positions, orientations, shape.corner_blocks, shape.corner_arms, corners)
+    return corners
+
+
+def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Chains | None:
+    """Points that come back wherever the same faces meet again; None: all joints have two points, at their ends."""
+    return made_chains(model, faces, corners, properties) if properties.profiled else None
+
+
+def take_over(old: PlanarGeometry, new: PlanarGeometry, match: np.ndarray) -> None:
+    """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
+    known = np.flatnonzero(match >= 0)
+    new.sunk[:] = np.inf
+    new.sunk[known] = old.sunk[match[known]]
+
+
+def sink(geometry: PlanarGeometry, joint: int, depth: float) -> None:
+    """A joint counts its gaps from at most this depth [m]: the recess of a profile, which is no reason to push."""
+    geometry.sunk[joint] = min(geometry.sunk[joint], depth)
+
+
+def microrotations(joints: Joints, geometry: PlanarGeometry) -> np.ndarray:
+    """Largest microrotation of each joint from the side that it rests on at the start [rad], (n_joints,)."""
+    angles, profile = np.zeros(len(joints.blocks)), geometry.profile
+    if not len(profile):
+        return angles
+    sides = np.diff(profile, axis=0)
+    inner = np.ones(len(sides), bool)
+    inner[joints.starts[1:-1] - 1] = False  # from the last point of a joint to the first of the next
+    np.maximum.at(angles, joints.owners[:-1][inner], np.abs(sides[inner, 1] / sides[inner, 0]))
+    return angles
+
+
+def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:
+    """1: a corner of b on the edge of a; 0: one of a on the edge of b; between: both corners meet, (n_points,)."""
+    a0, a1, b0, b1 = (corners[geometry.edges[:, i]] for i in range(4))
+    along = (a1 - a0) * geometry.scales[:, [1]]
+    low = ((b1 - a0) * along).sum(axis=1)
+    high = geometry.scales[:, 0] - ((b0 - a0) * along).sum(axis=1)
+    found = np.ones(len(joints.kn))
+    for inside, ends in ((low, joints.starts[:-1]), (high, joints.starts[1:] - 1)):
+        found[ends] = np.clip(0.5 + inside * geometry.scales[:, 3], 0.0, 1.0)
+    return found

@@ -1,0 +1,51 @@
+"""Compliance of a structure at rest: how far a small live load moves it, and in which units that counts as elastic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.engine import measures
+from dem_cli.statics.equilibrium import relax
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+
+
+def compliance(sim: Simulation) -> tuple[float, float]:
+    """q·u [J] and largest displacement [m] per unit of multiplier for small loads; the state is left as it was.
+
+    Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
+    """
+    load_search = sim.settings.load_search
+    before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
+    load, value, largest = load_search.probe_in_play if sim.play.moved.any() else load_search.probe, 0.0, 0.0
+    for _ in range(4):
+        verdict = relax(sim, load, sim.settings.relaxation.tolerance, 20_000)
+        value = (measures.live_displacement(sim) - before) / load
+        largest = float(np.abs(sim.places() - places).max()) / load
+        sim.restore(saved)
+        if verdict.state == "equilibrium":
+            break
+        load /= 10.0
+    return _compliance_in_play(sim, (value, largest)) if sim.play.moved.any() else (value, largest)
+
+
+def _compliance_in_play(sim: Simulation, first: tuple[float, float]) -> tuple[float, float]:
+    """The same where any load may roll blocks over sides of a profile: the step of it that moves them least."""
+    load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
+    saved, found, load = sim.save(), first, load_search.probe_in_play
+    for _ in range(load_search.doublings):
+        if relax(sim, load, relaxation.tolerance, 20_000).state != "equilibrium":
+            break
+        before, places = measures.live_displacement(sim), sim.places()
+        if relax(sim, 2.0 * load, relaxation.tolerance, 20_000).state != "equilibrium":
+            break
+        value = (measures.live_displacement(sim) - before) / load
+        largest = float(np.abs(sim.places() - places).max()) / load
+        if value > 0.0 and largest < found[1]:
+            found = value, largest
+        load *= 2.0
+    sim.restore(saved)
+    return found
