@@ -71,8 +71,8 @@ def _load_numba_without_blas() -> None:
 
 
 CACHE = str(cache_folder())
-# Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on keep
-# compiled code beside the sources, where nothing tells old code from new.
+# Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on
+# keep compiled code beside the sources, where nothing tells old code from new.
 vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
 _load_numba_without_blas()
 
