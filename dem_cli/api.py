@@ -58,7 +58,7 @@ def build_model(loaded: LoadedCase) -> Model:
     with loaded.located():
         made = assembly(loaded.case)
         if loaded.case.motion:
-            from dem_cli.motion.build import check
+            from dem_cli.motion.ground_motions import check
 
             found_odd += map(loaded.render, check(loaded.case))
     found = validate.problems(loaded.case, made.model, made.blocks)

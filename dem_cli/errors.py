@@ -1,4 +1,4 @@
-"""Everything that `dem` raises on purpose.
+"""Exceptions of `dem`, everything that it raises on purpose.
 
 DemError
 ├── CaseError        exit 2   the case file or an override is wrong (all problems at once)
@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
+BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 KeyPath = tuple[str | int, ...]
 
 
@@ -72,7 +72,7 @@ def dotted(path: KeyPath) -> str:
 
     A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
     """
-    return ".".join(str(key) if BARE.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path)
+    return ".".join(str(key) if BARE_KEY.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path)
 
 
 def plain(problem: CaseProblem) -> str:

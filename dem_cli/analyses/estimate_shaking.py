@@ -11,7 +11,7 @@ from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.clock import duration_words
 from dem_cli.ensembles.record_search import runs_per_record
-from dem_cli.motion.build import motions_of, suites_of
+from dem_cli.motion.ground_motions import motions_of, suites_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -21,7 +21,7 @@ from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
-from dem_cli.motion.build import motions_of
+from dem_cli.motion.ground_motions import motions_of
 from dem_cli.output.record import Observer, RunRow
 
 if TYPE_CHECKING:

@@ -9,13 +9,13 @@ import numpy as np
 
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.case.base import KeyProblem
-from dem_cli.case.names import check_names
+from dem_cli.case.cross_references import check_names
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import cross
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
-from dem_cli.structures.place import aliases, place
+from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import GENERATORS
 
 if TYPE_CHECKING:

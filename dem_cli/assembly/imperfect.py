@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.assembly.laying import Interlocked, lay, neighbours, order_of
 from dem_cli.case.imperfection import drawn
-from dem_cli.case.words import show
+from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import turned

@@ -12,27 +12,27 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.bench.tilting import Setting
+from dem_cli.bench.tilting import EngineSettings
 from dem_cli.model.model import Model
 
 NAME, PACKAGE = "Box2D", "Box2D"
 THIN = {"radius": 1e-3}  # m, for edges of 10 m; the library's own is 0.01
 SETTINGS = (
-    Setting("defaults: 1/60 s, 8 + 3 iterations; edge 1 m", 1.0, 9.81, 1 / 60, (8, 3), True),
-    Setting("1/240 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 240, (10, 4)),
-    Setting("1/240 s, 50 + 20 iterations; edge 1 m", 1.0, 9.81, 1 / 240, (50, 20)),
-    Setting("1/240 s, 50 + 20 iterations; edge 10 m", 10.0, 98.1, 1 / 240, (50, 20)),
-    Setting("1/240 s, 50 + 20 iterations; edge 10 m, thin skin", 10.0, 98.1, 1 / 240, (50, 20), options=THIN),
-    Setting("1/960 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 960, (10, 4), True),
-    Setting("1/960 s, 10 + 4 iterations; edge 100 m", 100.0, 981.0, 1 / 960, (10, 4)),
-    Setting("1/1920 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 1920, (10, 4)),
+    EngineSettings("defaults: 1/60 s, 8 + 3 iterations; edge 1 m", 1.0, 9.81, 1 / 60, (8, 3), True),
+    EngineSettings("1/240 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 240, (10, 4)),
+    EngineSettings("1/240 s, 50 + 20 iterations; edge 1 m", 1.0, 9.81, 1 / 240, (50, 20)),
+    EngineSettings("1/240 s, 50 + 20 iterations; edge 10 m", 10.0, 98.1, 1 / 240, (50, 20)),
+    EngineSettings("1/240 s, 50 + 20 iterations; edge 10 m, thin skin", 10.0, 98.1, 1 / 240, (50, 20), options=THIN),
+    EngineSettings("1/960 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 960, (10, 4), True),
+    EngineSettings("1/960 s, 10 + 4 iterations; edge 100 m", 100.0, 981.0, 1 / 960, (10, 4)),
+    EngineSettings("1/1920 s, 10 + 4 iterations; edge 10 m", 10.0, 98.1, 1 / 1920, (10, 4)),
 )
 
 
 class Box2DWorld:
     """A world without sleep, which has to be switched off for every body."""
 
-    def __init__(self, model: Model, friction: float, setting: Setting, smallest: float):
+    def __init__(self, model: Model, friction: float, setting: EngineSettings, smallest: float):
         box2d = library()
         self.setting = setting
         self.world = box2d.b2World(gravity=(0.0, -setting.gravity), doSleep=False)
@@ -56,13 +56,16 @@ class Box2DWorld:
             self.free.append(bodies[i])
 
     def tilt(self, load: float) -> None:
+        """Turn gravity so that its horizontal part is the load multiplier."""
         self.world.gravity = (load * self.setting.gravity, -self.setting.gravity)
 
     def step(self, steps: int) -> None:
+        """Advance by so many steps."""
         for _ in range(steps):
             self.world.Step(self.setting.step, *self.setting.iterations)
 
     def places(self) -> np.ndarray:
+        """Places of the free blocks, in units of the engine, (n, 2)."""
         return np.array([tuple(body.position) for body in self.free])
 
 

@@ -1,4 +1,4 @@
-"""The structures that are measured, each with the best-known load and where it comes from.
+"""Benchmark structures, each with the best-known load and where it comes from.
 
 Errors are relative to that load. Where head joints carry friction the load is not unique: loading from gravity ends
 between `load`, without friction in the head joints, and `path`, with friction that does not dilate (`dem limit`); an
@@ -19,15 +19,16 @@ from dem_cli.output.record import Observer
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
+    from dem_cli.output.record import Observer
 
 FOLDER = Path(__file__).resolve().parent
 HEADS = "limit analysis, no friction in head joints"
-COURSES = "structure.0.courses={}"
-BLOCKS = "structure.0.blocks_per_course={}"
+COURSES_KEY = "structure.0.courses={}"
+BLOCKS_KEY = "structure.0.blocks_per_course={}"
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownStructure:
     """A structure and its failure load."""
 
     name: str
@@ -51,20 +52,22 @@ class Known:
         return load / nearest - 1.0
 
 
-def _t21(friction: float, load: float, source: str, upper: float | None = None, path: float | None = None) -> Known:
+def _t21(
+    friction: float, load: float, source: str, upper: float | None = None, path: float | None = None
+) -> KnownStructure:
     name = f"T21 μ {friction:g}"
-    return Known(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper, path)
+    return KnownStructure(name, "wall", (f"joints.dry.friction={friction}",), load, source, upper, path)
 
 
 def _wall(
     courses: int, blocks: int, count: int, load: float, upper: float | None, path: float | None = None, name: str = ""
-) -> Known:
-    sizes = (COURSES.format(courses), BLOCKS.format(blocks))
-    return Known(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper, path)
+) -> KnownStructure:
+    sizes = (COURSES_KEY.format(courses), BLOCKS_KEY.format(blocks))
+    return KnownStructure(name or f"wall {count:,}", "wall", sizes, load, HEADS, upper, path)
 
 
 SLIDES = "closed form: the top course slides at μ"
-KNOWN = {
+KNOWN_STRUCTURES = {
     known.name: known
     for known in (
         _t21(0.5, 0.5, SLIDES),
@@ -74,9 +77,9 @@ KNOWN = {
         _t21(0.75, 0.645963, HEADS, 0.681151),
         _t21(1.0, 0.645963, HEADS, 1.0),
         _wall(22, 10, 231, 0.466478, 0.476977, 0.468707, "T231"),
-        Known("COL14", "column", (), 0.04 / 0.245, "closed form: turns over at width / height"),
-        Known("ARCH μ 0.6", "arch", (), 0.148315, "limit analysis, four hinges"),
-        Known("ARCH μ 0.4", "arch", ("joints.dry.friction=0.4",), 0.052164, "limit analysis, associated"),
+        KnownStructure("COL14", "column", (), 0.04 / 0.245, "closed form: turns over at width / height"),
+        KnownStructure("ARCH μ 0.6", "arch", (), 0.148315, "limit analysis, four hinges"),
+        KnownStructure("ARCH μ 0.4", "arch", ("joints.dry.friction=0.4",), 0.052164, "limit analysis, associated"),
     )
 }
 SIZES = (  # walls of the same blocks and friction 0.6, by size
@@ -104,11 +107,11 @@ def solve(case: Case, model: Model, observer: Observer | None = None, settings: 
 @cache
 def compiled() -> None:
     """Have all kernels of a run compiled or loaded, so that nobody's time holds that."""
-    case, model = KNOWN["T21 μ 0.6"].build("analysis.follow=0.001", "analysis.resolution=0.1")
+    case, model = KNOWN_STRUCTURES["T21 μ 0.6"].build("analysis.follow=0.001", "analysis.resolution=0.1")
     solve(case, model)
 
 
-def answer(known: Known, summary: dict[str, Any]) -> dict[str, Any]:
+def answer(known: KnownStructure, summary: dict[str, Any]) -> dict[str, Any]:
     """What a record keeps of a run."""
     load = summary["failure_load"]
     found = {"load": load, "error": known.error(load), "steps": summary["steps"]}

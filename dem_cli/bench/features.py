@@ -1,4 +1,4 @@
-"""What optional features cost, off and on."""
+"""Cost of optional features, off and on."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, SIZES, Known, solve
+from dem_cli.bench.cases import KNOWN_STRUCTURES, SIZES, KnownStructure, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Observer
+from dem_cli.output.record import Frame, HistoryRow, Observer
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
-BLOCKS, QUICK_BLOCKS = (21, 231, 2275), (21,)
+BLOCK_COUNTS, QUICK_BLOCKS = (21, 231, 2275), (21,)
 CASES, QUICK_CASES = ("T21 μ 0.6", "T231"), ("T21 μ 0.6",)
 BARE, LEDGER, FULL = "nothing", "ledger", "all, unused"
 MONITORS = "monitor=[" + ", ".join('{block = "top-right", quantity = "rotation"}' for _ in range(10)) + "]"
@@ -28,7 +28,7 @@ FOLLOW = {"T21 μ 0.6": 0.02, "T231": 0.04}  # m, as in cases/verification
 
 @dataclass(frozen=True)
 class Feature:
-    """Something that a run may do besides finding a failure load."""
+    """Feature of a run: something that it may do besides finding a failure load."""
 
     name: str
     overrides: tuple[str, ...] = ()
@@ -40,13 +40,13 @@ class Feature:
         from dem_cli.errors import CaseError
 
         try:
-            KNOWN["T21 μ 0.6"].build(*self.overrides)
+            KNOWN_STRUCTURES["T21 μ 0.6"].build(*self.overrides)
         except CaseError:
             return False
         return True
 
 
-class Disk(Observer):
+class DiskObserver(Observer):
     """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
 
     def __init__(self, case: Any, model: Any, folder: Path):
@@ -55,7 +55,14 @@ class Disk(Observer):
 
         names = [f"monitor {i + 1}" for i in range(len(case.monitor))]
         self.writer = ResultWriter(folder, model, case_text(case), {}, names, case.analysis.kind)
-        self.frame, self.row = self.writer.frame, self.writer.row  # type: ignore[method-assign]
+
+    def frame(self, frame: Frame) -> None:
+        """To both files."""
+        self.writer.frame(frame)
+
+    def row(self, row: HistoryRow) -> None:
+        """To results.h5."""
+        self.writer.row(row)
 
 
 def features(name: str) -> tuple[Feature, ...]:
@@ -65,15 +72,17 @@ def features(name: str) -> tuple[Feature, ...]:
         Feature(PLAIN),
         Feature("10 monitors", (MONITORS,)),
         Feature("20 frames, kept by nobody", ("output.frames=20",)),
-        Feature("20 frames and histories on disk", ("output.frames=20",), Disk),
+        Feature("20 frames and histories on disk", ("output.frames=20",), DiskObserver),
         Feature("geometry that moves", ("analysis.kinematics=large",)),
         Feature("limit analysis beside it", ("analysis.limit=true",), shows="limit_analysis"),
         Feature("collapse followed", (follow,)),
-        Feature("collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), Disk),
+        Feature(
+            "collapse followed, 10 monitors, 20 frames, on disk", (follow, MONITORS, "output.frames=20"), DiskObserver
+        ),
     )
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """Kernels first, then whole runs."""
     found = GroupResult()
     _kernels(options, found)
@@ -81,11 +90,11 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _kernels(options: Options, found: GroupResult) -> None:
+def _kernels(options: BenchOptions, found: GroupResult) -> None:
     """ns per point and step of three stepping loops in turn: bare, with ledger, with everything."""
-    rows: list[tuple[Known, str, str, TimedTask, int]] = []
+    rows: list[tuple[KnownStructure, str, str, TimedTask, int]] = []
     for known in SIZES:
-        if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCKS):
+        if blocks_of(known) in (QUICK_BLOCKS if options.quick else BLOCK_COUNTS):
             for kinematics in ("fixed",) if options.quick else ("fixed", "large"):
                 sim = simulation(known, kinematics)
                 restore, steps = partial(sim.restore, sim.save()), max(POINT_STEPS // len(sim.joints.kn), 10)
@@ -105,7 +114,7 @@ def _kernels(options: Options, found: GroupResult) -> None:
 
 def loops(sim: Any) -> dict[str, Callable]:
     """Stepping loops that do the same motion, by what they have."""
-    from dem_cli.bench.bare import make_bare
+    from dem_cli.bench.bare_loop import make_bare
     from dem_cli.engine.simulation import compiled_advance
     from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
     from dem_cli.kernels.drift import drift_centroids, drift_corners
@@ -128,13 +137,13 @@ def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
     )  # fmt: skip
 
 
-def _runs(options: Options, found: GroupResult) -> None:
+def _runs(options: BenchOptions, found: GroupResult) -> None:
     rows: list[tuple[str, Feature, TimedTask]] = []
     with tempfile.TemporaryDirectory() as folder:
         for name in QUICK_CASES if options.quick else CASES:
             for feature in features(name)[: 4 if options.quick else None]:
                 if feature.available():
-                    rows.append((name, feature, _run(KNOWN[name], feature, Path(folder) / str(len(rows)))))
+                    rows.append((name, feature, _run(KNOWN_STRUCTURES[name], feature, Path(folder) / str(len(rows)))))
                 elif name == QUICK_CASES[0]:
                     found.notes.append(f"{feature.name}: not in this version")
         in_turn([job for *_, job in rows], options.rounds(5))
@@ -145,7 +154,7 @@ def _runs(options: Options, found: GroupResult) -> None:
             found.notes.append(f"{feature.name}, {name}: left out, the run's summary has no {feature.shows}")
 
 
-def _run(known: Known, feature: Feature, folder: Path) -> TimedTask:
+def _run(known: KnownStructure, feature: Feature, folder: Path) -> TimedTask:
     case, model = known.build(*feature.overrides)
 
     def run() -> dict[str, Any]:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import draw
-from dem_cli.bench.cases import SIZES, Known, answer, solve
+from dem_cli.bench import diagrams
+from dem_cli.bench.cases import SIZES, KnownStructure, answer, solve
 from dem_cli.bench.kernels import blocks_of
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
 LARGE, LARGEST = 1000, 10_000  # blocks
-QUICK = 2  # sizes
-STEPS = "analysis.max_steps=1000000"  # ends the largest walls after minutes, not hours
+QUICK_SIZES = 2  # sizes
+STEP_LIMIT = "analysis.max_steps=1000000"  # ends the largest walls after minutes, not hours
 
 
 def resolution(blocks: int) -> float:
@@ -22,13 +22,13 @@ def resolution(blocks: int) -> float:
     return 0.002 if blocks < LARGE else 0.01 if blocks < LARGEST else 0.05
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per size."""
     found = GroupResult()
     sizes = [k for k in SIZES if options.long or blocks_of(k) < LARGEST]
     if not options.long:
         found.notes.append(f"walls of more than {LARGEST:,} blocks were left out (`--long` measures them)")
-    rows = [(known, _job(known)) for known in (sizes[:QUICK] if options.quick else sizes)]
+    rows = [(known, _job(known)) for known in (sizes[:QUICK_SIZES] if options.quick else sizes)]
     in_turn([job for _, job in rows], options.rounds(3))
     for known, job in rows:
         blocks = blocks_of(known)
@@ -37,8 +37,8 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _job(known: Known) -> TimedTask:
-    case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEPS)
+def _job(known: KnownStructure) -> TimedTask:
+    case, model = known.build(f"analysis.resolution={resolution(blocks_of(known))}", STEP_LIMIT)
 
     def run() -> dict[str, Any]:
         summary = solve(case, model)
@@ -72,9 +72,11 @@ def picture(records: list[Measurement], path: Path) -> None:
     panels = {
         "CPU seconds": {"walls": [(r.value, r.best) for r in records]},
         "steps": {"walls": [(r.value, r.found["steps"]) for r in records if r.found["steps"]]},
-        "|error|": {"walls": [(r.value, max(abs(r.found["error"]), draw.FLOOR)) for r in records if r.found["error"]]},
+        "|error|": {
+            "walls": [(r.value, max(abs(r.found["error"]), diagrams.FLOOR)) for r in records if r.found["error"]]
+        },
     }
-    draw.growth(path, panels, "blocks")
+    diagrams.growth(path, panels, "blocks")
 
 
 PICTURES = {"growth": picture}

@@ -1,17 +1,17 @@
-"""What joint models cost: ns per contact point and step, beside plane Coulomb joints."""
+"""Cost of joint models: ns per contact point and step, beside plane Coulomb joints."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN, Known
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure
 from dem_cli.bench.kernels import simulation, stepping
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import in_turn
 
 PICTURES: dict[str, Any] = {}
-CASE, QUICK_CASE = "T231", "T21 μ 0.6"
+MEASURED_CASE, QUICK_CASE = "T231", "T21 μ 0.6"
 PLANE = "coulomb"
 BONDED = "friction = 0.6, cohesion = 1e3, tension = 1e3"
 ENERGIES = "fracture_energy_tension = 10.0, fracture_energy_shear = 10.0"
@@ -37,15 +37,15 @@ MIXED = "coulomb, in one scene with mohr-coulomb"
 OTHER = f'law = "mohr-coulomb", {BONDED}, points = 2'
 
 
-def with_joint(known: Known, table: str, other: str = "") -> Known:
+def with_joint(known: KnownStructure, table: str, other: str = "") -> KnownStructure:
     """The same structure with another joint; `other`: one that the scene has beside it, between no blocks."""
     joints = f"joints={{dry = {{ {table} }}" + (f", other = {{ {other} }}" if other else "") + "}"
-    return Known(known.name, known.file, (*known.overrides, joints), known.load, known.source)
+    return KnownStructure(known.name, known.file, (*known.overrides, joints), known.load, known.source)
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per joint model and geometry; unit: ns per point and step."""
-    known = KNOWN[QUICK_CASE if options.quick else CASE]
+    known = KNOWN_STRUCTURES[QUICK_CASE if options.quick else MEASURED_CASE]
     rows = []
     for kinematics in ("fixed", "large"):
         for name, table in [*VARIANTS.items(), (MIXED, VARIANTS[PLANE])]:

@@ -1,11 +1,11 @@
-"""ns per contact point and step, for both geometries and four sizes."""
+"""Cost of a step: ns per contact point and step, for both geometries and four sizes."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.bench.cases import SIZES, Known
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.cases import SIZES, KnownStructure
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import TimedTask, in_turn
 
@@ -13,11 +13,11 @@ PICTURES: dict[str, Any] = {}
 LOAD = 0.3  # multiplier at which the walls stand, with sticking, sliding and open points
 POINT_STEPS = 2_000_000  # points × steps of one timing, about 20 ms
 FIRST_STEPS = 300
-BLOCKS = (21, 231, 2275, 20100)
+BLOCK_COUNTS = (21, 231, 2275, 20100)
 QUICK_BLOCKS = (21,)
 
 
-def simulation(known: Known, kinematics: str) -> Any:
+def simulation(known: KnownStructure, kinematics: str) -> Any:
     """A compiled simulation of a structure under LOAD, some hundred steps old."""
     from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.engine.simulation import Simulation
@@ -40,9 +40,9 @@ def stepping(sim: Any) -> tuple[TimedTask, int]:
     return TimedTask(lambda: sim.advance(steps, slot.HOLD_LOAD), lambda: sim.restore(start)), points * steps
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per size and geometry; unit: ns per point and step, ledger on."""
-    wanted = QUICK_BLOCKS if options.quick else BLOCKS
+    wanted = QUICK_BLOCKS if options.quick else BLOCK_COUNTS
     rows, jobs = [], []
     for known in SIZES:
         for kinematics in ("fixed", "large"):
@@ -59,7 +59,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def blocks_of(known: Known) -> int:
+def blocks_of(known: KnownStructure) -> int:
     """Free blocks of a wall of SIZES, from its name."""
     return int(known.name.removeprefix("wall ").replace(",", ""))
 

@@ -1,4 +1,4 @@
-"""The machine, as far as it explains the figures; nothing that says whose it is."""
+"""Description of the machine, as far as it explains the figures; nothing that says whose it is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The same structures in pymunk and Box2D, tilted until they fall: load, error and CPU time beside dem's."""
+"""Comparison with game engines: structures in pymunk and Box2D, tilted until they fall; load, error, CPU time."""
 
 from __future__ import annotations
 
@@ -7,27 +7,29 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import draw, tilting
-from dem_cli.bench.cases import KNOWN, Known, answer, solve
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench import diagrams, tilting
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure, answer, solve
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
 ENGINES = ("pymunk_walls", "box2d_walls")
-NARROW = ("T21 μ 0.6", "T21 μ 0.75", "COL14", "ARCH μ 0.6")  # all settings
-WIDE = (*NARROW, "T21 μ 0.5", "T21 μ 0.65", "T21 μ 1", "ARCH μ 0.4", "T231")  # the wide settings
+NARROW_CASES = ("T21 μ 0.6", "T21 μ 0.75", "COL14", "ARCH μ 0.6")  # all settings
+WIDE_CASES = (*NARROW_CASES, "T21 μ 0.5", "T21 μ 0.65", "T21 μ 1", "ARCH μ 0.4", "T231")  # the wide settings
 RESOLUTIONS = (0.02, 0.005, 0.002, 0.0005)  # of dem
 RESOLUTION = 0.002  # of the bisection in the engines
 DEM = "dem"
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per structure, program and setting; axis: the program, value: the setting."""
     found, rows = GroupResult(), []
-    structures = WIDE[:1] if options.quick else WIDE
+    structures = WIDE_CASES[:1] if options.quick else WIDE_CASES
     for name in structures:
         for resolution in RESOLUTIONS[:1] if options.quick else RESOLUTIONS:
-            rows.append((KNOWN[name], DEM, f"resolution {resolution:g}", dem_job(KNOWN[name], resolution)))
+            rows.append(
+                (KNOWN_STRUCTURES[name], DEM, f"resolution {resolution:g}", dem_job(KNOWN_STRUCTURES[name], resolution))
+            )
     for module in ENGINES:
         engine = import_module(f"dem_cli.bench.{module}")
         if find_spec(engine.PACKAGE) is None:
@@ -35,16 +37,16 @@ def measure(options: Options) -> GroupResult:
             continue
         for setting in engine.SETTINGS[:1] if options.quick else engine.SETTINGS:
             for name in structures:
-                if setting.wide or name in NARROW:
-                    job = engine_job(KNOWN[name], engine, setting, 0.1 if options.quick else RESOLUTION)
-                    rows.append((KNOWN[name], engine.NAME, setting.name, job))
+                if setting.wide or name in NARROW_CASES:
+                    job = engine_job(KNOWN_STRUCTURES[name], engine, setting, 0.1 if options.quick else RESOLUTION)
+                    rows.append((KNOWN_STRUCTURES[name], engine.NAME, setting.name, job))
     in_turn([job for *_, job in rows], options.rounds(2), long=1.0)
     for known, program, setting, job in rows:
         found.records.append(record(known.name, program, setting, job.seconds, **job.result))
     return found
 
 
-def dem_job(known: Known, resolution: float) -> TimedTask:
+def dem_job(known: KnownStructure, resolution: float) -> TimedTask:
     """From the case file to the failure load."""
 
     def run() -> dict[str, Any]:
@@ -54,7 +56,7 @@ def dem_job(known: Known, resolution: float) -> TimedTask:
     return TimedTask(run)
 
 
-def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: float) -> TimedTask:
+def engine_job(known: KnownStructure, engine: Any, setting: tilting.EngineSettings, resolution: float) -> TimedTask:
     """From the model to the failure load; a new world for each trial."""
     from dem_cli.model.scales import smallest_edge
 
@@ -73,8 +75,11 @@ def engine_job(known: Known, engine: Any, setting: tilting.Setting, resolution: 
 
 def page(records: list[Measurement]) -> list[str]:
     """What was done, then a table of structures against settings, then the wider set."""
-    lines = [*TEXT]
-    for title, names in (("All settings", NARROW), ("More structures, with the wide settings", WIDE[len(NARROW) :])):
+    lines = [*PAGE_TEXT]
+    for title, names in (
+        ("All settings", NARROW_CASES),
+        ("More structures, with the wide settings", WIDE_CASES[len(NARROW_CASES) :]),
+    ):
         chosen = [r for r in records if r.case in names]
         if chosen:
             lines += ["", f"{title}: error · CPU seconds.", "", *_table(chosen, names)]
@@ -103,7 +108,7 @@ def worst_errors(records: list[Measurement], program: str) -> dict[str, float]:
     """Largest |error| over the structures that every setting was run on, by setting."""
     worst: dict[str, float] = {}
     for r in records:
-        if r.axis == program and r.case in NARROW:
+        if r.axis == program and r.case in NARROW_CASES:
             error = 1.0 if r.found["error"] is None else abs(r.found["error"])
             worst[r.value] = max(worst.get(r.value, 0.0), error)
     return worst
@@ -114,25 +119,25 @@ def _best(records: list[Measurement], program: str) -> list[str]:
     if not worst:
         return []
     setting = min(worst, key=lambda name: worst[name])
-    total = sum(r.best for r in records if r.axis == program and r.value == setting and r.case in NARROW)
+    total = sum(r.best for r in records if r.axis == program and r.value == setting and r.case in NARROW_CASES)
     text = f"* {program}, best setting: {setting}; largest error {100 * worst[setting]:.2g} %, {seconds(total)} in all"
-    return [f"{text} ({', '.join(name for name in NARROW if any(r.case == name for r in records))})."]
+    return [f"{text} ({', '.join(name for name in NARROW_CASES if any(r.case == name for r in records))})."]
 
 
 def picture(records: list[Measurement], path: Path) -> None:
     """Error against CPU seconds, a panel per structure, a mark per program and setting."""
-    names = [n for n in (*NARROW, "T231") if any(r.case == n for r in records)]
+    names = [n for n in (*NARROW_CASES, "T231") if any(r.case == n for r in records)]
     programs = list(dict.fromkeys(r.axis for r in records))
     panels = {
         name: {p: [(r.best, r.found["error"]) for r in records if (r.case, r.axis) == (name, p)] for p in programs}
         for name in names
     }
-    draw.work_precision(path, panels, joined={DEM})
+    diagrams.work_precision(path, panels, joined={DEM})
 
 
 PICTURES = {"others": picture}
 
-TEXT = f"""\
+PAGE_TEXT = f"""\
 What a user would otherwise take from a package registry: pymunk (Chipmunk) and Box2D, two engines for games, given
 the polygons, masses, inertias and friction of our model. Both are made to look right at 60 frames a second, not to
 give failure loads; they are measured here because they are what there is.

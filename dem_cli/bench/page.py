@@ -1,4 +1,4 @@
-"""benchmarks.json, benchmarks.md and benchmarks_*.png: the page and its pictures are made from the JSON alone."""
+"""Benchmark page: benchmarks.json, benchmarks.md and benchmarks_*.png; all are made from the JSON alone."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dem_cli.bench import registry
 from dem_cli.bench.machine import sentence
 from dem_cli.bench.record import as_json, read, records_of
 
-NAME = "benchmarks"
-HEAD = """\
+PAGE_NAME = "benchmarks"
+PAGE_HEAD = """\
 # Benchmarks
 
 Written by `scripts/benchmark -o docs` from `docs/data/benchmarks.json`; do not edit. Times are CPU seconds of one core
@@ -25,14 +25,14 @@ def render(groups: dict[str, dict[str, Any]]) -> str:
     """The page. groups: as in benchmarks.json."""
     from dem_cli.bench.timing import LONG
 
-    lines = [HEAD.format(long=LONG), *machines(groups), "", *references()]
+    lines = [PAGE_HEAD.format(long=LONG), *machines(groups), "", *references()]
     for name, title in registry.GROUPS.items():
         if name not in groups:
             continue
         group, records = groups[name], records_of(groups[name])
         lines += ["", f"## {title}", "", *registry.module(name).page(records)]
         for suffix in registry.module(name).PICTURES:
-            lines += ["", f"![{title}]({NAME}_{suffix}.png)"]
+            lines += ["", f"![{title}]({PAGE_NAME}_{suffix}.png)"]
         lines += ["", *(f"* {note}" for note in group["notes"])] if group["notes"] else []
     return "\n".join(lines).rstrip() + "\n"
 
@@ -56,11 +56,11 @@ def machines(groups: dict[str, dict[str, Any]]) -> list[str]:
 
 def references() -> list[str]:
     """The loads that errors are measured against."""
-    from dem_cli.bench.cases import KNOWN, SIZES
+    from dem_cli.bench.cases import KNOWN_STRUCTURES, SIZES
     from dem_cli.bench.table import lines_of, percent
 
     rows, seen = [], set()
-    for known in (*KNOWN.values(), *SIZES):
+    for known in (*KNOWN_STRUCTURES.values(), *SIZES):
         if (known.file, known.overrides) not in seen and known.name != "wall 21":  # which is T21 μ 0.6
             upper = "" if known.upper is None else f"{known.upper:.6g} ({percent(known.error(known.upper))})"
             path = "" if known.path is None else f"{known.path:.6g}"
@@ -79,7 +79,7 @@ def references() -> list[str]:
 
 def data_file(folder: Path) -> Path:
     """The JSON of a page in a folder."""
-    return folder / "data" / f"{NAME}.json"
+    return folder / "data" / f"{PAGE_NAME}.json"
 
 
 def keep(folder: Path, groups: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -95,11 +95,11 @@ def keep(folder: Path, groups: dict[str, dict[str, Any]]) -> dict[str, dict[str,
 def write(folder: Path, groups: dict[str, dict[str, Any]]) -> list[Path]:
     """Write JSON (see `keep`), page and pictures."""
     merged = keep(folder, groups)
-    written = [data_file(folder), folder / f"{NAME}.md"]
+    written = [data_file(folder), folder / f"{PAGE_NAME}.md"]
     written[1].write_text(render(merged), encoding="utf-8", newline="\n")
     for name in merged:
         for suffix, draw in registry.module(name).PICTURES.items():
-            path = folder / f"{NAME}_{suffix}.png"
+            path = folder / f"{PAGE_NAME}_{suffix}.png"
             draw(records_of(merged[name]), path)
             written.append(path)
     return written

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+from unittest.mock import patch
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from dem_cli.contact.joints import empty_contacts
 from dem_cli.kernels.records import Contacts, Joints
 
 if TYPE_CHECKING:
-    from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.tracking import JointTracking
 
 
@@ -52,22 +52,19 @@ def points_per_joint(layout: str) -> Iterator[None]:
     """Runs inside have joints with these points (see `shares`); "2" is what they have anyway."""
     from dem_cli.analyses import pushover
     from dem_cli.engine import job
+    from dem_cli.engine.simulation import Simulation
 
-    plain, describe = job.Simulation, pushover.describe
     places = shares(layout)
 
-    class Refined(plain):  # type: ignore[misc, valid-type]
+    class RefinedSimulation(Simulation):
         """A simulation whose first joints have other points."""
 
-        def _track(self: Simulation, n_memory: int, reach: float) -> JointTracking:
-            tracking = super()._track(n_memory, reach)  # type: ignore[misc]
+        def _track(self, n_memory: int, reach: float) -> JointTracking:
+            tracking = super()._track(n_memory, reach)
             if layout != "2" and not tracking.moves:
                 tracking.joints, tracking.contacts = refined(tracking.joints, tracking.contacts, places)
             return tracking
 
-    job.Simulation = Refined  # type: ignore[misc]
-    pushover.describe = lambda *_: {}  # the mechanism is told by the two ends of a joint
-    try:
+    # the mechanism is told by the two ends of a joint
+    with patch.object(job, "Simulation", RefinedSimulation), patch.object(pushover, "describe", lambda *_: {}):
         yield
-    finally:
-        job.Simulation, pushover.describe = plain, describe  # type: ignore[misc]

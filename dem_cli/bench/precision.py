@@ -9,15 +9,15 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench import draw
-from dem_cli.bench.cases import KNOWN, Known, answer, solve
+from dem_cli.bench import diagrams
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure, answer, solve
 from dem_cli.bench.points import points_per_joint
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.engine.settings import DEFAULT, Settings
 
-CASES = tuple(KNOWN)
+CASES = tuple(KNOWN_STRUCTURES)
 NOT_DRAWN = ("T21 μ 0.6", "T21 μ 0.7")  # in the tables only: enough lines
 FIRST_INSIDE = "2 inside"
 DEAR = "T231"  # of some knobs only the cheaper values
@@ -36,20 +36,20 @@ class Axis:
     text: str
     usual: Any
     values: tuple[Any, ...]
-    overrides: Callable[[Known, Any], list[str]]
+    overrides: Callable[[KnownStructure, Any], list[str]]
     inside: Callable[[Any], AbstractContextManager] = lambda value: nullcontext()
     settings: Callable[[Any], Settings] = lambda value: DEFAULT
     cheap: tuple[Any, ...] | None = None  # values for DEAR; None: all
 
 
-def stiffness(known: Known, ratio: float) -> list[str]:
+def stiffness(known: KnownStructure, ratio: float) -> list[str]:
     """A given kn with kn·h/W = ratio for a mean block of weight W and smallest edge h."""
     from dem_cli.model.scales import stiffness_scale
 
     return [FINE, BUDGET, f"joints.dry.kn={ratio * stiffness_scale(known.build()[1])!r}"]
 
 
-def fine(known: Known, value: Any) -> list[str]:
+def fine(known: KnownStructure, value: Any) -> list[str]:
     """Nothing but a narrow bracket."""
     return [FINE, BUDGET]
 
@@ -113,7 +113,7 @@ AXES = (
 )
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per knob, value and case."""
     found = GroupResult()
     for axis in AXES:
@@ -124,15 +124,15 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[Known, Any, TimedTask]]:
+def _jobs(axis: Axis, quick: bool) -> Iterator[tuple[KnownStructure, Any, TimedTask]]:
     for value in (axis.values[0], axis.usual) if quick else axis.values:
         for name in QUICK_CASES if quick else CASES:
             if name == DEAR and axis.cheap is not None and value not in axis.cheap:
                 continue
-            yield KNOWN[name], value, _job(KNOWN[name], axis, value)
+            yield KNOWN_STRUCTURES[name], value, _job(KNOWN_STRUCTURES[name], axis, value)
 
 
-def _job(known: Known, axis: Axis, value: Any) -> TimedTask:
+def _job(known: KnownStructure, axis: Axis, value: Any) -> TimedTask:
     case, model = known.build(*axis.overrides(known, value))
 
     def run() -> dict[str, Any]:
@@ -189,7 +189,7 @@ def picture(records: list[Measurement], path: Path) -> None:
             if r.value == FIRST_INSIDE:
                 line.append((nan, nan))  # another line of the same colour
             line.append((r.best, r.found["error"]))
-    draw.work_precision(path, panels)
+    diagrams.work_precision(path, panels)
 
 
 PICTURES = {"precision": picture}

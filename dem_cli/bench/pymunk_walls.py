@@ -7,26 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.bench.tilting import Setting
+from dem_cli.bench.tilting import EngineSettings
 from dem_cli.model.model import Model
 
 NAME, PACKAGE = "pymunk", "pymunk"
 TIGHT = {"collision_slop": 1e-3}  # of the smallest edge, which is 1; the library's own is 0.1
 SETTINGS = (
-    Setting("defaults: 1/60 s, 10 iterations, slop 0.1; edge 17.5 (pixels)", 17.5, 981.0, 1 / 60, (10,), True),
-    Setting("1/60 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 60, (30,), options=TIGHT),
-    Setting("1/240 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (10,), options=TIGHT),
-    Setting("1/240 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (30,), options=TIGHT),
-    Setting("1/240 s, 100 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (100,), options=TIGHT),
-    Setting("1/960 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 960, (10,), True, options=TIGHT),
-    Setting("1/1920 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 1920, (10,), options=TIGHT),
+    EngineSettings("defaults: 1/60 s, 10 iterations, slop 0.1; edge 17.5 (pixels)", 17.5, 981.0, 1 / 60, (10,), True),
+    EngineSettings("1/60 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 60, (30,), options=TIGHT),
+    EngineSettings("1/240 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (10,), options=TIGHT),
+    EngineSettings("1/240 s, 30 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (30,), options=TIGHT),
+    EngineSettings("1/240 s, 100 iterations, slop 0.001", 1.0, 9.81, 1 / 240, (100,), options=TIGHT),
+    EngineSettings("1/960 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 960, (10,), True, options=TIGHT),
+    EngineSettings("1/1920 s, 10 iterations, slop 0.001", 1.0, 9.81, 1 / 1920, (10,), options=TIGHT),
 )
 
 
 class PymunkWorld:
     """A space; friction of two shapes is multiplied by Chipmunk, so that each has √μ."""
 
-    def __init__(self, model: Model, friction: float, setting: Setting, smallest: float):
+    def __init__(self, model: Model, friction: float, setting: EngineSettings, smallest: float):
         import pymunk
 
         self.setting = setting
@@ -52,13 +52,16 @@ class PymunkWorld:
         self.free = [body for body, fixed in zip(bodies, model.fixed, strict=True) if not fixed]
 
     def tilt(self, load: float) -> None:
+        """Turn gravity so that its horizontal part is the load multiplier."""
         self.space.gravity = (load * self.setting.gravity, -self.setting.gravity)
 
     def step(self, steps: int) -> None:
+        """Advance by so many steps."""
         for _ in range(steps):
             self.space.step(self.setting.step)
 
     def places(self) -> np.ndarray:
+        """Places of the free blocks, in units of the engine, (n, 2)."""
         return np.array([body.position for body in self.free])
 
 

@@ -1,4 +1,4 @@
-"""What a benchmark leaves: one record per measurement, as JSON; pages and pictures are made from nothing else."""
+"""Benchmark records, one per measurement, as JSON; pages and pictures are made from nothing else."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 from dem_cli.errors import UsageError
 
-FORMAT = 1
+RECORD_FORMAT = 1
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class Measurement:
 
 @dataclass
 class GroupResult:
-    """What one group left; notes say what was skipped and why."""
+    """Records of one group of benchmarks; notes say what was skipped and why."""
 
     records: list[Measurement] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
-class Options:
-    """How much is measured."""
+class BenchOptions:
+    """Options of a benchmark: how much is measured."""
 
     quick: bool = False  # the smallest sizes, once: does it work?
     long: bool = False  # the largest ones as well: hours
@@ -67,7 +67,7 @@ def as_json(groups: dict[str, dict[str, Any]]) -> str:
         parts = (f'"machine": {text(group["machine"])}', f'"notes": {text(group["notes"])}')
         lines.append(f"  {text(name)}: {{\n   " + ",\n   ".join((*parts, f'"records": [\n   {records}\n   ]')) + "}")
     body = "{\n" + ",\n".join(lines) + "\n }" if lines else "{}"
-    return f'{{"format": {FORMAT},\n "groups": {body}}}\n'
+    return f'{{"format": {RECORD_FORMAT},\n "groups": {body}}}\n'
 
 
 def group_table(found: GroupResult, machine: dict[str, Any]) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
     """Groups of a results file. Raises UsageError where it is none of ours."""
     try:
         tables = json.loads(path.read_text(encoding="utf-8"))
-        if tables["format"] != FORMAT:
+        if tables["format"] != RECORD_FORMAT:
             raise UsageError(f"{path}: written by another version of dem bench; remove it and measure again")
         return dict(tables["groups"])
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -1,4 +1,4 @@
-"""From shell to shell: what a user waits for, wall clock and CPU."""
+"""Start-up time from shell to shell: what a user waits for, wall clock and CPU."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import FOLDER
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
-FIRST = "first run of T21, nothing compiled"
+FIRST_RUN = "first run of T21, nothing compiled"
 
 
 def shell(words: list[str], cache: str) -> tuple[float, float]:
@@ -33,7 +33,7 @@ def cpu_of_children() -> float:
     return times.children_user + times.children_system
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """`dem --help`, the first run with an empty cache of compiled code, later runs."""
     found, times = GroupResult(), {}
     with tempfile.TemporaryDirectory() as folder:
@@ -44,7 +44,7 @@ def measure(options: Options) -> GroupResult:
         if options.quick:
             commands = {"`dem --help`": ["--help"]}
         else:
-            times[FIRST] = [shell(run, folder)]
+            times[FIRST_RUN] = [shell(run, folder)]
         for _ in range(options.rounds(5)):
             for name, words in commands.items():
                 times.setdefault(name, []).append(shell(words, folder))

@@ -1,4 +1,4 @@
-"""Many runs: runs per second over the number of processes, and what a run of a sweep costs beside its solution."""
+"""Cost of sweeps: runs per second over the number of processes, and what a run of a sweep costs beside its solution."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from dem_cli.bench.cases import KNOWN
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.cases import KNOWN_STRUCTURES
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 
 PICTURES: dict[str, Any] = {}
 WORKERS = "processes"
-RUNS, FEW = 1000, 20
+MANY_RUNS, FEW_RUNS = 1000, 20
 FRICTIONS = 'sweep."joints.dry.friction" = {{ from = 0.5, to = 0.7, count = {count} }}\n'
 
 
-class Swept(NamedTuple):
+class SweepTiming(NamedTuple):
     """What a sweep took [s], all its processes together for `cpu`, and what its runs found."""
 
     wall: float
@@ -30,10 +30,10 @@ class Swept(NamedTuple):
     worst: float  # largest relative error of a failure load
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """`dem sweep` of COL14 over its friction, which does not change its failure load, from shell to shell."""
     found = GroupResult()
-    known, count = KNOWN["COL14"], FEW if options.quick else RUNS
+    known, count = KNOWN_STRUCTURES["COL14"], FEW_RUNS if options.quick else MANY_RUNS
     cores = os.cpu_count() or 1
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -53,7 +53,7 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def sweep(place: Path, count: int, jobs: int, known: Any) -> Swept:
+def sweep(place: Path, count: int, jobs: int, known: Any) -> SweepTiming:
     """One sweep, in a folder of its own."""
     output = place / f"out-{time.monotonic_ns()}"
     words = [sys.executable, "-m", "dem_cli", "sweep", str(place / f"{count}.toml"), "-o", str(output)]
@@ -62,7 +62,7 @@ def sweep(place: Path, count: int, jobs: int, known: Any) -> Swept:
     wall, cpu = time.perf_counter() - begun, cpu_of_children() - spent
     summaries = [json.loads(path.read_text(encoding="utf-8")) for path in output.glob("runs/*/summary.json")]
     worst = max(abs(known.error(summary["failure_load"])) for summary in summaries)
-    return Swept(wall, cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
+    return SweepTiming(wall, cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
 
 
 def cpu_of_children() -> float:

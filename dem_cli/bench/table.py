@@ -1,4 +1,4 @@
-"""Figures and tables as people read them in Markdown."""
+"""Markdown tables, and figures as people read them."""
 
 from __future__ import annotations
 

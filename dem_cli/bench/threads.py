@@ -1,4 +1,4 @@
-"""More cores: threads of the libraries inside one run, and runs side by side."""
+"""Gain of more cores: threads of the libraries inside one run, and runs side by side."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import time
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.cases import KNOWN_STRUCTURES
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
 PICTURES: dict[str, Any] = {}
-NAMES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS")
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS")
 INSIDE, BESIDE = "threads in one run", "runs side by side"
-LIMIT = ["--set", "analysis.limit=true"]  # Clarabel, which can use threads, in the run as well
+LIMIT_OPTION = ["--set", "analysis.limit=true"]  # Clarabel, which can use threads, in the run as well
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """Wall-clock time of runs of T231 with 1 and 2 threads, and of 1 and 2 runs at once."""
     found = GroupResult()
-    known = KNOWN["T21 μ 0.6" if options.quick else "T231"]
+    known = KNOWN_STRUCTURES["T21 μ 0.6" if options.quick else "T231"]
     counts = (1, 2) if (os.cpu_count() or 1) > 1 else (1,)
     if len(counts) == 1:
         found.notes.append("one core: only one thread and one run at a time")
@@ -44,10 +44,10 @@ def measure(options: Options) -> GroupResult:
 
 def runs(known: Any, folder: Path, threads: int, at_once: int) -> tuple[float, list[float]]:
     """Wall-clock seconds until `at_once` equal runs ended, and their failure loads."""
-    environment = os.environ | dict.fromkeys(NAMES, str(threads))
+    environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads))
     overrides = [word for value in ("analysis.follow=0.0", *known.overrides) for word in ("--set", value)]
     case = str(Path(__file__).with_name(f"{known.file}.toml"))
-    words = [sys.executable, "-m", "dem_cli", "run", case, *overrides, *LIMIT, "--json", "-q", "-o"]
+    words = [sys.executable, "-m", "dem_cli", "run", case, *overrides, *LIMIT_OPTION, "--json", "-q", "-o"]
     begun = time.perf_counter()
     started = [
         subprocess.Popen([*words, str(folder / f"run{i}")], env=environment, stdout=subprocess.PIPE)

@@ -17,13 +17,13 @@ SETTLE, RAMP, HOLD = 10.0, 30.0, 30.0  # in √(h/g)
 RAMP_STEPS, LOOKS = 50, 20
 MOVED = 0.1  # smallest edges; an excess of 2.2e-4 g along a plane covers that in HOLD
 COLLAPSED = 1.0  # smallest edges during the ramp
-LOWEST = 0.01  # a structure that does not even stand at this load counts as falling by itself
+LOWEST_LOAD = 0.01  # a structure that does not even stand at this load counts as falling by itself
 TWICE = 1.1  # × friction: first load tried as the upper one, because a joint that lies flat slides at μ
 
 
 @dataclass(frozen=True)
-class Setting:
-    """How an engine is run."""
+class EngineSettings:
+    """Settings of a game engine: how it is run."""
 
     name: str
     edge: float  # length of the smallest edge in the engine's units
@@ -34,7 +34,7 @@ class Setting:
     options: Mapping[str, Any] = field(default_factory=dict)  # what else the engine is told
 
 
-class World(Protocol):
+class EngineWorld(Protocol):
     """A structure in an engine."""
 
     def tilt(self, load: float) -> None:
@@ -47,7 +47,7 @@ class World(Protocol):
         """Centroids of the free blocks in the engine's units, (n_free, 2)."""
 
 
-def stands(world: World, setting: Setting, load: float) -> bool:
+def stands(world: EngineWorld, setting: EngineSettings, load: float) -> bool:
     """One trial in a new world."""
     second = np.sqrt(setting.edge / setting.gravity) / setting.step  # steps in one √(h/g)
     world.tilt(0.0)
@@ -70,12 +70,14 @@ def _near(places: np.ndarray, before: np.ndarray, limit: float) -> bool:
     return bool(np.sqrt(((places - before) ** 2).sum(axis=1)).max() <= limit)
 
 
-def failure_load(make: Callable[[], World], setting: Setting, friction: float, resolution: float) -> dict[str, Any]:
+def failure_load(
+    make: Callable[[], EngineWorld], setting: EngineSettings, friction: float, resolution: float
+) -> dict[str, Any]:
     """Highest load that stood, the lowest that fell above it, and the number of trials and steps."""
     low, high, trials = 0.0, TWICE * friction, 1
     while stands(make(), setting, high):
         low, high, trials = high, 2.0 * high, trials + 1
-    while high - low > resolution * max(low, LOWEST):
+    while high - low > resolution * max(low, LOWEST_LOAD):
         middle = 0.5 * (low + high)
         trials += 1
         if stands(make(), setting, middle):

@@ -10,38 +10,36 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
-from dem_cli.bench import draw
+from dem_cli.bench import diagrams
 from dem_cli.bench.cases import FOLDER
-from dem_cli.bench.record import GroupResult, Measurement, Options, record
+from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Observer
+from dem_cli.output.record import Observer, Samples
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25
 FINEST = 0.02  # of the runs that errors of shaken structures refer to
-QUICK = (0.5, USUAL)
+QUICK_MARGINS = (0.5, USUAL)
 LONG = 0.5  # s: what takes longer is measured once
 LANDINGS = (0.39088807, 0.79862462, 1.06101466)  # s, of Housner's block 0.5 m × 1 m let go at 0.25 rad
 STIFFNESS = (2e8, 2e9, 2e10, 2e11)  # Pa/m, of the block
 WEIGHT_OVER_AREA = 2000.0 * 9.81 * 1.0  # Pa, of the block on its joint
 EDGE = 0.5  # m, its smallest edge
 EVERY = 0.01  # s, between the instants at which histories are compared
-DAMPING = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
-BLOCK, SHAKEN = "block", {"column": "shaken_column", "arch": "shaken_arch"}
+DASHPOTS = {"dashpots": [], "no dashpots": ["damping={ none = true }"]}
+BLOCK, SHAKEN_FILES = "block", {"column": "shaken_column", "arch": "shaken_arch"}
 
 
-class History(Observer):
+class FirstMonitor(Observer):
     """An observer that keeps the first monitor."""
 
     def __init__(self) -> None:
-        self.parts: list[Any] = []
+        self.parts: list[Samples] = []
 
-    def samples(self, samples: Any) -> None:
+    def samples(self, samples: Samples) -> None:
+        """Keep them."""
         self.parts.append(samples)
-
-    def runs(self, rows: Any) -> None: ...
-    def structure(self, model: Any) -> None: ...
 
     @property
     def times(self) -> np.ndarray:
@@ -55,7 +53,7 @@ class History(Observer):
 
 
 @dataclass(frozen=True)
-class Line:
+class StepStudy:
     """One structure and setting, for which the step varies."""
 
     axis: str
@@ -68,30 +66,30 @@ class Line:
         loaded = api.load_case(FOLDER / f"{self.file}.toml", [*self.overrides, f"analysis.margin={margin}"])
         model = api.build_model(loaded)
 
-        def run() -> tuple[dict[str, Any], History]:
+        def run() -> tuple[dict[str, Any], FirstMonitor]:
             from dem_cli.analyses.solve import solve as solve
 
-            history = History()
+            history = FirstMonitor()
             return solve(loaded.case, model, history).summary, history
 
         return TimedTask(run)
 
 
-def lines(quick: bool) -> Iterator[Line]:
+def lines(quick: bool) -> Iterator[StepStudy]:
     """All lines of the pictures."""
     for kn in STIFFNESS[1:2] if quick else STIFFNESS:
-        yield Line(BLOCK, f"kn·h/W {kn * EDGE / WEIGHT_OVER_AREA:.0e}", "rocking", (f"joints.dry.kn={kn!r}",))
+        yield StepStudy(BLOCK, f"kn·h/W {kn * EDGE / WEIGHT_OVER_AREA:.0e}", "rocking", (f"joints.dry.kn={kn!r}",))
     shorter = ("analysis.duration=1.5",) if quick else ()
-    for axis, file in SHAKEN.items():
-        for name, overrides in DAMPING.items():
-            yield Line(axis, name, file, (*overrides, *shorter))
+    for axis, file in SHAKEN_FILES.items():
+        for name, overrides in DASHPOTS.items():
+            yield StepStudy(axis, name, file, (*overrides, *shorter))
 
 
-def measure(options: Options) -> GroupResult:
+def measure(options: BenchOptions) -> GroupResult:
     """One record per line and step."""
     found = GroupResult()
     wanted = list(lines(options.quick))
-    margins = QUICK if options.quick else MARGINS
+    margins = QUICK_MARGINS if options.quick else MARGINS
     jobs = [(line, margin, line.job(margin)) for line in wanted for margin in margins]
     for line in wanted:
         line.job(MARGINS[0]).run()  # kernels compiled or loaded, so that nobody's time holds that
@@ -110,9 +108,9 @@ def measure(options: Options) -> GroupResult:
     return found
 
 
-def _finest(line: Line, quick: bool) -> History:
+def _finest(line: StepStudy, quick: bool) -> FirstMonitor:
     """The history that others are compared with."""
-    history: History = line.job(0.5 * USUAL if quick else FINEST).run()[1]
+    history: FirstMonitor = line.job(0.5 * USUAL if quick else FINEST).run()[1]
     return history
 
 
@@ -126,7 +124,7 @@ def landing_error(times: np.ndarray, angles: np.ndarray) -> float | None:
     return float(np.abs(landed[: len(LANDINGS)] / LANDINGS - 1.0).max())
 
 
-def distance(history: History, reference: History) -> float:
+def distance(history: FirstMonitor, reference: FirstMonitor) -> float:
     """Root mean square of the difference of two histories, over that of the second."""
     at = np.arange(0.0, min(history.times[-1], reference.times[-1]), EVERY)
     mine, other = (np.interp(at, h.times, h.values) for h in (history, reference))
@@ -195,7 +193,7 @@ def picture(records: list[Measurement], path: Path) -> None:
     panels: dict[str, dict[str, list[tuple[float, float | None]]]] = {}
     for r in records:
         panels.setdefault(r.axis, {}).setdefault(r.case, []).append((r.best, r.found["error"]))
-    draw.work_precision(path, panels)
+    diagrams.work_precision(path, panels)
 
 
 PICTURES = {"time_histories": picture}

@@ -14,7 +14,7 @@ LONG = 4.0  # s: what takes longer is measured once
 
 
 class TimedTask:
-    """Something to be timed. `prepare` is called before each run, off the clock."""
+    """Task to be timed. `prepare` is called before each run, off the clock."""
 
     def __init__(self, run: Callable[[], Any], prepare: Callable[[], Any] | None = None):
         self.run, self.prepare = run, prepare

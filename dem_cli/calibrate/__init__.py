@@ -1,0 +1,1 @@
+"""Calibration: the joint profile that comes closest to a test."""

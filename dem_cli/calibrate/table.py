@@ -25,11 +25,12 @@ class NamedShape(ProfileShape):
             return pair(self.central)
         if low != high or low % 2 == 0:
             return None
-        if self.lengths is None or len(self.lengths) == 1:
-            return None if self.lengths and isinstance(self.lengths[0], tuple) else (1.0 / low, 1.0 / low)
-        if any(isinstance(length, tuple) for length in self.lengths):
+        lengths = [length for length in self.lengths or () if not isinstance(length, tuple)]
+        if len(lengths) < len(self.lengths or ()):
             return None
-        share = self.lengths[low // 2] / sum(self.lengths)
+        if len(lengths) < 2:
+            return 1.0 / low, 1.0 / low
+        share = lengths[low // 2] / sum(lengths)
         return share, share
 
 

@@ -1,4 +1,4 @@
-"""The cases of a calibration: the one in the file with plane joints, and with every shape and aperture."""
+"""Trial cases of a calibration: the one in the file with plane joints, and with every shape and aperture."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ class CalibrationTrial(NamedTuple):
 
     @property
     def name(self) -> str:
+        """What the table and messages call it."""
         if self.shape is None or self.aperture is None:
             return "plane joints"
         return f"shape {self.shape.name}, aperture {1e3 * self.aperture:.3g} mm"

@@ -1,0 +1,1 @@
+"""Case files: tables, units, names, and errors with their line."""

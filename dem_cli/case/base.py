@@ -6,6 +6,7 @@ Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TO
 from __future__ import annotations
 
 import math
+from types import GenericAlias
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -16,7 +17,7 @@ Pair = tuple[float, float]  # a point, vector or force in the x–y plane
 
 
 class KeyProblem(ValueError):
-    """Raised in a validator to blame one key below the table being validated.
+    """Validation error of one key below the table being validated.
 
     `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`
     """
@@ -73,11 +74,16 @@ def as_tuples(value: Any) -> Any:
 
 def one_or_more(table: Any) -> Any:
     """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
-    return Annotated[tuple[table, ...], OneOrMore()]  # type: ignore[valid-type]
+    return Annotated[sequence_of(table), OneOrMoreSchema()]
 
 
-class OneOrMore:
-    """Tells editors, by the JSON Schema, that one table will do."""
+def sequence_of(table: Any) -> Any:
+    """The type of a tuple of any number of these, made while the program runs."""
+    return GenericAlias(tuple, (table, ...))
+
+
+class OneOrMoreSchema:
+    """JSON Schema of a list of tables for which one table will do."""
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
         several = handler(core_schema)

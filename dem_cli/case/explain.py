@@ -1,4 +1,4 @@
-"""Which keys and tables of a case file a user means: `joints.dry.friction`, `structure.arch`, `friction`."""
+"""Search for keys and tables of the case file: `joints.dry.friction`, `structure.arch`, `friction`."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
-from dem_cli.case.keys import NAME, CaseTable, Key, tables
+from dem_cli.case.keys import NAME_PLACEHOLDER, CaseKey, CaseTable, tables
 from dem_cli.errors import UsageError
 
 CLOSE = 0.75  # a name that is so near to a key is a slip, not a material or a joint of that name
-PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
+DOC_PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
     "joints": "docs/laws/{kind}.md",
     "joints.NAME.profile": "docs/profile.md",
     "joints.NAME.softening": "docs/laws/friction-softening.md",
@@ -31,15 +31,16 @@ PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
 }
 
 
-class Entry(NamedTuple):
+class CaseEntry(NamedTuple):
     """A key as it is in tables of some kinds, or, without a key, the table itself."""
 
     table: CaseTable
-    key: Key | None
+    key: CaseKey | None
     kinds: tuple[str, ...]
 
     @property
     def path(self) -> str:
+        """Its key path."""
         return self.key.path if self.key else ".".join(self.table.path)
 
     @property
@@ -47,15 +48,15 @@ class Entry(NamedTuple):
         """The page of the documentation that says most about it."""
         steps, page = list(self.table.path), ""
         while steps and not page:
-            page = PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
-            page = page or PAGES.get(".".join(steps), "")
+            page = DOC_PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
+            page = page or DOC_PAGES.get(".".join(steps), "")
             steps.pop()
         if "{kind}" in page:
             return page.format(kind=self.kinds[0]) if len(self.kinds) == 1 else "docs/laws/README.md"
         return page or "docs/case.md"
 
 
-def find(model: type[BaseModel], query: str) -> list[Entry]:
+def find(model: type[BaseModel], query: str) -> list[CaseEntry]:
     """Every key or table that `query` may mean, alike ones together. Raises UsageError where there is none."""
     words = [word for word in re.sub(r"[\[\]\"' ]", "", query).split(".") if word and not word.isdigit()]
     names: dict[tuple[str, ...], set[str]] = {}
@@ -68,26 +69,26 @@ def find(model: type[BaseModel], query: str) -> list[Entry]:
     return _together(entry for rank, entry in found if rank == best)
 
 
-def entries(model: type[BaseModel]) -> Iterator[Entry]:
+def entries(model: type[BaseModel]) -> Iterator[CaseEntry]:
     """All tables and all keys, of each kind for itself; keys whose value can only be a table as that table."""
     for table in tables(model):
         if table.path:
-            yield Entry(table, None, table.kinds)
-        yield from (Entry(table, key, table.kinds) for key in table.keys if not key.only_tables)
+            yield CaseEntry(table, None, table.kinds)
+        yield from (CaseEntry(table, key, table.kinds) for key in table.keys if not key.only_tables)
 
 
-def _rank(words: Sequence[str], entry: Entry, names: Collection[str]) -> tuple[int, int] | None:
+def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tuple[int, int] | None:
     """How badly words name an entry: whether its path is cut in front, words that are a user's own names; or None."""
     steps: list[Any] = list(entry.table.path)
     if entry.kinds:
-        steps.insert(2 if steps[1:2] == [NAME] else 1, set(entry.kinds))
+        steps.insert(2 if steps[1:2] == [NAME_PLACEHOLDER] else 1, set(entry.kinds))
     if entry.key:
         steps.append(entry.key.name)
     own = _own_names(words, steps, names)
     if own is not None:
         return 0, own
     for left_out in range(1, len(steps)):
-        if isinstance(steps[left_out], str) and steps[left_out] != NAME:
+        if isinstance(steps[left_out], str) and steps[left_out] != NAME_PLACEHOLDER:
             own = _own_names(words, steps[left_out:], names)
             if own is not None:
                 return 1, own
@@ -103,7 +104,7 @@ def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str
     if not steps:
         return None if words else 0
     step, rest = steps[0], steps[1:]
-    if isinstance(step, set) or step == NAME:  # may be left out
+    if isinstance(step, set) or step == NAME_PLACEHOLDER:  # may be left out
         found = _own_names(words, rest, names)
         if found is not None or not words:
             return found
@@ -116,9 +117,9 @@ def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str
     return _own_names(words[1:], rest, names) if words and words[0] == step else None
 
 
-def _together(found: Iterator[Entry]) -> list[Entry]:
+def _together(found: Iterator[CaseEntry]) -> list[CaseEntry]:
     """Entries that say the same of several kinds as one."""
-    kept: dict[tuple[Any, ...], Entry] = {}
+    kept: dict[tuple[Any, ...], CaseEntry] = {}
     for entry in found:
         key = entry.key
         same: tuple[Any, ...] = (entry.path, entry.kinds)
@@ -133,7 +134,7 @@ def unknown(model: type[BaseModel], query: str, words: Sequence[str]) -> str:
     """What to say about a key that does not exist: the nearest ones, best first."""
     full: dict[str, str] = {}
     for entry in entries(model):
-        steps = [step for step in entry.path.split(".") if step != NAME]
+        steps = [step for step in entry.path.split(".") if step != NAME_PLACEHOLDER]
         for short in (".".join(steps), steps[-1], *(".".join((steps[0], kind, *steps[1:])) for kind in entry.kinds)):
             full.setdefault(short, ".".join(steps))
     without_names = [word for i, word in enumerate(words) if not (i == 1 and words[0] in ("joints", "materials"))]

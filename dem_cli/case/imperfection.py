@@ -1,4 +1,4 @@
-"""[[imperfection]]: how far blocks are from what was drawn."""
+"""[[imperfection]]: geometric imperfections, how far blocks are from what was drawn."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
-from dem_cli.case.words import show
+from dem_cli.case.wording import show
 
 ERRORS = ("height", "length", "wedge", "shift", "lean")  # the keys that change something
 
 
-class Normal(CaseModel):
+class NormalDistribution(CaseModel):
     """{ mean = 0.0, deviation = 0.001 }: drawn from the normal distribution."""
 
     mean: float = Field(default=0.0, description="mean of what is drawn [unit of the key]")
     deviation: Positive = Field(description="standard deviation of what is drawn [unit of the key]", examples=[0.001])
 
 
-Error = float | Pair | Normal  # for all the same | [least, most], drawn uniformly | drawn normally
+Error = float | Pair | NormalDistribution  # for all the same | [least, most], drawn uniformly | drawn normally
 
 
 class Imperfection(CaseModel):

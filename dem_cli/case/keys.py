@@ -17,17 +17,17 @@ import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from dem_cli.case.base import OneOrMore
-from dem_cli.case.words import Kind, allowed, is_table, kind_of
+from dem_cli.case.base import OneOrMoreSchema
+from dem_cli.case.wording import DeclaredType, allowed, is_table, kind_of
 
-NAME = "NAME"  # stands for a name of the user's choice: [materials.NAME]
-NOTHING: tuple[Any, ...] = (None, (), {}, "")
+NAME_PLACEHOLDER = "NAME"  # stands for a name of the user's choice: [materials.NAME]
+EMPTY_VALUES: tuple[Any, ...] = (None, (), {}, "")
 TAGS = ("kind", "law")  # keys that say which kind of table it is
-UNITS = (
+KNOWN_UNITS = (
     "-", "m", "s", "kg", "N", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m", "J/m2",
     "deg per decade of stress", "unit of the key", "unit of the quantity",
 )  # fmt: skip
-BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, UNITS)) + r")\]")
+BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, KNOWN_UNITS)) + r")\]")
 # Of a docstring: `[materials.NAME]`, `[analysis] with kind = "modes": `, `damping.rayleigh: `.
 HEADING = re.compile(r"^(\[[\w.*\[\]]+\.?$|[\[a-z][^:\n]*: )")
 DEFAULT = re.compile(r"[;,]? ?\bdefault: (.*)$")
@@ -58,13 +58,13 @@ class CaseTable(NamedTuple):
         return lines[0] if self.tag == "law" else HEADING.sub("", "\n".join(lines)) or self.said
 
     @property
-    def keys(self) -> list[Key]:
+    def keys(self) -> list[CaseKey]:
         """Its keys, the one that names the kind first."""
         names = sorted(self.declared.model_fields, key=lambda name: name != self.tag)
-        return [Key(self, name, self.declared.model_fields[name]) for name in names]
+        return [CaseKey(self, name, self.declared.model_fields[name]) for name in names]
 
 
-class Key(NamedTuple):
+class CaseKey(NamedTuple):
     """A key of a table."""
 
     table: CaseTable
@@ -77,7 +77,7 @@ class Key(NamedTuple):
         return ".".join((*self.table.path, self.name))
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> DeclaredType:
         """Its type and the limits on its value."""
         return kind_of(self.field.annotation, self.field.metadata)
 
@@ -111,6 +111,7 @@ class Key(NamedTuple):
 
     @property
     def required(self) -> bool:
+        """Whether it must be given."""
         return self.field.is_required()
 
     @property
@@ -120,7 +121,7 @@ class Key(NamedTuple):
         if said:
             return said[1]
         value = self._default
-        return "" if value in NOTHING else toml(value)
+        return "" if value in EMPTY_VALUES else toml(value)
 
     @property
     def _default(self) -> Any:
@@ -142,7 +143,7 @@ class Key(NamedTuple):
     def example(self) -> str:
         """A line with it, without the table; empty for a table of tables that has sections of its own."""
         value = self.field.examples[0] if self.field.examples else self._default
-        return "" if value in NOTHING else f"{self.name} = {toml(value)}"
+        return "" if value in EMPTY_VALUES else f"{self.name} = {toml(value)}"
 
 
 def tables(model: type[BaseModel]) -> list[CaseTable]:
@@ -167,7 +168,7 @@ def _below(table: CaseTable) -> Iterator[CaseTable]:
 
 
 def _inside(
-    kind: Kind, steps: tuple[str, ...] = (), several: bool = False
+    kind: DeclaredType, steps: tuple[str, ...] = (), several: bool = False
 ) -> Iterator[tuple[type[BaseModel], tuple[str, ...], bool]]:
     """Tables that a value of this kind may be or hold: class, path to it, whether there may be many."""
     for choice in kind.choices:
@@ -175,13 +176,13 @@ def _inside(
         if is_table(choice.type):
             yield choice.type, steps, several
         elif origin is dict:
-            yield from _inside(kind_of(arguments[1]), (*steps, NAME), several)
+            yield from _inside(kind_of(arguments[1]), (*steps, NAME_PLACEHOLDER), several)
         elif origin is tuple and arguments[-1] is Ellipsis:
-            one_will_do = any(isinstance(limit, OneOrMore) for limit in choice.limits)
+            one_will_do = any(isinstance(limit, OneOrMoreSchema) for limit in choice.limits)
             yield from _inside(kind_of(arguments[0]), steps, not one_will_do)
 
 
-def _holds_float(kind: Kind) -> bool:
+def _holds_float(kind: DeclaredType) -> bool:
     """Whether a value of this kind is or may hold a float, tables aside."""
     inner = [kind_of(part) for choice in kind.choices for part in get_args(choice.type) if part is not Ellipsis]
     literal = get_origin(kind.type) is Literal

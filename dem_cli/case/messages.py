@@ -1,4 +1,4 @@
-"""What the validator found, in the words of the case file: value found, what is allowed, the nearest name."""
+"""Validation errors in the words of the case file: value found, what is allowed, the nearest name."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from dem_cli.case.base import KeyProblem
-from dem_cli.case.words import (
-    Kind,
+from dem_cli.case.wording import (
+    DeclaredType,
     allowed,
     either,
     is_table,
@@ -24,23 +24,23 @@ from dem_cli.case.words import (
 from dem_cli.errors import CaseProblem, KeyPath
 
 
-class Spot(NamedTuple):
-    """Where an error belongs.
+class ErrorLocation(NamedTuple):
+    """Location of a validation error.
 
     kinds: what may stand there; owner: the table around; union, choices: path and members of the union above.
     """
 
     path: KeyPath
-    kinds: tuple[Kind, ...]
+    kinds: tuple[DeclaredType, ...]
     owner: type[BaseModel] | None
     union: KeyPath | None
-    choices: tuple[Kind, ...] = ()
+    choices: tuple[DeclaredType, ...] = ()
 
 
 def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str, Any]) -> list[CaseProblem]:
     """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
     found: list[CaseProblem] = []
-    unions: dict[KeyPath, list[tuple[Spot, Any]]] = {}
+    unions: dict[KeyPath, list[tuple[ErrorLocation, Any]]] = {}
     for item in error.errors(include_url=False):
         if item["type"] == "missing" and isinstance(item["loc"][-1], int):  # the list is too short
             item["type"], item["loc"] = "too_short", item["loc"][:-1]
@@ -62,7 +62,7 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     return list(dict.fromkeys(found))
 
 
-def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
+def describe(spot: ErrorLocation, item: Any, data: dict[str, Any]) -> CaseProblem:
     """One error of the validator as a problem."""
     path, kind = spot.path, item["type"]
     if kind == "extra_forbidden":
@@ -93,13 +93,13 @@ def describe(spot: Spot, item: Any, data: dict[str, Any]) -> CaseProblem:
     return CaseProblem(path, message)
 
 
-def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Spot:
+def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> ErrorLocation:
     """Walk the declared types along `loc`, leaving out the items that only name a member of a union."""
     path: KeyPath = ()
-    kinds: tuple[Kind, ...] = (Kind(model),)
+    kinds: tuple[DeclaredType, ...] = (DeclaredType(model),)
     owner: type[BaseModel] | None = None
     union: KeyPath | None = None
-    choices: tuple[Kind, ...] = ()
+    choices: tuple[DeclaredType, ...] = ()
     for i, item in enumerate(loc):
         if len(kinds) == 1 and len(kinds[0].choices) > 1:
             members = kinds[0].choices
@@ -116,10 +116,10 @@ def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Spot
             kinds, owner = inner, tables[0] if tables else owner
     if len(kinds) == 1 and len(kinds[0].choices) > 1:
         choices, kinds = kinds[0].choices, kinds[0].choices
-    return Spot(path, kinds, owner, union, choices)
+    return ErrorLocation(path, kinds, owner, union, choices)
 
 
-def element(kind: Kind, item: str | int) -> tuple[Kind, ...]:
+def element(kind: DeclaredType, item: str | int) -> tuple[DeclaredType, ...]:
     """What stands at a key or index of a value of this kind; nothing where it has no such part."""
     arguments = get_args(kind.type)
     origin = get_origin(kind.type)

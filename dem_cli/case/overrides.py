@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import tomli
 from pydantic import BaseModel
 
-from dem_cli.case.words import listing, show, unknown_name
+from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
 
 NAMED = ("materials", "joints")  # tables of named tables: a new name is taken for a slip
 
 
 class Override(NamedTuple):
-    """A key path, as typed and resolved, its new value, and where in the file it stands (a sweep; () is --set)."""
+    """Override of one value: key path as typed and resolved, the value, and where it stands (a sweep; () is --set)."""
 
     text: str
     path: KeyPath

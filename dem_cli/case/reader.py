@@ -1,4 +1,4 @@
-"""From a TOML file to a validated case; every mistake in it at once, each with its line and column."""
+"""Reader of case files: from TOML to a validated case; every mistake in it at once, each with its line and column."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from typing import Any
 import tomli
 from pydantic import ValidationError
 
-from dem_cli.case import names
-from dem_cli.case.doubts import doubts
+from dem_cli.case import cross_references
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import Override, apply, parse
-from dem_cli.case.scanner import Places
+from dem_cli.case.plausibility import doubts
+from dem_cli.case.scanner import KeyPositions
 from dem_cli.case.schema import Case
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
 
@@ -33,7 +33,7 @@ SYNTAX = {  # how messages of the parser begin -> the same in plain words
 }
 
 
-class Source:
+class CaseSource:
     """The text that a case came from: says where a problem stands."""
 
     def __init__(self, path: Path, text: str, overrides: Sequence[Override] = ()):
@@ -42,8 +42,9 @@ class Source:
         self.overrides = tuple(overrides)
 
     @cached_property
-    def places(self) -> Places:
-        return Places(self.text)
+    def places(self) -> KeyPositions:
+        """Where every key and value of the text stands."""
+        return KeyPositions(self.text)
 
     def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
         """Line and column, from 1, of the value at a key path (or of its key)."""
@@ -51,7 +52,7 @@ class Source:
 
     def as_written(self, path: KeyPath) -> KeyPath:
         """A key path without the number of a table that is not written as a list: motion.0.file -> motion.file."""
-        one = path[1:2] == (0,) and path[0] in names.ONE_OR_MORE
+        one = path[1:2] == (0,) and path[0] in cross_references.ONE_OR_MORE
         alone = one and path[:2] not in self.places.values
         return path[:1] + path[2:] if alone else path
 
@@ -85,10 +86,10 @@ class Source:
         return where + (f"{dotted(path)}: " if path else "") + problem.message
 
 
-class LoadedCase(Source):
+class LoadedCase(CaseSource):
     """A valid case, the text it came from and what is doubtful about it (`warnings`, one line each)."""
 
-    def __init__(self, case: Case, source: Source):
+    def __init__(self, case: Case, source: CaseSource):
         super().__init__(source.path, source.text, source.overrides)
         self.case = case
         self.warnings = [self.render(doubt) for doubt in doubts(case)]
@@ -113,13 +114,13 @@ def read_case(
         change, problem = apply(data, change, model.model_fields)
         resolved.append(change)
         found += [problem] if problem else []
-    source = Source(path, text, resolved)
+    source = CaseSource(path, text, resolved)
     if found:
         raise CaseError(found, source.render)
     return LoadedCase(validate(data, model, source), source)
 
 
-def validate(data: dict[str, Any], model: type[Case], source: Source) -> Case:
+def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Case:
     """The case in `data`, or CaseError with every mistake in the order of the file."""
     if data.get("dimension") == 3 and data["dimension"] is not True:  # the rest would be misread as 2D
         found = [CaseProblem(("dimension",), "3D is not available yet in this version: only 2")]
@@ -128,13 +129,13 @@ def validate(data: dict[str, Any], model: type[Case], source: Source) -> Case:
     if found:
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
-    names.complete(data, source.path.stem)
+    cross_references.complete(data, source.path.stem)
     case = None
     try:
         case = model.model_validate(data, context={"folder": source.path.parent})  # where relative paths start
     except ValidationError as error:
         found += problems_from(error, model, data)
-    found += names.problems(data)
+    found += cross_references.problems(data)
     if case is None or found:
         found.sort(key=lambda problem: source.locate(problem.path, problem.at_key))
         raise CaseError(found, source.render)

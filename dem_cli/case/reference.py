@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
-from dem_cli.case.words import show
+from dem_cli.case.wording import show
 
 Word = Annotated[str, Field(min_length=1)]
 NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes; or 'relative', a share of the value)"

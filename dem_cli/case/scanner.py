@@ -1,4 +1,4 @@
-"""Where every key and value of a TOML text stands. The text has been parsed before: its syntax is right."""
+"""Line and column of every key and value of a TOML text. The text has been parsed before: its syntax is right."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STRING = re.compile(
 SCALAR = re.compile(r"[^,\]}\n#]*")
 
 
-class Places:
+class KeyPositions:
     """Line and column (from 1) of keys and values, by key path."""
 
     def __init__(self, text: str):
@@ -58,7 +58,13 @@ class Places:
             at = self._blank(at)
 
     def _blank(self, at: int) -> int:
-        return BLANK.match(self.text, at).end()  # type: ignore[union-attr]
+        return self._end(BLANK, at)
+
+    def _end(self, pattern: re.Pattern[str], at: int) -> int:
+        """Where what the pattern describes ends; it stands at `at`, because the text is right."""
+        match = pattern.match(self.text, at)
+        assert match is not None, f"not {pattern.pattern} at {at}"
+        return match.end()
 
     def _dotted(self, at: int) -> tuple[list[str], int]:
         """The parts of a dotted key and where it ends."""
@@ -97,16 +103,16 @@ class Places:
             path += (part,)
             self.keys.setdefault(path, at)
             self.values.setdefault(path, at)
-        return self._value(EQUALS.match(self.text, end).end(), path)  # type: ignore[union-attr]
+        return self._value(self._end(EQUALS, end), path)
 
     def _value(self, at: int, path: KeyPath) -> int:
         """Note the value at `path`, and what is in it; returns where it ends."""
         self.values[path] = at
         first = self.text[at]
         if first in "\"'":
-            return STRING.match(self.text, at).end()  # type: ignore[union-attr]
+            return self._end(STRING, at)
         if first not in "[{":
-            return SCALAR.match(self.text, at).end()  # type: ignore[union-attr]
+            return self._end(SCALAR, at)
         closing = "]" if first == "[" else "}"
         count = 0
         at = self._blank(at + 1)

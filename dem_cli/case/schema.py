@@ -9,7 +9,8 @@ import math
 from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import or_
-from typing import Annotated, Any, Literal, cast
+from types import GenericAlias
+from typing import Annotated, Any, Literal, cast, get_args
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
@@ -17,10 +18,12 @@ from dem_cli.case.base import (
     CaseModel,
     KeyProblem,
     NonNegative,
+    OneOrMoreSchema,
     Pair,
     Positive,
     StructureBase,
     one_or_more,
+    sequence_of,
 )
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.reference import Reference
@@ -181,7 +184,7 @@ class Output(CaseModel):
     rate: Positive = Field(default=200.0, description="samples of the monitors per second, in time histories [1/s]")
 
 
-class WrittenBy(CaseModel):
+class ProgramStamp(CaseModel):
     """[dem]: put into the effective case by the program."""
 
     version: str = Field(description="version of dem that wrote this file", examples=["0.2.0"])
@@ -196,7 +199,7 @@ class Case(CaseModel):
     dimension: Literal[2] = Field(default=2, description="of space; only 2 so far")
     gravity: NonNegative = Field(default=9.81, description="acceleration towards −y [m/s2]")
     seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
-    dem: WrittenBy | None = Field(default=None, description="written by the program")
+    dem: ProgramStamp | None = Field(default=None, description="written by the program")
     materials: dict[str, Material] = Field(min_length=1, description="materials by name")
     joints: dict[str, Any] = Field(min_length=1, description="joints by name; the first is the default one")
     interface: tuple[Interface, ...] = Field(default=(), description="other joints between two materials")
@@ -210,7 +213,7 @@ class Case(CaseModel):
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
-    reference: one_or_more(Reference) = Field(  # type: ignore[valid-type]
+    reference: Annotated[tuple[Reference, ...], OneOrMoreSchema()] = Field(
         default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
     )
     motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")
@@ -248,8 +251,8 @@ def case_model(
     analysis = one_of(analyses, "kind", default="pushover")
     fields = Case.model_fields
     narrowed: dict[str, Any] = {
-        "structure": (tuple[structure, ...], Field(default=(), description=fields["structure"].description)),  # type: ignore[valid-type]
-        "joints": (dict[str, joint], Field(min_length=1, description=fields["joints"].description)),  # type: ignore[valid-type]
+        "structure": (sequence_of(structure), Field(default=(), description=fields["structure"].description)),
+        "joints": (GenericAlias(dict, (str, joint)), Field(min_length=1, description=fields["joints"].description)),
         "analysis": (
             analysis,
             Field(default_factory=dict, validate_default=True, description=fields["analysis"].description),
@@ -258,7 +261,7 @@ def case_model(
         "calibration": (calibration and calibration | None, fields["calibration"]),
         "damping": (damping and damping | None, fields["damping"]),
         "initial": (
-            tuple[initial, ...] if initial else tuple[()],  # type: ignore[valid-type]
+            sequence_of(initial) if initial else tuple[()],
             Field(default=(), description=fields["initial"].description),
         ),
     }
@@ -269,7 +272,7 @@ def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None =
     """A table whose `key` says which of the `kinds` it is; without the key it is the `default`."""
     for kind, parameters in kinds.items():
         field = parameters.model_fields.get(key)
-        if field is None or field.annotation != Literal[kind]:  # type: ignore[valid-type]
+        if field is None or get_args(field.annotation) != (kind,):
             raise TypeError(f"{parameters.__name__} must declare {key}: Literal[{kind!r}]")
     classes = list(kinds.values())
     table: Any = reduce(or_, classes)

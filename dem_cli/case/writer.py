@@ -15,8 +15,8 @@ from dem_cli.case.schema import Case
 from dem_cli.version import __version__
 
 HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\n"
-NUMBERS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
-FIRST = ("kind", "law", "id")  # keys that tell what a table is
+NUMBER_LISTS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
+LEADING_KEYS = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
     "materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "motion", "monitor",
     "reference",
@@ -50,13 +50,13 @@ def text_of_tables(tables: Mapping[str, Any]) -> str:
 
 def on_one_line(text: str) -> str:
     """Lists of numbers on one line each; tomli-w gives every number its own."""
-    return NUMBERS.sub(lambda lines: f"[{', '.join(lines[1].replace(',', '').split())}]", text)
+    return NUMBER_LISTS.sub(lambda lines: f"[{', '.join(lines[1].replace(',', '').split())}]", text)
 
 
 def effective(table: CaseModel) -> dict[str, Any]:
     """All keys of a table, but for defaults that may not be written out (`bond` beside `offset`)."""
     data = table.model_dump(exclude_none=True)
-    data = {key: data[key] for key in (*FIRST, *data) if key in data}
+    data = {key: data[key] for key in (*LEADING_KEYS, *data) if key in data}
     if accepted(table, data):
         return data
     kept = {key: value for key, value in data.items() if key in table.model_fields_set}

@@ -1,0 +1,1 @@
+"""The `dem` command: one file per subcommand."""

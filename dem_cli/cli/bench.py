@@ -14,7 +14,7 @@ from dem_cli.bench.machine import describe, one_thread
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
-    from dem_cli.bench.record import Options
+    from dem_cli.bench.record import BenchOptions
 
 
 @click.command("bench")
@@ -47,14 +47,14 @@ def command(
     """
     one_thread()
     from dem_cli.bench.page import data_file, keep, render, write
-    from dem_cli.bench.record import Options, as_json, read
+    from dem_cli.bench.record import BenchOptions, as_json, read
 
     if redraw and folder is None:
         raise UsageError("--redraw needs the folder of benchmarks.json: -o DIR")
     check_places(folder, json_file)
     found = read(data_file(folder)) if redraw and folder is not None else {}
     for name in [] if redraw else checked(groups):
-        found[name] = measured(name, Options(quick, long, repeats))
+        found[name] = measured(name, BenchOptions(quick, long, repeats))
         if folder is not None:
             keep(folder, found)  # at once: what was measured is not lost if the rest is interrupted
     if json_file == "-":
@@ -89,7 +89,7 @@ def checked(groups: Sequence[str]) -> list[str]:
     return [name for name in registry.GROUPS if name in groups or not groups]
 
 
-def measured(name: str, options: Options) -> dict[str, Any]:
+def measured(name: str, options: BenchOptions) -> dict[str, Any]:
     """One group as JSON holds it."""
     from dem_cli.bench.cases import compiled
     from dem_cli.bench.record import group_table

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli.calibrate.answer import OK, TrialAnswer
+from dem_cli.calibrate.comparison import OK, TrialAnswer
 from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
+from dem_cli.output.record import Observer
 from dem_cli.pipeline.batches import usable_cores
 from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.version import __version__
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
     from dem_cli.calibrate.trials import CalibrationTrial
     from dem_cli.case.reader import LoadedCase
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Frame, HistoryRow
+    from dem_cli.output.record import HistoryRow
 
-CASE, TABLE, PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
+CALIBRATED_CASE, TRIALS_TABLE, TRIALS_PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
 
 
 @click.command("calibrate", short_help="Find the joint profile that comes closest to a test.")
@@ -81,7 +82,7 @@ def check(loaded: LoadedCase) -> None:
         )
     joint = case.calibration.joint
     if joint and joint not in case.joints:
-        from dem_cli.case.words import unknown_name
+        from dem_cli.case.wording import unknown_name
 
         problem = CaseProblem(("calibration", "joint"), unknown_name("joint", joint, list(case.joints)))
         raise CaseError([problem], loaded.render)
@@ -127,33 +128,28 @@ def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[
     return [found[i] for i in range(len(plan))]
 
 
-class Last:
-    """An observer that keeps the rows only."""
+class RowKeeper(Observer):
+    """An observer that keeps the rows of the history."""
 
     def __init__(self) -> None:
         self.rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:
+        """Keep it."""
         self.rows.append(row)
-
-    def frame(self, frame: Frame) -> None:
-        pass
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        pass
 
 
 def solved(text: str) -> TrialAnswer:
     """One trial, up to failure: its case as text, so that it can go to another process."""
     from dem_cli import api
     from dem_cli.analyses.solve import solve
-    from dem_cli.case.reader import LoadedCase, Source, parse_toml, validate
+    from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
 
-    source = Source(Path(CASE), text)
+    source = CaseSource(Path(CALIBRATED_CASE), text)
     loaded = LoadedCase(validate(parse_toml(source.path, text), api.make_case_model(), source), source)
     case = loaded.case
     only_failure = case.analysis.model_copy(update={"follow": 0.0, "limit": False})
-    observer = Last()
+    observer = RowKeeper()
     try:
         model = api.build_model(loaded)
         summary = solve(case.model_copy(update={"analysis": only_failure}), model, observer).summary
@@ -183,7 +179,7 @@ def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resoluti
 
 def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]) -> dict[str, Any]:
     """What summary.json holds. Raises SolverError where no profile has a failure load."""
-    from dem_cli.calibrate.answer import closest, rows
+    from dem_cli.calibrate.comparison import closest, rows
     from dem_cli.output.summary import ordered
 
     case, measured = loaded.case, loaded.case.calibration
@@ -226,22 +222,22 @@ def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
 
 def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[CalibrationTrial], quiet: bool) -> None:
     """Summary, table, the case with the closest profile, and the picture."""
-    from dem_cli.calibrate.answer import as_csv
+    from dem_cli.calibrate.comparison import as_csv
     from dem_cli.case.writer import case_text
     from dem_cli.output.folder import write_error
     from dem_cli.output.summary import write_summary
 
     best = summary["trials"].index(summary["closest"])
     try:
-        (folder.path / TABLE).write_text(as_csv(summary["trials"]), encoding="utf-8", newline="\n")
-        (folder.path / CASE).write_text(case_text(plan[best].case), encoding="utf-8", newline="\n")
+        (folder.path / TRIALS_TABLE).write_text(as_csv(summary["trials"]), encoding="utf-8", newline="\n")
+        (folder.path / CALIBRATED_CASE).write_text(case_text(plan[best].case), encoding="utf-8", newline="\n")
         write_summary(folder.path, summary)
     except OSError as error:
         raise write_error(error, folder.final) from None
     try:
         from dem_cli.post.calibration import draw_calibration
 
-        draw_calibration(summary, folder.path / PICTURE)
+        draw_calibration(summary, folder.path / TRIALS_PICTURE)
     except (DemError, OSError) as error:
         if isinstance(error, OutputError):
             raise
@@ -250,7 +246,7 @@ def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Calibrat
 
 def answer(summary: dict[str, Any], folder: Path) -> str:
     """The table of all profiles, and what was written."""
-    from dem_cli.calibrate.answer import as_text
+    from dem_cli.calibrate.comparison import as_text
     from dem_cli.cli.run import file_names, shown
 
     lines = [f"{summary['title']}: profiles of joint '{summary['joint']}'", *as_text(summary)]

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dem_cli.errors import DemError, UsageError
 
 if TYPE_CHECKING:
     from dem_cli.output.reader import Results
-    from dem_cli.post.chart import Paper
+    from dem_cli.post.chart import ChartOptions
     from dem_cli.post.labels import Quantity
-    from dem_cli.post.table import SweepTable
+    from dem_cli.post.sweep_table import SweepTable
 
-LONGEST = 60  # letters of a cell of a listing
+LONGEST_CELL = 60  # letters of a cell of a listing
 
 
 @cache
@@ -32,40 +32,48 @@ def describe(key: str) -> tuple[str, str]:
     return (meanings.pop() if len(meanings) == 1 else "", units.pop() if len(units) == 1 else "")
 
 
-def of_runs(
-    folders: Sequence[Path], x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: Paper
-) -> None:
+class ColumnChoice(NamedTuple):
+    """Columns that a chart shows, in the user's words."""
+
+    x: str | None = None
+    ys: Sequence[str] = ()
+    by: Sequence[str] = ()  # keys of the case: a curve for each of their values
+    where: Sequence[str] = ()  # KEY=VALUE: of a sweep, only runs that have this value
+    as_map: bool = False  # of a sweep: a heat map over two keys
+
+
+def of_runs(folders: Sequence[Path], choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
     """A curve for each run. Raises UsageError."""
     from dem_cli.output.reader import read
-    from dem_cli.post.curves import Member, draw_curves
+    from dem_cli.post.curves import FamilyMember, draw_curves
     from dem_cli.post.labels import of_key
-    from dem_cli.post.table import shown
+    from dem_cli.post.sweep_table import shown
 
     results = [read(folder) for folder in folders]
-    x, ys = _columns(results[0], x, ys)
-    family = ""
+    x, ys = _columns(results[0], choice)
+    by, family = choice.by, ""
     names = _names(folders)
-    members = [Member(name, name, run) for name, run in zip(names, results)]
+    members = [FamilyMember(name, name, run) for name, run in zip(names, results)]
     if by:
         family = ", ".join(of_key(key, describe).label() for key in by)
         values = [tuple(_case_value(folder, key) for key in by) for folder in folders]
         members = [
-            Member(", ".join(map(shown, row)), row[0] if len(by) == 1 else row, run)
+            FamilyMember(", ".join(map(shown, row)), row[0] if len(by) == 1 else row, run)
             for row, run in zip(values, results)
         ]
     titles = list(dict.fromkeys(str(run.summary.get("title", "")) for run in results))
-    draw_curves(members, x, ys, target, paper, titles[0] if len(titles) == 1 else "", family)
+    draw_curves(members, x, ys, target, options, titles[0] if len(titles) == 1 else "", family)
 
 
-def _columns(results: Results, x: str | None, ys: Sequence[str]) -> tuple[str, list[str]]:
+def _columns(results: Results, choice: ColumnChoice) -> tuple[str, list[str]]:
     """What was asked for, with the usual columns where nothing was said."""
-    from dem_cli.post.columns import usual
+    from dem_cli.post.run_columns import usual
 
     found = usual(results)
-    if not ys and found is None:
+    if not choice.ys and found is None:
         raise UsageError(f"a run of kind {results.kind!r} has no usual curve: choose with -x and -y (see --list)")
     at, upwards = found or ("step", [])
-    return x or at, list(ys) or upwards
+    return choice.x or at, list(choice.ys) or upwards
 
 
 def _names(folders: Sequence[Path]) -> list[str]:
@@ -93,47 +101,45 @@ def _case_value(folder: Path, key: str) -> Any:
     return found if isinstance(found, (int, float, str, bool)) else str(found)
 
 
-def of_sweep(
-    folder: Path, x: str | None, ys: Sequence[str], by: Sequence[str], where: Sequence[str], as_map: bool,
-    target: Path, paper: Paper,
-) -> None:  # fmt: skip
+def of_sweep(folder: Path, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
     """Columns of its table, or of its runs where the table has none of that name. Raises UsageError."""
     from dem_cli.post.labels import nearest
     from dem_cli.post.maps import draw_map
-    from dem_cli.post.sweeps import draw_sweep
-    from dem_cli.post.table import read_sweep
+    from dem_cli.post.sweep_chart import draw_sweep
+    from dem_cli.post.sweep_table import read_sweep
 
-    table = read_sweep(folder).only(dict(map(_condition, where)))
-    inside = [name for name in (x, *ys) if name and nearest(name, table.names) is None]
-    if inside and not as_map and _has_runs(table, inside):
-        _runs_of_sweep(table, x, ys, by, target, paper)
+    table = read_sweep(folder).only(dict(map(_condition, choice.where)))
+    x, by = choice.x, choice.by
+    inside = [name for name in (x, *choice.ys) if name and nearest(name, table.names) is None]
+    if inside and not choice.as_map and _has_runs(table, inside):
+        _runs_of_sweep(table, choice, target, options)
         return
     quantities = _quantities(table)
-    ys = [table.exact(y) for y in ys] or [table.answer()]
+    ys = [table.exact(y) for y in choice.ys] or [table.answer()]
     ranked = table.ranked()
-    if as_map or _needs_map(table, x, ys, ranked):
+    if choice.as_map or _needs_map(table, x, ys, ranked):
         keys = [table.exact(key) for key in (x, *by) if key]
         keys = (keys + [key for key in ranked if key not in keys])[:2]
         if len(keys) < 2:
             raise UsageError("--map needs two keys with more than one value each")
-        draw_map(table, keys[0], keys[1], ys[0], target, paper, quantities)
+        draw_map(table, keys[0], keys[1], ys[0], target, options, quantities)
         return
     if x is None and not ranked:
         raise UsageError(f"{folder}: no key has more than one value; choose a column with -x")
     across = table.exact(x) if x else ranked[0]
     families = [table.exact(key) for key in by] or [key for key in ranked if key != across and across in table.keys]
-    draw_sweep(table, across, ys, families, target, paper, quantities)
+    draw_sweep(table, across, ys, families, target, options, quantities)
 
 
 def _needs_map(table: SweepTable, x: str | None, ys: Sequence[str], ranked: Sequence[str]) -> bool:
     """Whether, where nobody said how, an answer in words over two keys would be nothing but lines on top of lines."""
-    from dem_cli.post.table import is_answer_in_words
+    from dem_cli.post.sweep_table import is_answer_in_words
 
     return x is None and len(ys) == 1 and len(ranked) == 2 and is_answer_in_words(table.columns[ys[0]])
 
 
 def _condition(text: str) -> tuple[str, Any]:
-    from dem_cli.post.table import value
+    from dem_cli.post.sweep_table import value
 
     name, sign, said = text.partition("=")
     if not sign:
@@ -153,7 +159,7 @@ def _quantities(table: SweepTable) -> dict[str, Quantity]:
 def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
     """Rows whose runs kept their results, and where these are."""
     from dem_cli.output.store import RESULTS
-    from dem_cli.output.sweeps import RUNS
+    from dem_cli.output.sweep_files import RUNS
 
     for i, run in enumerate(table.columns["run"]):
         folder = table.folder / RUNS / run
@@ -164,8 +170,8 @@ def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
 def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
     """Whether the runs know these columns. Raises UsageError where nobody can, and that is why."""
     from dem_cli.output.reader import read
-    from dem_cli.post.columns import tables
     from dem_cli.post.labels import nearest
+    from dem_cli.post.run_columns import tables
 
     first = next(_kept(table), None)
     if first is None:
@@ -174,31 +180,29 @@ def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
     return all(nearest(name, there) is not None for name in names)
 
 
-def _runs_of_sweep(
-    table: SweepTable, x: str | None, ys: Sequence[str], by: Sequence[str], target: Path, paper: Paper
-) -> None:
+def _runs_of_sweep(table: SweepTable, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
     """A curve for each run that is kept, coloured by a swept key."""
     from dem_cli.output.reader import read
     from dem_cli.post.chart import MOST_NAMES
-    from dem_cli.post.curves import Member, draw_curves
-    from dem_cli.post.table import shown
+    from dem_cli.post.curves import FamilyMember, draw_curves
+    from dem_cli.post.sweep_table import shown
 
     quantities = _quantities(table)
-    keys = [table.exact(key) for key in by] or table.ranked()
+    keys = [table.exact(key) for key in choice.by] or table.ranked()
     rows = [(tuple(table.columns[key][i] for key in keys), read(folder)) for i, folder in _kept(table)]
-    x, ys = _columns(rows[0][1], x, ys)
+    x, ys = _columns(rows[0][1], choice)
     if len({row for row, _ in rows}) > MOST_NAMES:  # too many to be named: coloured by the first key
         keys, rows = keys[:1], [(row[:1], run) for row, run in rows]
-    members = [Member(", ".join(map(shown, row)), row[0] if len(keys) == 1 else row, run) for row, run in rows]
+    members = [FamilyMember(", ".join(map(shown, row)), row[0] if len(keys) == 1 else row, run) for row, run in rows]
     family = ", ".join(quantities[key].label() for key in keys)
-    draw_curves(members, x, ys, target, paper, table.title, family)
+    draw_curves(members, x, ys, target, options, table.title, family)
 
 
 def listing(folders: Sequence[Path], sweep: bool) -> list[str]:
     """A line for each column: its name, its unit, and what it means."""
     from dem_cli.output.reader import read
-    from dem_cli.post.columns import tables
-    from dem_cli.post.table import distinct, numeric, read_sweep, shown
+    from dem_cli.post.run_columns import tables
+    from dem_cli.post.sweep_table import distinct, numeric, read_sweep, shown
 
     groups: list[tuple[str, list[tuple[str, ...]]]] = []
     if sweep:
@@ -223,7 +227,7 @@ def _laid_out(groups: Sequence[tuple[str, Sequence[tuple[str, ...]]]]) -> Iterat
     for title, rows in groups:
         if rows:
             yield title
-            widths = [min(LONGEST, max(len(row[i]) for row in rows)) for i in range(len(rows[0]))]
+            widths = [min(LONGEST_CELL, max(len(row[i]) for row in rows)) for i in range(len(rows[0]))]
             for row in rows:
-                row = tuple(cell if len(cell) <= LONGEST else cell[: LONGEST - 1] + "…" for cell in row)
+                row = tuple(cell if len(cell) <= LONGEST_CELL else cell[: LONGEST_CELL - 1] + "…" for cell in row)
                 yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()

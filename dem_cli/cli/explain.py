@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from dem_cli.case.explain import Entry
+    from dem_cli.case.explain import CaseEntry
     from dem_cli.case.keys import CaseTable
 
-MANY = 3  # more matches than this are listed, one line each
+MOST_ENTRIES = 3  # more matches than this are listed, one line each
 WIDEST = 110  # columns of a terminal that are used
 
 
@@ -26,22 +26,22 @@ def command(key: str | None, as_json: bool) -> None:
     Such as: dem explain joints.friction, dem explain structure.arch, dem explain margin. Without KEY: all tables.
     """
     from dem_cli.api import make_case_model
-    from dem_cli.case.explain import Entry, find
+    from dem_cli.case.explain import CaseEntry, find
     from dem_cli.case.keys import tables
 
     model = make_case_model()
-    found = find(model, key) if key else [Entry(table, None, table.kinds) for table in tables(model) if table.path]
+    found = find(model, key) if key else [CaseEntry(table, None, table.kinds) for table in tables(model) if table.path]
     if as_json:
         click.echo(json.dumps([facts(entry) for entry in found], indent=2, ensure_ascii=False))
     elif key is not None and several_kinds(found):
         click.echo(about_kinds(found), nl=False)
-    elif key is not None and len(found) <= MANY:
+    elif key is not None and len(found) <= MOST_ENTRIES:
         click.echo("\n".join(about_key(entry) if entry.key else about_table(entry) for entry in found), nl=False)
     else:
         click.echo(listing(found))
 
 
-def about_key(entry: Entry) -> str:
+def about_key(entry: CaseEntry) -> str:
     """Meaning, then a line per property."""
     key = entry.key
     assert key is not None
@@ -57,7 +57,7 @@ def about_key(entry: Entry) -> str:
     return laid_out(key.path, key.meaning, [row for row in rows if row[1]])
 
 
-def about_kinds(found: Sequence[Entry]) -> str:
+def about_kinds(found: Sequence[CaseEntry]) -> str:
     """The key that says which kind of table it is, or all of these tables: the kinds, each with what it is."""
     table = found[0].table
     rows = [(f'"{entry.kinds[0]}"', summary(entry.table)) for entry in found]
@@ -65,7 +65,7 @@ def about_kinds(found: Sequence[Entry]) -> str:
     return laid_out(found[0].path if found[0].key else table.heading, about, [*rows, ("more", "docs/case.md")])
 
 
-def about_table(entry: Entry) -> str:
+def about_table(entry: CaseEntry) -> str:
     """What the table is, then its keys."""
     table, rows = entry.table, []
     for key in table.keys:
@@ -86,13 +86,13 @@ def laid_out(head: str, about: str, rows: Sequence[tuple[str, str]]) -> str:
     return page.getvalue()
 
 
-def found_in(entry: Entry) -> str:
+def found_in(entry: CaseEntry) -> str:
     """The kinds of table that have it."""
     tag = "law" if entry.table.path[:1] == ("joints",) else "kind"
     return f"{tag} = " + ", ".join(f'"{kind}"' for kind in entry.kinds) if entry.kinds else ""
 
 
-def listing(found: Sequence[Entry]) -> str:
+def listing(found: Sequence[CaseEntry]) -> str:
     """One line per key or table; of a table with kinds, one for all of them."""
     lines: dict[str, list[str]] = {}
     for entry in found:
@@ -108,12 +108,12 @@ def listing(found: Sequence[Entry]) -> str:
     return "\n".join(f"{name:<{width}}  {', '.join(texts)}".rstrip() for name, texts in lines.items())
 
 
-def several_kinds(found: Sequence[Entry]) -> bool:
+def several_kinds(found: Sequence[CaseEntry]) -> bool:
     """Whether these are kinds of one table."""
     return len(found) > 1 and len({entry.path for entry in found}) == 1 and all(map(names_kind, found))
 
 
-def names_kind(entry: Entry) -> bool:
+def names_kind(entry: CaseEntry) -> bool:
     """Whether it is one kind of several of a table, or the key that says which."""
     return bool(entry.table.tag) and (entry.key is None or entry.key.names_kind)
 
@@ -123,7 +123,7 @@ def summary(table: CaseTable) -> str:
     return table.about.split("\n")[0].rstrip(".")
 
 
-def facts(entry: Entry) -> dict[str, Any]:
+def facts(entry: CaseEntry) -> dict[str, Any]:
     """All that is known of one key or table."""
     table, key = entry.table, entry.key
     found: dict[str, Any] = {"path": entry.path, "table": table.heading, "kinds": list(entry.kinds)}

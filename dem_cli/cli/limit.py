@@ -17,6 +17,7 @@ from dem_cli.version import __version__
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.limit.analysis import LimitLoads
+    from dem_cli.limit.snapshot import Collapse
     from dem_cli.model.model import Model
     from dem_cli.output.record import Frame
 
@@ -117,16 +118,27 @@ def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
     from dem_cli.limit.associated import OK
     from dem_cli.limit.snapshot import Collapse, frame
 
-    states, load, path = [], found.associated, found.non_associated
-    if load.status == OK:
+    states, load = [], found.associated
+    if load.status == OK and load.multiplier is not None:
         states.append(
             Collapse("associated", load.multiplier, load.normal, load.shear, load.velocities, load.iterations)
         )
-    if path is not None and path.status == OK:
-        states.append(
-            Collapse("non-associated", path.load, path.normal, path.shear, path.mechanism, path.factorisations)
-        )
+    if (end := end_of_path(found)) is not None:
+        states.append(end)
     return [frame(found.structure, state, loaded.case.analysis.pattern == "tilt") for state in states]
+
+
+def end_of_path(found: LimitLoads) -> Collapse | None:
+    """The state of collapse of joints that do not dilate; None where it was not found, or not looked for."""
+    from dem_cli.limit.associated import OK
+    from dem_cli.limit.snapshot import Collapse
+
+    path = found.non_associated
+    if path is None or path.status != OK:
+        return None
+    if path.load is None or path.normal is None or path.shear is None or path.mechanism is None:
+        return None
+    return Collapse("non-associated", path.load, path.normal, path.shear, path.mechanism, path.factorisations)
 
 
 def write(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -35,16 +34,18 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "export": "Write results in other formats.",
     "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }
-INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
+INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 
 class LazyGroup(click.Group):
     """A group that imports a subcommand when it is called and turns every DemError into its exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of all subcommands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """A subcommand, imported now; None where there is none of that name."""
         if name not in COMMANDS:
             return None
         return import_module(f"dem_cli.cli.{name}").command
@@ -52,27 +53,29 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The subcommand that the arguments name, or an error with the nearest name."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
             ctx.fail(unknown_command(name))
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The table of subcommands in the help, without importing any."""
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 
-    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> None:  # type: ignore[override]
+    def main(self, *args: Any, **options: Any) -> Any:
         """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
-        extra["standalone_mode"] = False
+        options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
         try:
-            code = super().main(args=args, prog_name=prog_name or "dem", **extra)
+            code = super().main(*args, **options)
             sys.stdout.flush()
         except click.ClickException as error:
             error.show()
             code = error.exit_code
         except (click.Abort, KeyboardInterrupt):
             click.echo("interrupted", err=True)
-            code = INTERRUPTED
+            code = INTERRUPTED_CODE
         except BrokenPipeError:
             code = quiet_pipe()
         except DemError as error:

@@ -16,22 +16,22 @@ from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
-    from dem_cli.motion.eurocode import Target
-    from dem_cli.motion.measures import Fit
+    from dem_cli.motion.eurocode import TargetSpectrum
+    from dem_cli.motion.intensity_measures import SpectrumFit
     from dem_cli.motion.motion import Motion
 
-RECORDS, SPECTRA, PICTURE = "records", "spectra.png", "motion.png"
-COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
-SHAKEN = ("time-history", "fragility")  # kinds of runs that motions go into
+RECORDS, SPECTRA, MOTION_PICTURE = "records", "spectra.png", "motion.png"
+MOTION_COLUMNS = ("time [s]", "acceleration [m/s2]", "velocity [m/s]", "displacement [m]")
+SHAKEN_KINDS = ("time-history", "fragility")  # kinds of runs that motions go into
 HEADINGS = ("record", "duration", "acceleration", "velocity", "displacement", "Arias", "5–95 %", "spectrum/target")
 
 
-class Group(NamedTuple):
+class RecordGroup(NamedTuple):
     """The records of one [motion] table."""
 
     motions: list[Motion]
-    target: Target | None  # what they were made to fit
-    fit: Fit | None
+    target: TargetSpectrum | None  # what they were made to fit
+    fit: SpectrumFit | None
     chosen: int  # which of them a time history uses
 
 
@@ -61,10 +61,10 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
     console.show(to_json(summary).rstrip() if as_json else answer(summary, place))
 
 
-def groups_of(loaded: LoadedCase, compare: bool = True) -> list[Group]:
+def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
-    from dem_cli.motion.build import suites_of
-    from dem_cli.motion.measures import fit
+    from dem_cli.motion.ground_motions import suites_of
+    from dem_cli.motion.intensity_measures import fit
     from dem_cli.motion.synthetic import target_of
 
     tables = [table for table in loaded.case.motion if table.kind != "none"]
@@ -80,13 +80,13 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[Group]:
         if table.kind == "artificial":
             target = target_of(table).scaled(abs(table.scale))
             compared = fit(motions, target, table.first_period) if compare else None
-        groups.append(Group(motions, target, compared, getattr(table, "number", 1) - 1))
+        groups.append(RecordGroup(motions, target, compared, getattr(table, "number", 1) - 1))
     return groups
 
 
-def summarised(loaded: LoadedCase, groups: Sequence[Group]) -> dict[str, Any]:
+def summarised(loaded: LoadedCase, groups: Sequence[RecordGroup]) -> dict[str, Any]:
     """What summary.json holds."""
-    from dem_cli.motion.measures import strength
+    from dem_cli.motion.intensity_measures import strength
     from dem_cli.output.summary import ordered
 
     records, fits = [], []
@@ -122,13 +122,13 @@ def summarised(loaded: LoadedCase, groups: Sequence[Group]) -> dict[str, Any]:
     )
 
 
-def file_name(groups: Sequence[Group], i_group: int, k: int) -> str:
+def file_name(groups: Sequence[RecordGroup], i_group: int, k: int) -> str:
     """`artificial-3.csv`; with the number of the table before it where there are several."""
     name = re.sub(r"[^\w.]+", "-", groups[i_group].motions[k].name).strip("-") or "motion"
     return f"{i_group + 1}-{name}.csv" if len(groups) > 1 else f"{name}.csv"
 
 
-def write(folder: Any, groups: Sequence[Group], summary: dict[str, Any]) -> None:
+def write(folder: Any, groups: Sequence[RecordGroup], summary: dict[str, Any]) -> None:
     """CSV files, pictures, summary."""
     from dem_cli.output.folder import write_error
     from dem_cli.output.summary import write_summary
@@ -146,14 +146,14 @@ def write(folder: Any, groups: Sequence[Group], summary: dict[str, Any]) -> None
         raise write_error(error, folder.final) from None
 
 
-def draw(folder: Path, groups: Sequence[Group], title: str) -> None:
+def draw(folder: Path, groups: Sequence[RecordGroup], title: str) -> None:
     """Both pictures; without matplotlib a remark."""
-    from dem_cli.post.spectra import Suite, draw_motions, draw_spectra
+    from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
 
-    suites = [Suite(group.motions, group.target, group.chosen) for group in groups]
+    suites = [MotionSuite(group.motions, group.target, group.chosen) for group in groups]
     try:
         draw_spectra(suites, folder / SPECTRA, title)
-        draw_motions(suites, folder / PICTURE, title)
+        draw_motions(suites, folder / MOTION_PICTURE, title)
     except DemError as error:
         console.note(f"no picture: {error}")
 
@@ -163,13 +163,13 @@ def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
     from dem_cli.output.reader import read
 
     kind = read(folder).kind
-    return draw_spectra_of_case(folder / "case.toml", kind, output) if kind in SHAKEN else []
+    return draw_spectra_of_case(folder / "case.toml", kind, output) if kind in SHAKEN_KINDS else []
 
 
 def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
     """spectra.png of a case: of a fragility study the whole suite, otherwise the record that is used."""
     from dem_cli import api
-    from dem_cli.post.spectra import Suite, draw_spectra
+    from dem_cli.post.spectra import MotionSuite, draw_spectra
 
     try:
         loaded = api.load_case(path)
@@ -180,7 +180,8 @@ def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
         console.note(f"no {SPECTRA}: {error}")
         return []
     suites = [
-        Suite(group.motions if kind == "fragility" else [group.motions[group.chosen]], group.target) for group in groups
+        MotionSuite(group.motions if kind == "fragility" else [group.motions[group.chosen]], group.target)
+        for group in groups
     ]
     draw_spectra(suites, output / SPECTRA, loaded.case.title)
     return [output / SPECTRA]
@@ -191,7 +192,7 @@ def as_csv(motion: Motion) -> str:
     times = motion.samples()
     columns = (times, motion.acceleration(times), motion.velocity(times), motion.displacement(times))
     lines = [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns))]
-    return "\n".join([",".join(COLUMNS), *lines, ""])
+    return "\n".join([",".join(MOTION_COLUMNS), *lines, ""])
 
 
 def answer(summary: dict[str, Any], folder: Path) -> str:

@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 TEMPLATES = Path(__file__).parent / "templates"
-KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
+TEMPLATE_KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 
 
 @click.command("new", short_help="Print a commented case file to start from.")
-@click.argument("kind", type=click.Choice(KINDS), metavar="KIND")
+@click.argument("kind", type=click.Choice(TEMPLATE_KINDS), metavar="KIND")
 @click.option("-o", "--output", metavar="FILE", help="Write to a new file instead of printing.")
 def command(kind: str, output: str | None) -> None:
     """Print a commented case file to start from.

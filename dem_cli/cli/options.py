@@ -1,4 +1,4 @@
-"""What several subcommands take and say."""
+"""Options and parameter types that several subcommands share."""
 
 from __future__ import annotations
 
@@ -22,12 +22,13 @@ overrides_option = click.option(
 _SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
 
 
-class Size(click.ParamType):
-    """1200x800, or 1200 and a height that suits."""
+class PictureSize(click.ParamType):
+    """Size of a picture in pixels: 1200x800, or 1200 and a height that suits."""
 
     name = "WIDTH[xHEIGHT]"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        """Width and height, None where it is left to the picture; an error where it is neither."""
         match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
         sides = [int(side) for side in match.groups() if side] if match else []
         if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
@@ -35,12 +36,13 @@ class Size(click.ParamType):
         return (sides[0], sides[1] if len(sides) > 1 else None)
 
 
-class Limits(click.ParamType):
-    """0:0.02, the lower and the upper end of an axis."""
+class AxisLimits(click.ParamType):
+    """Limits of an axis: 0:0.02, the lower and the upper end."""
 
     name = "LOW:HIGH"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
+        """Both ends; an error where they are none."""
         try:
             low, high = map(float, str(value).split(":"))
         except ValueError:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import Limits, Size
+from dem_cli.cli.options import AxisLimits, PictureSize
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
-    from dem_cli.post.chart import Paper
+    from dem_cli.cli.chart import ColumnChoice
+    from dem_cli.post.chart import ChartOptions
 
 CHART, SWEEP = "plot.png", "sweep.png"
-FORMATS = (".png", ".svg", ".pdf")
-NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
+PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
 
 
 @click.command("plot", short_help="Draw the results of runs and sweeps.")
@@ -27,16 +27,16 @@ NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "e
 @click.option("--by", metavar="KEY", multiple=True, help="A curve for each value of this key of the case; colours it.")
 @click.option("--where", metavar="KEY=VALUE", multiple=True, help="Of a sweep: only runs that have this value.")
 @click.option("--map", "as_map", is_flag=True, help="Of a sweep: a heat map of -y over two keys (-x, --by).")
-@click.option("--picture", type=click.Choice(NAMES), help="Only this one of all pictures of a run.")
+@click.option("--picture", type=click.Choice(PICTURE_NAMES), help="Only this one of all pictures of a run.")
 @click.option("--list", "listed", is_flag=True, help="Print the columns that there are; draw nothing.")
 @click.option(
     "-o", "--output", metavar="PATH", type=click.Path(path_type=Path),
     help="A file ending in .png, .svg or .pdf; where all pictures are drawn, a folder.",
 )  # fmt: skip
-@click.option("--size", type=Size(), help="Of a chart [pixels], such as 1200x800.")
+@click.option("--size", type=PictureSize(), help="Of a chart [pixels], such as 1200x800.")
 @click.option("--log", type=click.Choice(("x", "y", "xy")), help="Logarithmic axes.")
-@click.option("--xlim", type=Limits(), help="Ends of the x axis, such as 0:0.02.")
-@click.option("--ylim", type=Limits(), help="Ends of the y axis.")
+@click.option("--xlim", type=AxisLimits(), help="Ends of the x axis, such as 0:0.02.")
+@click.option("--ylim", type=AxisLimits(), help="Ends of the y axis.")
 @click.option("--animate", is_flag=True, help="With all pictures of a run: collapse.gif as well.")
 def command(
     folders: Sequence[Path],
@@ -64,8 +64,36 @@ def command(
     dem plot SWEEP -x displacement -y load        a curve for each of its runs (dem sweep --keep all)
     """
     from dem_cli.cli import chart
-    from dem_cli.post.chart import Paper
-    from dem_cli.post.table import is_sweep
+    from dem_cli.post.chart import CHART_FORMATS, ChartOptions
+
+    sweep = holds_sweep(folders)
+    if (where or as_map) and not sweep:
+        raise UsageError("--where and --map are for the folder of a sweep")
+    options = ChartOptions(size, frozenset(log or ""), xlim, ylim)
+    asked = bool(x or ys or by or listed or len(folders) > 1)
+    if picture is not None:
+        if sweep or asked or options != ChartOptions():
+            raise UsageError("--picture is for one run, without columns and sizes")
+        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
+        return
+    if not sweep and not asked:
+        if options != ChartOptions() or (output is not None and output.suffix.lower() in CHART_FORMATS):
+            raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
+        draw_pictures(folders[0], output, animate)
+        return
+    if animate:
+        raise UsageError("--animate comes with all pictures of a run, without -x and -y")
+    if listed:
+        console.show("\n".join(chart.listing(folders, sweep)))
+        return
+    target = output or default(folders, sweep)
+    draw_chart(folders, sweep, chart.ColumnChoice(x, ys, by, where, as_map), target, options)
+    console.show(str(target))
+
+
+def holds_sweep(folders: Sequence[Path]) -> bool:
+    """Whether a sweep is to be drawn. Raises UsageError for a folder that is not there, or a sweep beside others."""
+    from dem_cli.post.sweep_table import is_sweep
 
     for folder in folders:
         if not folder.is_dir():
@@ -73,31 +101,10 @@ def command(
     sweeps = [folder for folder in folders if is_sweep(folder)]
     if sweeps and len(folders) > 1:
         raise UsageError(f"{sweeps[0]}: a sweep is drawn alone, not beside other folders")
-    if (where or as_map) and not sweeps:
-        raise UsageError("--where and --map are for the folder of a sweep")
-    paper = Paper(size, frozenset(log or ""), xlim, ylim)
-    asked = bool(x or ys or by or listed or len(folders) > 1)
-    if picture is not None:
-        if sweeps or asked or paper != Paper():
-            raise UsageError("--picture is for one run, without columns and sizes")
-        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
-        return
-    if not sweeps and not asked:
-        if paper != Paper() or (output is not None and output.suffix.lower() in FORMATS):
-            raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
-        draw_pictures(folders[0], output, animate)
-        return
-    if animate:
-        raise UsageError("--animate comes with all pictures of a run, without -x and -y")
-    if listed:
-        console.show("\n".join(chart.listing(folders, bool(sweeps))))
-        return
-    target = output or default(folders, bool(sweeps), bool(x or ys))
-    draw_chart(folders, bool(sweeps), x, list(ys), list(by), where, as_map, target, paper)
-    console.show(str(target))
+    return bool(sweeps)
 
 
-def default(folders: Sequence[Path], sweep: bool, chosen: bool) -> Path:
+def default(folders: Sequence[Path], sweep: bool) -> Path:
     """Where a chart goes: beside the results; of several folders, here."""
     if len(folders) > 1:
         return Path(CHART)
@@ -108,7 +115,7 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
     """All pictures of one run."""
     from dem_cli.cli.motion import draw_spectra_of_run
     from dem_cli.output.folder import write_error
-    from dem_cli.post.plots import draw_all
+    from dem_cli.post.run_pictures import draw_all
 
     target = output or folder
     try:
@@ -127,7 +134,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
     """One of the pictures of a run."""
     from dem_cli.output.folder import write_error
     from dem_cli.post.chart import check_format
-    from dem_cli.post.plots import draw_one
+    from dem_cli.post.run_pictures import draw_one
 
     check_format(path)
     try:
@@ -138,10 +145,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
     console.show(str(path))
 
 
-def draw_chart(
-    folders: Sequence[Path], sweep: bool, x: str | None, ys: list[str], by: list[str], where: Sequence[str],
-    as_map: bool, target: Path, paper: Paper,
-) -> None:  # fmt: skip
+def draw_chart(folders: Sequence[Path], sweep: bool, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
     """One chart, of runs or of a sweep."""
     from dem_cli.cli import chart
     from dem_cli.output.folder import write_error
@@ -151,8 +155,8 @@ def draw_chart(
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if sweep:
-            chart.of_sweep(folders[0], x, ys, by, where, as_map, target, paper)
+            chart.of_sweep(folders[0], choice, target, options)
         else:
-            chart.of_runs(folders, x, ys, by, target, paper)
+            chart.of_runs(folders, choice, target, options)
     except OSError as error:
         raise write_error(error, target) from None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from dem_cli.cli.options import Size
+from dem_cli.cli.options import PictureSize
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
@@ -35,7 +35,7 @@ STILL, MOVIES = ".png", (".gif", ".mp4")
     "--forces", type=click.Choice(("bars", "arrows")), is_flag=False, flag_value="bars",
     help="Joint forces: bars as thick as they are large, or arrows as long.",
 )  # fmt: skip
-@click.option("--size", type=Size(), help="Of the picture [pixels], such as 1200x800.")
+@click.option("--size", type=PictureSize(), help="Of the picture [pixels], such as 1200x800.")
 @click.option("--fps", type=click.FloatRange(0.5, 60.0), default=12.5, show_default=True, help="Pictures per second.")
 def command(
     folder: Path,
@@ -53,13 +53,13 @@ def command(
     """Render the results in DIR: a picture of one frame, or a movie of all."""
     from dem_cli.output.folder import write_error
     from dem_cli.output.reader import read
-    from dem_cli.render.render import Look, render_apart
+    from dem_cli.render.render import RenderOptions, render_apart
 
     path = target(folder, output, movie)
     if path.suffix in MOVIES and frame != "last":
         raise UsageError("--frame is for stills; a movie shows all frames")
     read(folder)  # what is wrong with the results is said before anything is started
-    look = Look(frame, view, scale, colour, joints, forces, size, fps)
+    look = RenderOptions(frame, view, scale, colour, joints, forces, size, fps)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         render_apart(folder, path, look)

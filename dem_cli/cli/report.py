@@ -12,12 +12,12 @@ import click
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
-NAME = "report.html"
+PAGE_FILE = "report.html"
 
 
 @click.command("report", short_help="Write one page of HTML with all results.")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help=f"Default: DIR/{NAME}.")
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help=f"Default: DIR/{PAGE_FILE}.")
 @click.option("--open", "show", is_flag=True, help="Open it in the browser.")
 def command(folder: Path, output: Path | None, show: bool) -> None:
     """Write one page of HTML with everything that `dem run` or `dem sweep` left in DIR.
@@ -25,13 +25,13 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     The page is one file that loads nothing: answer, warnings, audit, a view of the structure to turn and play, charts,
     tables, the case.
     """
-    from dem_cli.output.whole import write_text
-    from dem_cli.post.table import is_sweep
+    from dem_cli.output.atomic_file import write_text
+    from dem_cli.post.sweep_table import is_sweep
     from dem_cli.report import run, sweep
 
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder")
-    target = output or folder / NAME
+    target = output or folder / PAGE_FILE
     if target.is_dir():
         raise UsageError(f"{target}: a folder; -o takes the name of a file")
     if is_sweep(folder):
@@ -49,14 +49,14 @@ def said(summary: dict[str, Any]) -> Any:
     """The lines that `dem run` prints of a summary, and its verdicts."""
     from dem_cli.cli.words.reference import one_line
     from dem_cli.output.reference import as_declared, from_summary
-    from dem_cli.report.run import Said
+    from dem_cli.report.run import TerminalText
 
     if not summary:  # of a killed run
-        return Said([], [])
+        return TerminalText([], [])
     answers = from_summary(summary.get("reference"))
     tones = ["bad" if not as_declared(answer) else "look" if "missed" in answer else "good" for answer in answers]
     verdicts = [(tone, f"reference: {one_line(answer)}") for tone, answer in zip(tones, answers, strict=True)]
-    return Said(console.answer_rows(summary), verdicts)
+    return TerminalText(console.answer_rows(summary), verdicts)
 
 
 def _summary(folder: Path) -> dict[str, Any]:

@@ -28,19 +28,24 @@ class TerminalListener(RunListener):
         self.bar, self.quiet, self.plot = bar, quiet, plot
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """On the bar."""
         self.bar.update(stage, load, displacement, fraction)
 
     def solved(self) -> None:
+        """The bar goes."""
         self.bar.stop()
 
     def written(self, folder: Path) -> None:
+        """The pictures, where they were asked for."""
         if self.plot:
             draw(folder, self.quiet)
 
     def earlier_kept(self, folder: Path) -> None:
+        """A line on stderr."""
         console.note(f"the earlier, complete results stay in {shown(folder)}", self.quiet)
 
     def runs_kept(self, count: int) -> None:
+        """A line on stderr."""
         self.bar.stop()
         console.note(f"{count:,} runs are kept; go on with --resume", self.quiet)
 
@@ -128,7 +133,7 @@ def execute(
 def draw(folder: Path, quiet: bool) -> None:
     """Pictures are welcome, not needed: what goes wrong with them is only said."""
     try:
-        from dem_cli.post.plots import draw_all
+        from dem_cli.post.run_pictures import draw_all
 
         draw_all(folder, folder)
     except (DemError, OSError) as error:

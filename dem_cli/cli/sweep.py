@@ -16,19 +16,19 @@ import click
 
 from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
-from dem_cli.cli.words.count import Count
+from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
-    from dem_cli.sweep.plan import Plan
+    from dem_cli.sweep.plan import SweepPlan
     from dem_cli.sweep.run import PlannedSweep, Spread, Summary, SweepJob
 
 TABLE_EVERY = 15.0  # s between two states of sweep.csv while runs go on
-LISTED = 8  # failed runs that are shown
-LONGEST = 40  # letters of a value
+MOST_FAILURES = 8  # failed runs that are shown
+LONGEST_VALUE = 40  # letters of a value
 SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 
 
@@ -83,14 +83,14 @@ def command(
         print_plan(sweep)
         return 0
     with opened(folder, fresh, force, (shard and f"-{part[0] + 1}of{part[1]}") or ""):
-        run = Running(loaded, sweep, folder, part, quiet)
+        run = SweepProgress(loaded, sweep, folder, part, quiet)
         found = run.all(partial(spread, scheduler, jobs, folder.resolve()), retry)
     found["wall_seconds"] = time.perf_counter() - started
     console.show(json.dumps(found, indent=2, ensure_ascii=False) if as_json else told(found, folder))
     return 1 if found["failed"] else 0
 
 
-def planned(loaded: LoadedCase) -> Plan:
+def planned(loaded: LoadedCase) -> SweepPlan:
     """The runs that a case asks for. Raises CaseError, with file and line."""
     from dem_cli.sweep.plan import plan_of
 
@@ -145,7 +145,7 @@ def spread(
     yield from each_done(do_job, jobs, processes or usable_cores(), first_alone=cache_is_cold())
 
 
-class Running:
+class SweepProgress:
     """A sweep under way: what is known of its runs, and what the user is told meanwhile."""
 
     def __init__(self, loaded: LoadedCase, sweep: PlannedSweep, folder: Path, part: tuple[int, int], quiet: bool):
@@ -193,7 +193,7 @@ class Running:
         from dem_cli.sweep.table import columns, rows, write_csv
 
         due = time.monotonic() + TABLE_EVERY
-        with Count(len(wanted), len(wanted & self.known.keys()), self.quiet) as bar:
+        with RunCounter(len(wanted), len(wanted & self.known.keys()), self.quiet) as bar:
             for name, summary in carried_out(mine, self.known, do):
                 self.known[name] = summary
                 bar.update(failed=not solved(summary))
@@ -229,8 +229,9 @@ class Running:
         return {"run": row["run"], **{key: row[key] for key in self.sweep.plan.keys}, "reason": row["reason"]}
 
     def facts(self, status: str, found: dict[str, Any] | None = None) -> None:
+        """Write sweep.json and the case, with what was changed on the command line."""
+        from dem_cli.output.atomic_file import write_text
         from dem_cli.output.store import CASE
-        from dem_cli.output.whole import write_text
         from dem_cli.sweep.folder import write_facts
 
         text = self.loaded.text if self.loaded.text.endswith("\n") else self.loaded.text + "\n"
@@ -244,7 +245,7 @@ def brief(value: Any) -> str:
     from dem_cli.sweep.plan import show_value
 
     text = f"{value:.6g}" if isinstance(value, float) else show_value(value)
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 1] + "…"
 
 
 def told(found: dict[str, Any], folder: Path) -> str:
@@ -254,11 +255,11 @@ def told(found: dict[str, Any], folder: Path) -> str:
     lines = [found["title"] or "sweep"]
     lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved, {found['failed']:,} failed"
                  + (f", {found['waiting']:,} not done yet" if found["waiting"] else ""))  # fmt: skip
-    for row in found["failures"][:LISTED]:
+    for row in found["failures"][:MOST_FAILURES]:
         values = ", ".join(f"{key} = {brief(row[key])}" for key in found["keys"])
         lines.append(f"  failed    {row['run']} ({values}): {row['reason']}")
-    if found["failed"] > LISTED:
-        lines.append(f"            and {found['failed'] - LISTED:,} more in sweep.csv")
+    if found["failed"] > MOST_FAILURES:
+        lines.append(f"            and {found['failed'] - MOST_FAILURES:,} more in sweep.csv")
     where = shown(folder.resolve())
     lines.append(f"  results   {where}/sweep.csv, sweep.sqlite, runs/ ({console.seconds(found['wall_seconds'])})")
     return "\n".join(lines)

@@ -52,7 +52,7 @@ def command(
 
     Exit code: 0 all as the cases say, 1 some are not, 2 wrong arguments or a wrong case file (the others are run).
     """
-    from dem_cli.verify.find import find
+    from dem_cli.verify.case_selection import find
     from dem_cli.verify.records import data_file, digest, load, on_shelves
 
     began = time.perf_counter()
@@ -116,17 +116,17 @@ def left_out(without: int, slow: Sequence[Path]) -> list[str]:
 
 def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, quiet: bool) -> Iterator[Record]:
     """Records of all cases as they come, the longest first."""
-    from dem_cli.cli.words.count import Count
+    from dem_cli.cli.words.run_counter import RunCounter
     from dem_cli.kernels.jit import cache_is_cold
     from dem_cli.pipeline.batches import usable_cores
-    from dem_cli.sweep.pool import Died, each_done
-    from dem_cli.verify.find import longest_first
+    from dem_cli.sweep.pool import WorkerDeath, each_done
+    from dem_cli.verify.case_selection import longest_first
     from dem_cli.verify.records import failed
 
     order = longest_first(cases, lambda case: costs.get(known_as(case)))
-    with Count(len(order), quiet=quiet) as count:
+    with RunCounter(len(order), quiet=quiet) as count:
         for number, record in each_done(verified, order, jobs or usable_cores(), first_alone=cache_is_cold()):
-            if isinstance(record, Died):
+            if isinstance(record, WorkerDeath):
                 record = failed(order[number], "the process of this run died, perhaps for want of memory", bad=False)
             count.update("error" in record or any(a["state"] in ("failed", "met") for a in record["references"]))
             yield {**record, "case": known_as(order[number])}
@@ -165,8 +165,8 @@ def write_page(page: Path, records: list[Record]) -> None:
 
 def put(file: Path, text: str) -> None:
     """Write a file whole. Raises OutputError."""
+    from dem_cli.output.atomic_file import write_text
     from dem_cli.output.folder import write_error
-    from dem_cli.output.whole import write_text
 
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

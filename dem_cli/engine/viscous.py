@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.kernels.records import Joints
 from dem_cli.model.model import Model
-from dem_cli.tables.damping import Element
+from dem_cli.tables.damping import MaxwellElement
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def joint_frequencies(model: Model, joints: Joints) -> np.ndarray:
     return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * inverse)
 
 
-def element_numbers(elements: tuple[Element, ...]) -> np.ndarray:
+def element_numbers(elements: tuple[MaxwellElement, ...]) -> np.ndarray:
     """Stiffness over that of the joint [-] and rate [1/s] of each, (n, 2).
 
     At its own frequency an element of stiffness share r loses r/2 of the joint's stiffness in quadrature: ratio r/4,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.ensembles.batch import Answer, ShakingTrial, Task
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.motion.build import suites_of
+from dem_cli.motion.ground_motions import suites_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -1,0 +1,1 @@
+"""Joint laws: one contact law per file, with its table of parameters and its source."""

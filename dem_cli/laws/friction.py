@@ -30,6 +30,7 @@ class FrictionJoint(StiffJoint):
     @property
     def coefficient(self) -> float:
         """Friction coefficient tan(φ) [-]."""
-        if self.friction is not None:
-            return self.friction
-        return math.tan(math.radians(self.friction_angle_deg))
+        if self.friction_angle_deg is not None:
+            return math.tan(math.radians(self.friction_angle_deg))
+        assert self.friction is not None
+        return self.friction

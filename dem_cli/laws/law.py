@@ -21,20 +21,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from dem_cli.case.base import CaseModel
 
+JointTable = TypeVar("JointTable", bound=CaseModel)
+
 
 @dataclass(frozen=True)
-class Law:
-    """A registered joint law."""
+class Law(Generic[JointTable]):
+    """A registered joint law, with the table of its parameters."""
 
     name: str  # `law` in the case file
-    parameters: type[CaseModel]  # the [joints.*] table
+    parameters: type[JointTable]  # the [joints.*] table
     function: Callable  # the scalar law, see the module docstring
-    columns: Callable[[CaseModel, float], tuple[float, ...]]  # (table, kn [Pa/m]) -> row of `parameters`
+    columns: Callable[[JointTable, float], tuple[float, ...]]  # (table, kn [Pa/m]) -> row of `parameters`
     # (parameters, normal forces, memory, kn of the points) -> largest shear forces, all (n_points, ...)
     shear_limit: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
     scalars: int = 0  # numbers that a point remembers
@@ -44,13 +47,13 @@ class Law:
     # normal springs lose is booked as well.
     bonded: bool = False
     rates: tuple[int, ...] = ()  # columns that are velocities [m/s]: handed to the law as displacement per step
-    variant: Callable[[CaseModel], Law | None] = lambda table: None  # another law that this table asks for
+    variant: Callable[[JointTable], Law | None] = lambda table: None  # another law that this table asks for
     source: str = ""  # where the law is published
 
     def n_memory(self, dimension: int) -> int:
         """Columns of `memory`."""
         return self.scalars + self.vectors * (dimension - 1)
 
-    def of(self, table: CaseModel) -> Law:
+    def of(self, table: JointTable) -> Law:
         """The law itself, or the variant of it that the table asks for."""
         return self.variant(table) or self

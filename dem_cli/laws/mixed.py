@@ -1,4 +1,4 @@
-"""Different laws in one scene: each joint finds its own by a number in its last column."""
+"""Mixed joint laws in one scene: each joint finds its own by a number in its last column."""
 
 from __future__ import annotations
 

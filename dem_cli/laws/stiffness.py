@@ -1,8 +1,8 @@
-"""What the joints of all laws have in common: stiffness, and where their contact points are."""
+"""Stiffness and contact points of a joint, common to all laws."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -16,6 +16,9 @@ class StiffJoint(CaseModel):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
 
     plane_points: ClassVar[int] = 2  # contact points of a plane joint that says nothing else
+
+    if TYPE_CHECKING:
+        law: str  # each law's own table declares it, with its name as the only value
 
     kn: Stiffness = Field(
         default="auto", description="normal stiffness [Pa/m], or 'auto': stiff enough to drop out", examples=[1e10]

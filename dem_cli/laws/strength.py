@@ -1,4 +1,4 @@
-"""Joints with less strength, as strength reduction needs them: tan φ / F, c / F, ft / F.
+"""Strength reduction of joints: tan φ / F, c / F, ft / F.
 
 Keys of the same name mean the same strength in every law; residual strengths are reduced with the others. What a law
 asks of its strengths among each other goes on to hold: the tensile strength ends at the tip of the cone, and no joint

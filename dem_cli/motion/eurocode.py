@@ -1,4 +1,4 @@
-"""Target spectra: the elastic ones of Eurocode 8 (EN 1998-1:2004, 3.2.2.2), and lists of points."""
+"""Eurocode 8 elastic response spectra (EN 1998-1:2004, 3.2.2.2) and target spectra through points."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ SOILS = {  # type -> ground type -> S, TB, TC, TD [s]: EN 1998-1, tables 3.2 and
         "E": (1.6, 0.05, 0.25, 1.2),
     },
 }
-LONGEST = 4.0  # s: up to here EN 1998-1 3.2.2.2 gives the spectrum; beyond, its last branch goes on
+LONGEST_PERIOD = 4.0  # s: up to here EN 1998-1 3.2.2.2 gives the spectrum; beyond, its last branch goes on
 
 
 @dataclass(frozen=True)
-class Target:
+class TargetSpectrum:
     """A response spectrum to meet: pseudo-acceleration [m/s2] by period [s], for a damping ratio."""
 
     acceleration: Callable[[np.ndarray], np.ndarray]
@@ -36,14 +36,17 @@ class Target:
     title: str
 
     def __call__(self, periods: np.ndarray | float) -> np.ndarray:
+        """Pseudo-acceleration [m/s2] at periods [s]."""
         return self.acceleration(np.asarray(periods, float))
 
-    def scaled(self, factor: float) -> Target:
+    def scaled(self, factor: float) -> TargetSpectrum:
         """The same spectrum, `factor` times as high."""
         if factor == 1.0:
             return self
         title = f"{factor:g} × {self.title}"
-        return Target(lambda periods: factor * self.acceleration(periods), factor * self.ground, self.damping, title)
+        return TargetSpectrum(
+            lambda periods: factor * self.acceleration(periods), factor * self.ground, self.damping, title
+        )
 
 
 def damping_correction(damping: float) -> float:
@@ -51,7 +54,7 @@ def damping_correction(damping: float) -> float:
     return max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)
 
 
-def eurocode(kind: str, soil: str, ag: float, damping: float = 0.05) -> Target:
+def eurocode(kind: str, soil: str, ag: float, damping: float = 0.05) -> TargetSpectrum:
     """Elastic spectrum, equations 3.2 to 3.5; kind "EC8-1" or "EC8-2", ag on rock [m/s2]."""
     s, tb, tc, td = SOILS[kind][soil]
     eta = damping_correction(damping)
@@ -62,10 +65,10 @@ def eurocode(kind: str, soil: str, ag: float, damping: float = 0.05) -> Target:
         falling = 2.5 * eta * np.minimum(1.0, tc / longer) * np.minimum(1.0, td / longer)
         return ag * s * np.where(periods <= tb, rising, falling)
 
-    return Target(acceleration, ag * s, damping, f"Eurocode 8 type {kind[-1]}, ground {soil}, ag = {ag:g} m/s²")
+    return TargetSpectrum(acceleration, ag * s, damping, f"Eurocode 8 type {kind[-1]}, ground {soil}, ag = {ag:g} m/s²")
 
 
-def listed(points: Sequence[tuple[float, float]], damping: float = 0.05) -> Target:
+def listed(points: Sequence[tuple[float, float]], damping: float = 0.05) -> TargetSpectrum:
     """A spectrum through points (period [s], acceleration [m/s2]), linear between them, constant beyond.
 
     The ground acceleration is what the list says at period 0, or at the shortest one.
@@ -75,4 +78,4 @@ def listed(points: Sequence[tuple[float, float]], damping: float = 0.05) -> Targ
     def acceleration(at: np.ndarray) -> np.ndarray:
         return np.interp(at, periods, values)
 
-    return Target(acceleration, float(values[0]), damping, "given spectrum")
+    return TargetSpectrum(acceleration, float(values[0]), damping, "given spectrum")

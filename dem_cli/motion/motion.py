@@ -1,4 +1,4 @@
-"""A motion of the base: one scalar history along a direction, with its exact integrals."""
+"""Base motion: one scalar history along a direction, with its exact integrals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves
 
 
 class Waveform(Protocol):
-    """A history that starts at t = 0 from rest; times given to it lie within [0, duration].
+    """Waveform of a motion, which starts at t = 0 from rest; times given to it lie within [0, duration].
 
     velocity is the exact integral of acceleration and displacement that of velocity, both 0 at t = 0.
     """
@@ -22,14 +22,19 @@ class Waveform(Protocol):
     peak: float  # largest absolute acceleration [m/s2]
     step: float  # time step that shows it well [s]
 
-    def acceleration(self, t: np.ndarray) -> np.ndarray: ...
-    def velocity(self, t: np.ndarray) -> np.ndarray: ...
-    def displacement(self, t: np.ndarray) -> np.ndarray: ...
+    def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """`factor` times a shape, from `start` on, along `direction`.
+    """Motion of the base: `factor` times a waveform, from `start` on, along `direction`.
 
     Before the start everything is 0; after the end the acceleration is 0 and the velocity stays what it was.
     Times are scalars or arrays of any shape [s]; results have the same shape, in m/s2, m/s and m.

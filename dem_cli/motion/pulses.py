@@ -1,4 +1,4 @@
-"""Motions by formula: harmonic with ramps, one cycle, half a cycle, Ricker's wavelet, rectangles.
+"""Pulses and harmonic motions by formula: harmonic with ramps, one cycle, half a cycle, Ricker's wavelet, rectangles.
 
 Accelerations are integrated by hand; every shape starts at t = 0 from rest (the contract: motion.py, `Shape`).
 """
@@ -13,9 +13,10 @@ PER_CYCLE = 200  # time steps that show a cycle
 RICKER_HALF = 1.5  # half length of the wavelet in periods: the acceleration is 1e-8 of its peak there
 
 
-class Wave:
-    """amplitude · r(t) · sin(2π f t + phase); r rises from 0 to 1 over the first `ramp` seconds, and falls likewise.
+class SineWave:
+    """Sine with ramps, amplitude · r(t) · sin(2π f t + phase).
 
+    r rises from 0 to 1 over the first `ramp` seconds, and falls likewise.
     amplitude [m/s2], frequency [Hz], phase [rad], duration [s], ramp [s], at most half the duration.
     """
 
@@ -34,14 +35,17 @@ class Wave:
         self.peak = self._peak()
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
         k = self._piece(t)
         return self.amplitude * (self.levels[k] + self.slopes[k] * t) * np.sin(self.omega * t + self.phase)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
         k = self._piece(t)
         return self._velocities[k] + self._first(t, k) - self._first(self.knots[k], k)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
         k = self._piece(t)
         knot = self.knots[k]
         drift = (self._velocities[k] - self._first(knot, k)) * (t - knot)
@@ -81,9 +85,10 @@ class Wave:
         return float(np.abs(self.acceleration(np.clip(np.concatenate((grid, crests)), 0.0, self.duration))).max())
 
 
-class Ricker:
-    """amplitude · (1 − 2x²) exp(−x²), x = π f (t − 1.5/f): second derivative of a bell; f is where its spectrum peaks.
+class RickerWavelet:
+    """Ricker wavelet, amplitude · (1 − 2x²) exp(−x²), x = π f (t − 1.5/f).
 
+    The second derivative of a bell; f is where its spectrum peaks.
     Source: N. Ricker, The form and laws of propagation of seismic wavelets, Geophysics 18 (1953).
     """
 
@@ -95,13 +100,16 @@ class Ricker:
         self.peak = abs(amplitude)
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
         x = self.rate * (t - self.middle)
         return self.amplitude * (1.0 - 2.0 * x * x) * np.exp(-x * x)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
         return self._velocity(t) - self._velocity(0.0)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
         return self._displacement(t) - self._displacement(0.0) - self._velocity(0.0) * t
 
     def _velocity(self, t: np.ndarray | float) -> np.ndarray:
@@ -113,8 +121,8 @@ class Ricker:
         return -0.5 * self.amplitude / self.rate**2 * np.exp(-x * x)
 
 
-class Steps:
-    """Acceleration that is constant for a while, then another constant: `values` [m/s2] for `durations` [s]."""
+class RectangularPulses:
+    """Rectangular pulses of acceleration: `values` [m/s2] for `durations` [s], one after the other."""
 
     def __init__(self, durations: list[float], values: list[float]):
         lengths, self.values = np.array(durations), np.array(values)
@@ -127,13 +135,16 @@ class Steps:
         self._displacements = np.concatenate(([0.0], np.cumsum(travelled)[:-1]))
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
         return self.values[self._piece(t)]
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
         k = self._piece(t)
         return self._velocities[k] + self.values[k] * (t - self.knots[k])
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
         k = self._piece(t)
         since = t - self.knots[k]
         return self._displacements[k] + since * (self._velocities[k] + 0.5 * self.values[k] * since)
@@ -142,11 +153,11 @@ class Steps:
         return np.clip(np.searchsorted(self.knots, t, side="right") - 1, 0, len(self.knots) - 1)
 
 
-def impulse(amplitude: float, duration: float, rebound: float = 0.0) -> Steps:
+def impulse(amplitude: float, duration: float, rebound: float = 0.0) -> RectangularPulses:
     """`amplitude` for `duration`, then −rebound · amplitude until the base stands still again (rebound > 0).
 
     With rebound 0.5 the base impulse of Dimitri, De Lorenzis and Zavarise (2011): +a for t, −a/2 for 2 t.
     """
     if rebound == 0.0:
-        return Steps([duration], [amplitude])
-    return Steps([duration, duration / rebound], [amplitude, -rebound * amplitude])
+        return RectangularPulses([duration], [amplitude])
+    return RectangularPulses([duration, duration / rebound], [amplitude, -rebound * amplitude])

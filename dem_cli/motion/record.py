@@ -1,4 +1,4 @@
-"""A sampled history as a piecewise polynomial: its integrals are exact."""
+"""Accelerogram as a piecewise polynomial of time: its integrals are exact."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-QUANTITIES = ("acceleration", "velocity", "displacement")
+MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 BASELINE = 1  # order for baseline = true
 
 
 class Accelerogram:
-    """Acceleration as piecewise polynomial of time from 0 (the contract: motion.py, `Shape`).
+    """Accelerogram as piecewise polynomial of time from 0 (the contract: motion.py, `Waveform`).
 
     times (n,) are the samples [s], the first one 0.
     """
@@ -27,12 +27,15 @@ class Accelerogram:
         self.peak = largest(acceleration)
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
+        """[m/s2] at times t [s]."""
         return self.polynomials[0](t)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
+        """[m/s] at times t [s]."""
         return self.polynomials[1](t)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
+        """[m] at times t [s]."""
         return self.polynomials[2](t)
 
 

@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-POINTS = 60  # samples per period at least; crests between them are found by a cubic
+SAMPLES_PER_PERIOD = 60  # samples per period at least; crests between them are found by a cubic
 
 TERMS = 16  # of the series of exp(x), |x| ≤ 0.5: the next one is below 1e-18
 
 
-class Spectrum(NamedTuple):
-    """Largest absolute responses; every field but `periods` has the shape (..., n_periods) of the records given."""
+class ResponseSpectrum(NamedTuple):
+    """Response spectrum, largest absolute responses; all but `periods` are (..., n_periods), as the records given."""
 
     periods: np.ndarray  # [s], (n_periods,)
     displacement: np.ndarray  # SD: relative to the base [m]
@@ -25,7 +25,7 @@ class Spectrum(NamedTuple):
     pseudo_acceleration: np.ndarray  # PSA = ω² SD [m/s2]
 
 
-class Filter(NamedTuple):
+class OscillatorFilter(NamedTuple):
     """Response of one oscillator as filters of the base acceleration: numerators, start, common denominator."""
 
     displacement: np.ndarray  # (3,)
@@ -40,8 +40,8 @@ def periods(shortest: float = 0.02, longest: float = 4.0, count: int = 120) -> n
 
 
 def response_spectrum(
-    accelerations: np.ndarray, step: float, periods: np.ndarray, damping: float = 0.05, points: int = POINTS
-) -> Spectrum:
+    accelerations: np.ndarray, step: float, periods: np.ndarray, damping: float = 0.05, points: int = SAMPLES_PER_PERIOD
+) -> ResponseSpectrum:
     """Spectrum of one or several records: while they last, and in the free vibration after them.
 
     accelerations  of the base [m/s2], (..., n), linear between samples `step` [s] apart; oscillators start at rest
@@ -60,9 +60,9 @@ def response_spectrum(
         u, v = responses(finer[division], oscillator(omega, damping, step / division))
         after = free_vibration(u[..., -1:], v[..., -1:], omega, damping)
         during = _peaks(u, v, finer[division], omega, damping, step / division)
-        peaks[..., k] = np.maximum(during, _peaks(*after, 0.0, omega, damping, period / POINTS))
+        peaks[..., k] = np.maximum(during, _peaks(*after, 0.0, omega, damping, period / SAMPLES_PER_PERIOD))
     frequencies = 2.0 * np.pi / np.asarray(periods)
-    return Spectrum(np.asarray(periods), peaks[0], peaks[1], peaks[2], frequencies**2 * peaks[0])
+    return ResponseSpectrum(np.asarray(periods), peaks[0], peaks[1], peaks[2], frequencies**2 * peaks[0])
 
 
 def _peaks(
@@ -75,7 +75,7 @@ def _peaks(
     return np.stack([crest(u, step * v), crest(v, step * acceleration), crest(total, step * rate)])
 
 
-def pseudo_accelerations(accelerations: np.ndarray, filters: list[Filter], omegas: np.ndarray) -> np.ndarray:
+def pseudo_accelerations(accelerations: np.ndarray, filters: list[OscillatorFilter], omegas: np.ndarray) -> np.ndarray:
     """PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods)."""
     from scipy.signal import lfilter
 
@@ -87,7 +87,7 @@ def pseudo_accelerations(accelerations: np.ndarray, filters: list[Filter], omega
     return found
 
 
-def oscillator(omega: float, damping: float, step: float) -> Filter:
+def oscillator(omega: float, damping: float, step: float) -> OscillatorFilter:
     """The exact recursion of an oscillator under an acceleration that is linear over each step.
 
     u'' + 2ζω u' + ω² u = −a. Both components of the state obey y(i+1) − tr y(i) + det y(i−1) = Σ b a with the same
@@ -102,7 +102,7 @@ def oscillator(omega: float, damping: float, step: float) -> Filter:
         )
     b = np.array(numerators)
     start = np.stack((-b[:, 0], now - b[:, 1]), axis=1)  # so that y(0) = 0 and y(1) = now a(0) + then a(1)
-    return Filter(b[0], b[1], np.array([1.0, -trace, det]), start)
+    return OscillatorFilter(b[0], b[1], np.array([1.0, -trace, det]), start)
 
 
 def recursion(omega: float, damping: float, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -138,7 +138,7 @@ def exponential(matrix: np.ndarray) -> np.ndarray:
     return total
 
 
-def responses(accelerations: np.ndarray, one: Filter) -> tuple[np.ndarray, np.ndarray]:
+def responses(accelerations: np.ndarray, one: OscillatorFilter) -> tuple[np.ndarray, np.ndarray]:
     """Relative displacement and velocity of an oscillator at the samples, like `accelerations` (..., n)."""
     from scipy.signal import lfilter
 
@@ -151,7 +151,7 @@ def responses(accelerations: np.ndarray, one: Filter) -> tuple[np.ndarray, np.nd
 def free_vibration(u: np.ndarray, v: np.ndarray, omega: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacement and velocity over the period after a state (..., 1), without acceleration, (..., POINTS + 1)."""
     damped, rate = omega * np.sqrt(1.0 - damping * damping), damping * omega
-    times = np.linspace(0.0, 2.0 * np.pi / omega, POINTS + 1)
+    times = np.linspace(0.0, 2.0 * np.pi / omega, SAMPLES_PER_PERIOD + 1)
     decay, cosine, sine = np.exp(-rate * times), np.cos(damped * times), np.sin(damped * times)
     return (
         decay * (u * cosine + (v + rate * u) / damped * sine),

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.motion.eurocode import Target, eurocode, listed
+from dem_cli.motion.eurocode import TargetSpectrum, eurocode, listed
 from dem_cli.motion.record import Accelerogram, record
-from dem_cli.motion.spectrum import Filter, oscillator, pseudo_accelerations
+from dem_cli.motion.spectrum import OscillatorFilter, oscillator, pseudo_accelerations
 
 if TYPE_CHECKING:
     from dem_cli.motion.table import ArtificialTable
 
 Return = Callable[[np.ndarray], np.ndarray]  # of histories (..., n) to rest
-LOWEST, HIGHEST = 0.10, 35.0  # Hz: sines of the motion
+LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 0.10, 35.0  # Hz: sines of the motion
 EQUIVALENT = 10.0  # s: of stationary motion that the power spectrum is for
 QUANTILE = 0.5  # chance that the peak response stays below the spectrum
 CONTROLLED = (0.03, 4.0)  # s: periods at which the spectrum is corrected
@@ -30,7 +30,7 @@ WAVELET = 6.0  # time steps: period of the wavelet that raises a peak
 END_LEVEL = 0.05  # of the envelope at the end of the decay
 
 
-def target_of(table: ArtificialTable) -> Target:
+def target_of(table: ArtificialTable) -> TargetSpectrum:
     """The spectrum that a table asks for."""
     if isinstance(table.spectrum, str):
         assert table.soil is not None
@@ -57,7 +57,7 @@ def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
     return np.where(times < end, np.minimum(times / rise, 1.0) ** 2, np.exp(-decay * np.maximum(times - end, 0.0)))
 
 
-def power_spectrum(target: Target, omegas: np.ndarray) -> np.ndarray:
+def power_spectrum(target: TargetSpectrum, omegas: np.ndarray) -> np.ndarray:
     """One-sided power spectrum G [m2/s3] of a stationary motion whose response spectrum is the target, (n,).
 
     G(ω) = [Sa²/r² − ∫₀^ω G dω] / [ω (π/(4ξ') − 1)], ξ' = ξ/(1 − exp(−2ξωs)), s = 10 s, r the peak factor with
@@ -78,7 +78,7 @@ def power_spectrum(target: Target, omegas: np.ndarray) -> np.ndarray:
 
 
 def accelerograms(
-    target: Target, times: np.ndarray, shape: np.ndarray, iterations: int, generators: list[np.random.Generator]
+    target: TargetSpectrum, times: np.ndarray, shape: np.ndarray, iterations: int, generators: list[np.random.Generator]
 ) -> np.ndarray:
     """One history per generator [m/s2], (count, n), each from rest to rest where it started.
 
@@ -87,7 +87,7 @@ def accelerograms(
     and where its peak is below that of the target it is raised to it by a short wavelet.
     """
     step, n = times[1] - times[0], len(times) - 1
-    orders = np.arange(int(np.ceil(LOWEST * times[-1])), int(HIGHEST * times[-1]) + 1)
+    orders = np.arange(int(np.ceil(LOWEST_FREQUENCY * times[-1])), int(HIGHEST_FREQUENCY * times[-1]) + 1)
     orders = orders[orders <= n // 2 - 1]
     omegas = 2.0 * np.pi / times[-1] * orders
     amplitudes = np.sqrt(2.0 * power_spectrum(target, omegas) * (omegas[1] - omegas[0]))
@@ -108,7 +108,7 @@ def accelerograms(
     return np.stack([_raised(history, target.ground, times, rest) for history in best])
 
 
-def _controls(target: Target, step: float) -> tuple[np.ndarray, list[Filter], np.ndarray]:
+def _controls(target: TargetSpectrum, step: float) -> tuple[np.ndarray, list[OscillatorFilter], np.ndarray]:
     """Circular frequencies at which the spectrum is corrected, their oscillators, and the target there."""
     shortest = max(CONTROLLED[0], 2.0 * step)
     omegas = 2.0 * np.pi / np.geomspace(shortest, CONTROLLED[1], CONTROLS)[::-1]

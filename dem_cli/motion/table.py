@@ -1,4 +1,4 @@
-"""[motion]: how supports move. One table, or several [[motion]], which add up."""
+"""[motion]: ground motion, how supports move. One table, or several [[motion]], which add up."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
-from dem_cli.motion.units import UNITS
+from dem_cli.motion.units import SI_FACTORS
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
 Period = tuple[NonNegative, Positive]  # period [s], acceleration [m/s2]
@@ -97,7 +97,10 @@ class HarmonicTable(MotionTable):
     @property
     def length(self) -> float:
         """How long it lasts [s]."""
-        return self.duration if self.duration is not None else self.cycles / self.frequency  # type: ignore[operator]
+        if self.cycles is not None:
+            return self.cycles / self.frequency
+        assert self.duration is not None
+        return self.duration
 
 
 class RecordTable(MotionTable):
@@ -147,7 +150,7 @@ class RecordTable(MotionTable):
             raise ValueError("'scale' and 'peak' are given; a record has one of them, or none")
         if self.scale == 0.0:
             raise KeyProblem("0 is not allowed; must be another number", "scale")
-        units = UNITS[self.quantity]
+        units = SI_FACTORS[self.quantity]
         if self.unit is not None and self.unit not in units:
             allowed = ", ".join(f"'{unit}'" for unit in units)
             raise KeyProblem(f"'{self.unit}' is not a unit of {self.quantity} (allowed: {allowed})", "unit")

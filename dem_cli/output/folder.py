@@ -53,7 +53,7 @@ OWN_NAMES = frozenset(
     )
 )
 OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summary.json of ours has
-INTERRUPTED = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
+INTERRUPTED_SUFFIX = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
 JOURNAL = ".dem-runs"  # suffix of the hidden file that keeps finished runs for --resume
 _LOCK = ".lock"
 _NEW, _OLD = "dem-new", "dem-old"
@@ -104,13 +104,13 @@ def is_complete(folder: Path) -> bool:
 def foreign_names(folder: Path) -> list[str]:
     """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
     ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|{re.escape(JOURNAL)}$)")
-    names = sorted(n for n in os.listdir(folder) if not ours.match(n))
-    names = [name for name in names if not (name.endswith(INTERRUPTED) and is_ours(folder / name))]
+    names = sorted(path.name for path in folder.iterdir() if not ours.match(path.name))
+    names = [name for name in names if not (name.endswith(INTERRUPTED_SUFFIX) and is_ours(folder / name))]
     return [name for name in names if name not in OWN_NAMES] if is_ours(folder) else names
 
 
 class OutputFolder:
-    """`path` is where to write now; `commit()` gives it the final name, leaving the block discards it."""
+    """Output folder of a run: write to `path`; `commit()` gives it the final name, leaving the block discards it."""
 
     def __init__(self, final: Path | str, *, force: bool = False, recover: bool = True):
         self.name = str(final)
@@ -169,14 +169,14 @@ class OutputFolder:
         if not base.is_dir():
             return
         stem = f".{self.final.name}."
-        for name in sorted(os.listdir(base)):
+        for name in sorted(path.name for path in base.iterdir()):
             if name.startswith(f"{stem}{_NEW}-") and abandoned(base / name):
                 shutil.rmtree(base / name, ignore_errors=True)
             elif name.startswith(f"{stem}{_OLD}-") and base != self.final:
                 if self.final.exists():
                     shutil.rmtree(base / name, ignore_errors=True)
                 else:
-                    os.rename(base / name, self.final)
+                    (base / name).rename(self.final)
 
     def commit(self, name: str | None = None) -> Path:
         """Put the folder under its final name, or under the sibling `name`; earlier results go only now."""
@@ -206,10 +206,10 @@ class OutputFolder:
         for name in sorted(OWN_NAMES - {SUMMARY}):
             if (self.path / name).exists():
                 _remove(target / name)
-                os.rename(self.path / name, target / name)
+                (self.path / name).rename(target / name)
             elif not self.foreign:
                 _remove(target / name)
-        os.rename(self.path / SUMMARY, target / SUMMARY)
+        (self.path / SUMMARY).rename(target / SUMMARY)
 
     def discard(self) -> None:
         """Remove what was written and the parents that were made for it; harmless after `commit`."""
@@ -239,12 +239,12 @@ def _replace_folder(new: Path, final: Path, aside: Path) -> None:
     """Two renames; a kill between them leaves the old results in `aside`, which the next run gives back."""
     had_old = final.exists()
     if had_old:
-        os.rename(final, aside)
+        final.rename(aside)
     try:
-        os.rename(new, final)
+        new.rename(final)
     except OSError:
         if had_old:
-            os.rename(aside, final)
+            aside.rename(final)
         raise
     if had_old:
         shutil.rmtree(aside, ignore_errors=True)

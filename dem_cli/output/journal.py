@@ -1,4 +1,4 @@
-"""Finished runs of an analysis that consists of many, one per line as they come: what a kill leaves for `--resume`.
+"""Journal of the finished runs of an analysis of many, one per line as they come: what `--resume` goes on from.
 
 The file lies beside the output folder and goes once the results are in place. Its first line says what was run; a last
 line that a kill cut short is dropped.
@@ -16,13 +16,13 @@ from typing import Any
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import JOURNAL, locked, write_error
 
-FORMAT = 1
+JOURNAL_FORMAT = 1
 Key = tuple[Any, ...]
 Values = tuple[Any, ...]
 
 
 class Journal:
-    """`known()` are the runs of before; `add` keeps one more.
+    """Journal of finished runs: `known()` are those of before; `add` keeps one more.
 
     what    facts that must be the same for runs to be comparable: {words for users: text}
     resume  whether runs of before are wanted; raises UsageError where they were made of something else,
@@ -58,7 +58,7 @@ class Journal:
             self._begin()
             return
         changed = [word for word in self.what if header.get("what", {}).get(word) != self.what[word]]
-        if header.get("format") != FORMAT or changed:
+        if header.get("format") != JOURNAL_FORMAT or changed:
             if resume:
                 words = " and ".join(changed) or "the format of the journal"
                 raise UsageError(
@@ -82,7 +82,7 @@ class Journal:
         self._ours = True
         os.ftruncate(self._file, 0)
         os.lseek(self._file, 0, os.SEEK_SET)
-        self._write({"format": FORMAT, "what": self.what})
+        self._write({"format": JOURNAL_FORMAT, "what": self.what})
 
     def known(self) -> Mapping[Key, Values]:
         """Runs that were finished before."""

@@ -1,4 +1,4 @@
-"""With which versions a result was computed. Nothing here names a machine, a person or a place."""
+"""Provenance of a result: the versions that it was computed with. Nothing here names a machine, a person or a place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads back what a run left: `read(folder)`."""
+"""Reader of results: `read(folder)` gives back what a run left."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
 from dem_cli.output.record import FRAME_UNITS, STAGES, ContactRecord, Energy, Frame
 from dem_cli.output.series import HistorySeries, read_series
-from dem_cli.output.store import FORMAT, FRAME_ARRAYS, FRAME_SCALARS, RESULTS, ROW_SCALARS
+from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
 
 Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
 
@@ -114,8 +114,8 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 
 def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
-    if dem.attrs["format"] != FORMAT:
-        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {FORMAT}")
+    if dem.attrs["format"] != RESULTS_FORMAT:
+        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {RESULTS_FORMAT}")
     history = dem["history"]
     n_rows = len(history["stage"]) if "stage" in history else 0
     columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}

@@ -1,4 +1,7 @@
-"""What a solver hands to whoever keeps results: frames, history rows, a summary. Plain arrays, no files."""
+"""Records of a run as a solver hands them to an observer: frames, contacts, history rows, energies, samples.
+
+Plain arrays, no files.
+"""
 
 from __future__ import annotations
 
@@ -94,7 +97,7 @@ class Samples(NamedTuple):
 
 
 class RunRow(NamedTuple):
-    """What became of one of many runs."""
+    """Outcome of one of many runs."""
 
     structure: int  # 0: that of the case; others are slightly different
     record: str  # the ground motion

@@ -1,4 +1,4 @@
-"""Is what was computed what the `[reference]` of the case says? One verdict per table."""
+"""Comparison with reference values: one verdict per `[reference]` table of the case."""
 
 from __future__ import annotations
 
@@ -11,21 +11,31 @@ from dem_cli.output.scalars import scalars
 Value = float | int | str | bool | None
 
 
-class Wanted(Protocol):
-    """What this file asks of a `[reference]`."""
+class ReferenceTable(Protocol):
+    """A `[reference]` table, as far as the comparison asks it."""
 
     @property
-    def path(self) -> str: ...
+    def path(self) -> str:
+        """Key of the summary that is compared."""
+
     @property
-    def expected(self) -> bool | float | tuple[float, float] | str: ...
+    def expected(self) -> bool | float | tuple[float, float] | str:
+        """Value, or ends of the interval, that it should have."""
+
     @property
-    def allowance(self) -> float | None: ...
+    def allowance(self) -> float | None:
+        """How far off a number may be."""
 
-    kind: str
-    missed: str | None
+    @property
+    def kind(self) -> str:
+        """What sort of reference this is."""
+
+    @property
+    def missed(self) -> str | None:
+        """Why the case says that this is missed; None: it is to be met."""
 
 
-def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[dict[str, Any]]:
+def verdicts(summary: Mapping[str, Any], references: Sequence[ReferenceTable]) -> list[dict[str, Any]]:
     """What summary.json says of each reference.
 
     value, tolerance and passed, as the contract of `dem run` has them; quantity, kind, found; `missed`, why the case
@@ -35,7 +45,7 @@ def verdicts(summary: Mapping[str, Any], references: Sequence[Wanted]) -> list[d
     return [verdict(known, reference) for reference in references]
 
 
-def verdict(known: Mapping[str, Value], reference: Wanted) -> dict[str, Any]:
+def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, Any]:
     """One reference and the numbers, words and truths of a summary by their paths."""
     found = known.get(reference.path)
     value = list(reference.expected) if isinstance(reference.expected, tuple) else reference.expected
@@ -69,7 +79,7 @@ def error(found: Value, expected: bool | float | tuple[float, float] | list[floa
     return min(found - low, 0.0) + max(found - high, 0.0)
 
 
-def why_nothing(known: Mapping[str, Value], reference: Wanted) -> str | None:
+def why_nothing(known: Mapping[str, Value], reference: ReferenceTable) -> str | None:
     """Why there is nothing to compare; None where there is something, or where no answer is one (no failure load)."""
     if reference.path in known:
         found, wanted = known[reference.path], _sort(reference.expected)

@@ -16,11 +16,18 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from dem_cli.output.columns import Columns
+from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.record import Samples
 
-UNITS = {"displacement": "m", "rotation": "rad", "opening": "m", "slip": "m", "velocity": "m/s", "acceleration": "m/s2"}
-UNITS |= {f"absolute {name}": UNITS[name] for name in ("displacement", "velocity", "acceleration")}
+MONITOR_UNITS = {
+    "displacement": "m",
+    "rotation": "rad",
+    "opening": "m",
+    "slip": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+}
+MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
 _TEXT = h5py.string_dtype()
@@ -39,7 +46,7 @@ class Peak(NamedTuple):
 
 
 class HistorySeries(NamedTuple):
-    """The histories of a run."""
+    """Time histories of a run."""
 
     time: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
@@ -48,13 +55,13 @@ class HistorySeries(NamedTuple):
 
 
 class SeriesWriter:
-    """Keeps what comes in memory until `flush`; remembers the peaks."""
+    """Writer of time histories: keeps what comes in memory until `flush`; remembers the peaks."""
 
     def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str]):
         self.names, self.quantities = tuple(names), tuple(quantities)
         group.attrs.create("monitors", list(self.names), dtype=_TEXT)
         group.attrs.create("quantities", list(self.quantities), dtype=_TEXT)
-        self._group, self._columns = group, Columns(group)
+        self._group, self._columns = group, GrowingGroup(group)
         self._waiting: list[Samples] = []
         self.n_waiting = 0
         self._peaks: list[Peak] = []
@@ -85,7 +92,7 @@ class SeriesWriter:
     def peaks(self) -> dict[str, dict[str, float | str]]:
         """Extremes with their times, the last value and the unit of each monitor, by name."""
         found = zip(self.names, self.quantities, self._peaks)
-        return {name: {**peak._asdict(), "unit": UNITS[quantity]} for name, quantity, peak in found}
+        return {name: {**peak._asdict(), "unit": MONITOR_UNITS[quantity]} for name, quantity, peak in found}
 
     def flush(self) -> None:
         """Hand what was kept to the file."""
@@ -110,8 +117,8 @@ class SeriesWriter:
 def headers(series: HistorySeries) -> list[str]:
     """A name with its unit for each column of `table`."""
     axes = _AXES[: series.base.shape[2]]
-    base = [f"base {name} {axis} [{UNITS[name]}]" for name in BASE for axis in axes]
-    return ["time [s]", *base, *(f"{name} [{UNITS[quantity]}]" for name, quantity in series.quantities.items())]
+    base = [f"base {name} {axis} [{MONITOR_UNITS[name]}]" for name in BASE for axis in axes]
+    return ["time [s]", *base, *(f"{name} [{MONITOR_UNITS[quantity]}]" for name, quantity in series.quantities.items())]
 
 
 def table(series: HistorySeries) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Writes a run to disk as it goes: results.h5 (blocks, histories, everything) and contacts.vtkhdf.
+"""Result writer: a run on disk as it goes, in results.h5 (blocks, histories, everything) and contacts.vtkhdf.
 
 results.h5 holds `/VTKHDF` (float32, what ParaView shows) beside `/dem` (float64, what `reader.read` returns):
 
@@ -23,18 +23,18 @@ import numpy as np
 
 from dem_cli.geometry.rotation import across, angles_of
 from dem_cli.model.model import Model
-from dem_cli.output.columns import Columns
-from dem_cli.output.disk import HeldFile
+from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
-from dem_cli.output.held import Held
+from dem_cli.output.growing_dataset import GrowingGroup
+from dem_cli.output.hdf5_file import Hdf5File
 from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, RunRow, Samples
-from dem_cli.output.runs import TABLES, write_runs
+from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
-from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.summary import write_summary
+from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
-FORMAT = 1
+RESULTS_FORMAT = 1
 RESULTS, CONTACTS, CASE, HISTORY = "results.h5", "contacts.vtkhdf", "case.toml", "history.csv"
 ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time")
 FRAME_SCALARS = ("step", "load", "displacement", "time")
@@ -48,7 +48,7 @@ _UNSAID = ("aliases",)  # of a model: the case file says them
 
 
 class ResultWriter:
-    """Give it frames and history rows as they come; `close(summary)` completes the folder."""
+    """Writer of results: give it frames and history rows as they come; `close(summary)` completes the folder."""
 
     def __init__(
         self,
@@ -68,8 +68,8 @@ class ResultWriter:
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._rows: list[HistoryRow] = []
-        self._held = Held(self.monitors, self.quantities)
-        self._files: list[HeldFile] = []
+        self._held = EquilibriumMonitors(self.monitors, self.quantities)
+        self._files: list[Hdf5File] = []
         self._vtk: tuple[GridSeries, PointSeries] | None = None
         self._series: SeriesWriter | None = None
         self._rest = rest_vertices(model)
@@ -79,7 +79,7 @@ class ResultWriter:
         (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
         file = self._open(RESULTS)
         self.dem = dem = file.create_group("dem")
-        dem.attrs["format"] = FORMAT
+        dem.attrs["format"] = RESULTS_FORMAT
         dem.attrs["kind"] = self.kind
         dem.attrs["status"] = "running"
         dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)
@@ -87,13 +87,13 @@ class ResultWriter:
         dem.create_group("provenance").attrs.update(provenance)
         _store_model(dem.create_group("model"), self.model)
         self._frames, self._contacts, self._history = (
-            Columns(dem.create_group(name)) for name in ("frames", "contacts", "history")
+            GrowingGroup(dem.create_group(name)) for name in ("frames", "contacts", "history")
         )
         dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
         self._flush()
 
     def _open(self, name: str) -> h5py.File:
-        self._files.append(HeldFile(self.folder / name))
+        self._files.append(Hdf5File(self.folder / name))
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
@@ -233,7 +233,7 @@ def _store_model(group: h5py.Group, model: Model) -> None:
             group.create_dataset(name, data=value)
 
 
-def _store_rows(history: Columns, rows: Sequence[HistoryRow]) -> None:
+def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:
     for name in ROW_SCALARS:
         kind = np.int64 if name == "step" else np.float64
         history.append(name, np.array([getattr(row, name) for row in rows], dtype=kind))

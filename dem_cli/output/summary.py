@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -65,7 +64,7 @@ def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
     """Write it under its name only when it is whole."""
     part = folder / f".{SUMMARY}.part"
     part.write_text(to_json(summary), encoding="utf-8", newline="\n")
-    os.replace(part, folder / SUMMARY)
+    part.replace(folder / SUMMARY)
 
 
 def exit_code(summary: Mapping[str, Any]) -> int:

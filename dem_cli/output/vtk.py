@@ -1,4 +1,4 @@
-"""Files for other programs: geometry of a model, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
+"""VTK export: the blocks of a model for other programs, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
+from dem_cli.output.atomic_file import write_text
 from dem_cli.output.folder import write_error
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.shapes import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.store import IN_SECONDS, block_fields, contact_fields
-from dem_cli.output.whole import write_text
+from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 
 Fields = Mapping[str, np.ndarray]
 _POLYGON = 7

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 import h5py
 import numpy as np
 
-from dem_cli.output.columns import Columns
+from dem_cli.output.growing_dataset import GrowingGroup
 
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _PARTS = "Steps/PartOffsets"
@@ -27,7 +27,7 @@ class _Series:
         root.attrs["Version"] = (2, 0)
         root.attrs.create("Type", kind.encode("ascii"), dtype=h5py.string_dtype("ascii", len(kind)))
         root.create_group("Steps").attrs["NSteps"] = 0
-        self.columns = Columns(root)
+        self.columns = GrowingGroup(root)
         self.n_steps = 0
 
     def _append_fields(self, kind: str, fields: Fields) -> None:

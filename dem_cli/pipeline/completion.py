@@ -65,7 +65,9 @@ def with_names(found: dict[str, Any], names: Sequence[str], quantities: Sequence
     repeats = found.get("repeats")
     if not repeats or "peaks" not in repeats:
         return found
-    from dem_cli.output.series import UNITS
+    from dem_cli.output.series import MONITOR_UNITS
 
-    spreads = [spread and spread | {"unit": UNITS[q]} for spread, q in zip(repeats["peaks"], quantities, strict=True)]
+    spreads = [
+        spread and spread | {"unit": MONITOR_UNITS[q]} for spread, q in zip(repeats["peaks"], quantities, strict=True)
+    ]
     return found | {"repeats": repeats | {"peaks": dict(zip(names, spreads, strict=True))}}

@@ -154,10 +154,10 @@ def abandoning(writer: ResultWriter) -> Iterator[None]:
 
 def put_in_place(folder: OutputFolder, summary: dict[str, Any], listener: RunListener) -> Path:
     """Commit; an interrupted run goes beside earlier complete results, not over them."""
-    from dem_cli.output.folder import INTERRUPTED, is_complete
+    from dem_cli.output.folder import INTERRUPTED_SUFFIX, is_complete
 
     if summary["status"] != "interrupted" or not is_complete(folder.final):
         return folder.commit()
-    place = folder.commit(folder.final.name + INTERRUPTED)
+    place = folder.commit(folder.final.name + INTERRUPTED_SUFFIX)
     listener.earlier_kept(folder.final)
     return place

@@ -34,8 +34,8 @@ def check_quantities(case: Case, names: Sequence[str]) -> None:
 
     names: of the monitors. All other quantities are known only when there is a summary.
     """
-    from dem_cli.case.words import unknown_name
-    from dem_cli.output.held import PARTS
+    from dem_cli.case.wording import unknown_name
+    from dem_cli.output.equilibrium_monitors import PARTS
     from dem_cli.output.series import Peak
 
     if case.analysis.kind == "time-history":

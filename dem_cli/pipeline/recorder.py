@@ -22,24 +22,30 @@ class Recorder(Observer):
         self.writer, self.listener, self.interrupts = writer, listener, interrupts
 
     def frame(self, frame: Frame) -> None:
+        """Into the files."""
         with self.interrupts.shielded():
             self.writer.frame(frame)
 
     def row(self, row: HistoryRow) -> None:
+        """Into the files."""
         with self.interrupts.shielded():
             self.writer.row(row)
 
     def samples(self, samples: Samples) -> None:
+        """Into the files."""
         with self.interrupts.shielded():
             self.writer.samples(samples)
 
     def structure(self, model: Model) -> None:
+        """Into the files."""
         with self.interrupts.shielded():
             self.writer.structure(model)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
+        """Into the files."""
         with self.interrupts.shielded():
             self.writer.runs(rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """To the listener."""
         self.listener.progress(stage, load, displacement, fraction)

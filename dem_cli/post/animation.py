@@ -11,9 +11,9 @@ from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
-from dem_cli.output.shapes import rest_vertices
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures, style, view
+from dem_cli.output.vertices import rest_vertices
+from dem_cli.post import frame_measures, style, view_box
 
 _FRAME_MS = 80  # of a picture: 12.5 per second
 _LAST_MS = 1200  # the last one stays longer
@@ -72,10 +72,10 @@ class _Scene:
         model, self.results = results.model, results
         self.model = model
         frames = results.frames
-        self.scale = min(measures.visible_scale(model, frame) for frame in frames)
-        self.carried = view.carried(results, self.scale)
+        self.scale = min(frame_measures.visible_scale(model, frame) for frame in frames)
+        self.carried = view_box.carried(results, self.scale)
         corners = [self._corners(frame) for frame in frames]
-        low, high = view.window(model, corners)
+        low, high = view_box.window(model, corners)
         series = results.series
         self.strip = series is not None and bool((series.base[:, 0] != 0.0).any())
         width, height = _size(high - low)
@@ -93,8 +93,8 @@ class _Scene:
 
     def _corners(self, frame: Frame) -> np.ndarray:
         """Corners as drawn, carried along by the ground [m], (n_vertices, 2)."""
-        moved = view.ground(self.results.series, frame) if self.carried else 0.0
-        return view.corners(self.model, frame, self.scale, moved)
+        moved = view_box.ground(self.results.series, frame) if self.carried else 0.0
+        return view_box.corners(self.model, frame, self.scale, moved)
 
     def _draw_structure(self, low: np.ndarray, high: np.ndarray) -> None:
         from matplotlib.collections import PolyCollection

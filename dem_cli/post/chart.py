@@ -1,4 +1,4 @@
-"""What all charts share: panels, units that read well, limits, colours of a family, where the key to them stands."""
+"""Layout of charts: panels, units that read well, limits, colours of a family, where the key to them stands."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dem_cli.post.labels import Quantity
 COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#8250a8", "#c51b7d", "#5aa0d8", "#a6761d", "#7c7c86")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)))
 MARKERS = "osD^vPX"
-FORMATS = (".png", ".svg", ".pdf")
+CHART_FORMATS = (".png", ".svg", ".pdf")
 SIZE = (7.4, 4.6)  # inches
 MOST_NAMES = 8  # in a legend: more numbers become a colour bar
 _PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
@@ -25,8 +25,8 @@ _LONGEST_TITLE = 11.0  # letters per inch
 
 
 @dataclass(frozen=True)
-class Paper:
-    """How a chart is asked for."""
+class ChartOptions:
+    """Options of a chart: size, logarithmic axes, limits."""
 
     size: tuple[int, int | None] | None = None  # pixels
     log: frozenset[str] = frozenset()  # axes: "x", "y"
@@ -42,7 +42,7 @@ class Paper:
         return width / style.DPI, (height or width * SIZE[1] / SIZE[0]) / style.DPI
 
 
-class Keys:
+class FamilyColours:
     """Colours for the members of a family: by number along a scale, or one after the other."""
 
     def __init__(self, values: Sequence[Any]):
@@ -68,7 +68,7 @@ class Keys:
         return COLOURS[i % len(COLOURS)]
 
 
-def draw_bar(figure: Any, axes: Any, keys: Keys, label: str) -> None:
+def draw_bar(figure: Any, axes: Any, keys: FamilyColours, label: str) -> None:
     """The scale of colours beside all panels."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -96,10 +96,10 @@ def fitted(quantity: Quantity, values: Sequence[np.ndarray]) -> tuple[float, str
     return factor, quantity.label(unit)
 
 
-def dress(axis: Any, paper: Paper) -> None:
+def dress(axis: Any, options: ChartOptions) -> None:
     """Limits and logarithms as asked for. Raises UsageError where an axis cannot be logarithmic."""
-    for name, limits in (("x", paper.x_limits), ("y", paper.y_limits)):
-        if name in paper.log:
+    for name, limits in (("x", options.x_limits), ("y", options.y_limits)):
+        if name in options.log:
             if getattr(axis, f"get_{name}lim")()[1] <= 0.0:
                 raise UsageError(f"--log {name}: there is nothing positive to draw")
             getattr(axis, f"set_{name}scale")("log", nonpositive="mask")
@@ -119,5 +119,7 @@ def title(figure: Any, text: str) -> None:
 
 def check_format(path: Path) -> None:
     """UsageError where matplotlib would not know what to write."""
-    if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"-o {path}: the name of a chart has to end in {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    if path.suffix.lower() not in CHART_FORMATS:
+        raise UsageError(
+            f"-o {path}: the name of a chart has to end in {', '.join(CHART_FORMATS[:-1])} or {CHART_FORMATS[-1]}"
+        )

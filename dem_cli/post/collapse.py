@@ -10,9 +10,9 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, Frame
-from dem_cli.output.shapes import placed_vertices, rest_vertices
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures, style
+from dem_cli.output.vertices import placed_vertices, rest_vertices
+from dem_cli.post import frame_measures, style
 
 MECHANISM = "mechanism"  # of limit analysis
 _WIDEST_FORCE = 6.0  # points
@@ -25,11 +25,11 @@ def draw_collapse(results: Results, path: Path) -> None:
     model, panels = results.model, _panels(results)
     corners = [rest_vertices(model)]
     drawn = []
-    scales = [measures.visible_scale(model, frame) for _, frame in panels]
+    scales = [frame_measures.visible_scale(model, frame) for _, frame in panels]
     if results.kind in IN_SECONDS:  # the same structure before and after
         scales = [min(scales)] * len(scales)
     for (name, frame), scale in zip(panels, scales, strict=True):
-        shown = measures.scaled(model, frame, scale)
+        shown = frame_measures.scaled(model, frame, scale)
         corners.append(placed_vertices(model, shown.positions, shown.orientations))
         drawn.append((name, frame, shown, scale))
     low, high = window(model, corners)
@@ -39,7 +39,9 @@ def draw_collapse(results: Results, path: Path) -> None:
         for axis, (name, frame, shown, scale) in zip(axes, drawn, strict=True):
             _draw_panel(axis, model, shown, scale, low, high)
             axis.set_title(_panel_title(name, frame, scale, results.kind), fontsize=10, fontweight="normal")
-        _legend(figure, any(len(measures.chains(model, measures.resultants(f.contacts))) for _, f in panels))
+        _legend(
+            figure, any(len(frame_measures.chains(model, frame_measures.resultants(f.contacts))) for _, f in panels)
+        )
         style.headline(figure, results.summary)
 
 
@@ -148,6 +150,7 @@ def _polygons(model: Model, corners: np.ndarray) -> list[np.ndarray]:
 
 
 def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
+    """The blocks, filled; fixed ones as ground. corners: (n_vertices, 2)."""
     from matplotlib.collections import PolyCollection
 
     fixed = model.fixed[model.part_blocks]
@@ -158,6 +161,7 @@ def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
 
 
 def draw_rest(axis: Any, model: Model) -> None:
+    """Outlines of the blocks where they stood at the start."""
     from matplotlib.collections import PolyCollection
 
     rest = _polygons(model, rest_vertices(model))
@@ -174,7 +178,7 @@ def _draw_joints(axis: Any, model: Model, frame: Frame, scale: float) -> None:
     order = np.argsort(contacts.joint, kind="stable")
     joints, points = contacts.joint[order], contacts.points[order]
     width = float(np.clip(32.0 / np.sqrt(model.n_blocks + 1), 0.6, 3.2))
-    hairline = _HAIRLINE * measures.largest_displacement(model, frame) / scale
+    hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame) / scale
     halves, colours, singles = [], [], []
     _, starts, counts = np.unique(joints, return_index=True, return_counts=True)
     for start, count in zip(starts, counts, strict=True):
@@ -197,18 +201,18 @@ def _draw_thrust(axis: Any, model: Model, frame: Frame) -> None:
     """Thickness grows with the force: a line through arches and columns, one stroke per joint in walls."""
     from matplotlib.collections import LineCollection
 
-    found = measures.resultants(frame.contacts)
+    found = frame_measures.resultants(frame.contacts)
     sizes = np.linalg.norm(found.forces, axis=1)
     if not len(sizes):
         return
     widest = _WIDEST_FORCE if model.n_blocks < 60 else _WIDEST_FORCE * (60 / model.n_blocks) ** 0.35
     widths = np.maximum(0.4, widest * sizes / sizes.max())
-    lines = measures.chains(model, found)
+    lines = frame_measures.chains(model, found)
     if lines:
         strokes = [(found.points[a], found.points[b]) for chain in lines for a, b in zip(chain, chain[1:])]
         widths = [(widths[a] + widths[b]) / 2 for chain in lines for a, b in zip(chain, chain[1:])]
     else:
-        reach = 0.4 * measures.block_reach(model, found.blocks)
+        reach = 0.4 * frame_measures.block_reach(model, found.blocks)
         arms = found.forces / sizes[:, np.newaxis] * reach[:, np.newaxis]
         strokes = list(zip(found.points - arms, found.points + arms))
     axis.add_collection(

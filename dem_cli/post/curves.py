@@ -1,4 +1,4 @@
-"""Any two columns of one or several runs: a curve for each, a panel for each unit."""
+"""Line charts of any two columns of one or several runs: a curve for each, a panel for each unit."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.post import chart, style
-from dem_cli.post.chart import Paper
-from dem_cli.post.columns import find, tables
+from dem_cli.post.chart import ChartOptions
 from dem_cli.post.histories import thinned
 from dem_cli.post.labels import Quantity
+from dem_cli.post.run_columns import find, tables
 
 _PANEL = 0.62  # of the height of a chart: every panel after the first adds so much
 _MOST_BESIDE = 16  # names in a legend at the side
 
 
-class Member(NamedTuple):
+class FamilyMember(NamedTuple):
     """A run of a family."""
 
     name: str  # as the legend has it
@@ -30,16 +30,22 @@ class Member(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """One line."""
+    """One line of a chart."""
 
-    member: Member
+    member: FamilyMember
     column: str  # of y
     x: np.ndarray
     y: np.ndarray
 
 
 def draw_curves(
-    members: Sequence[Member], x: str, ys: Sequence[str], path: Path, paper: Paper, title: str, family: str = ""
+    members: Sequence[FamilyMember],
+    x: str,
+    ys: Sequence[str],
+    path: Path,
+    options: ChartOptions,
+    title: str,
+    family: str = "",
 ) -> None:
     """One line per run and column of y. `family`: what the values are by which runs are coloured.
 
@@ -48,15 +54,15 @@ def draw_curves(
     quantities, curves = _gathered(members, x, ys)
     units = list(dict.fromkeys(quantities[c.column].unit or c.column for c in curves))
     panels = [[c for c in curves if (quantities[c.column].unit or c.column) == unit] for unit in units]
-    width, height = paper.inches
-    if paper.size is None:
+    width, height = options.inches
+    if options.size is None:
         height *= 1.0 + _PANEL * (len(panels) - 1)
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-        keys = chart.Keys([member.value for member in members])
+        keys = chart.FamilyColours([member.value for member in members])
         factor, label = chart.fitted(quantities["x"], [curve.x for curve in curves])
         for axis, panel in zip(axes, panels):
-            _draw_panel(axis, panel, factor, quantities, keys, list(ys), paper)
+            _draw_panel(axis, panel, factor, quantities, keys, list(ys), options)
         axes[-1].set_xlabel(label)
         figure.align_ylabels(axes)
         if keys.bar:
@@ -65,7 +71,7 @@ def draw_curves(
         chart.title(figure, title)
 
 
-def _gathered(members: Sequence[Member], x: str, ys: Sequence[str]) -> tuple[dict[str, Quantity], list[Curve]]:
+def _gathered(members: Sequence[FamilyMember], x: str, ys: Sequence[str]) -> tuple[dict[str, Quantity], list[Curve]]:
     quantities: dict[str, Quantity] = {}
     curves = []
     for member in members:
@@ -82,8 +88,8 @@ def _gathered(members: Sequence[Member], x: str, ys: Sequence[str]) -> tuple[dic
 
 
 def _draw_panel(
-    axis: Any, curves: Sequence[Curve], x_factor: float, quantities: dict[str, Quantity], keys: chart.Keys,
-    ys: list[str], paper: Paper,
+    axis: Any, curves: Sequence[Curve], x_factor: float, quantities: dict[str, Quantity], keys: chart.FamilyColours,
+    ys: list[str], options: ChartOptions,
 ) -> None:  # fmt: skip
     columns = list(dict.fromkeys(curve.column for curve in curves))
     factor, label = chart.fitted(quantities[columns[0]], [curve.y for curve in curves])
@@ -97,12 +103,12 @@ def _draw_panel(
             x, y = thinned(x, y)
         axis.plot(x, y, color=colour, ls=dashes, lw=1.6 if len(curves) <= 12 else 1.1)
     axis.set_ylabel(label if len(columns) == 1 else _in_common([quantities[name].words for name in columns], label))
-    if paper.x_limits is not None:
-        _fit_heights(axis, paper.x_limits)
+    if options.x_limits is not None:
+        _fit_heights(axis, options.x_limits)
     low, high = axis.get_ylim()
-    if low < 0.0 < high and "y" not in paper.log:
+    if low < 0.0 < high and "y" not in options.log:
         axis.axhline(0.0, color=style.GREY, lw=0.6, zorder=1)
-    chart.dress(axis, paper)
+    chart.dress(axis, options)
 
 
 def _in_common(words: list[str], label: str) -> str:
@@ -124,7 +130,7 @@ def _fit_heights(axis: Any, limits: tuple[float, float]) -> None:
 
 
 def _legend(
-    figure: Any, axes: Any, members: Sequence[Member], keys: chart.Keys, ys: Sequence[str],
+    figure: Any, axes: Any, members: Sequence[FamilyMember], keys: chart.FamilyColours, ys: Sequence[str],
     quantities: dict[str, Quantity], family: str,
 ) -> None:  # fmt: skip
     """Runs by colour, columns by colour where there is one run, else by dashes."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
-from dem_cli.output.series import BASE, UNITS, HistorySeries
+from dem_cli.output.series import BASE, MONITOR_UNITS, HistorySeries
 from dem_cli.post import style
 
 _COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#8250a8", "#c51b7d", "#5aa0d8", "#a6761d", "#7c7c86")
@@ -23,7 +23,7 @@ def draw_histories(results: Results, path: Path) -> None:
     series = results.series
     assert series is not None
     collapse = results.summary.get("collapse_time")
-    panels = {quantity: of_quantity(series, quantity) for quantity in UNITS}
+    panels = {quantity: of_quantity(series, quantity) for quantity in MONITOR_UNITS}
     panels = {quantity: lines for quantity, lines in panels.items() if lines}
     moved = [name for i, name in enumerate(BASE) if (series.base[:, i] != 0.0).any()]
     rows = [1.0] * bool(moved) + [1.4] * len(panels) or [1.0]
@@ -70,7 +70,7 @@ def _draw_panel(
     before = time <= (np.inf if collapse is None else collapse)
     shown = np.concatenate([values[before] if before.any() else values for values in lines.values()])
     shown = shown[np.isfinite(shown)]
-    factor, unit = 1.0, UNITS[quantity]
+    factor, unit = 1.0, MONITOR_UNITS[quantity]
     if unit == "m":
         factor, unit = style.length_unit(float(np.abs(shown).max(initial=0.0)))
     for i, (name, values) in enumerate(lines.items()):

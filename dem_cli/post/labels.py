@@ -1,4 +1,4 @@
-"""Names of columns in words that stand at an axis, with their units."""
+"""Axis labels: names of columns in words, with their units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its mea
 
 
 class Quantity(NamedTuple):
-    """What a column holds."""
+    """Quantity of a column: what it holds."""
 
     words: str
     unit: str = ""
@@ -25,7 +25,7 @@ class Quantity(NamedTuple):
 
 
 _UNITS = {"m/s2": "m/s²", "kg/m3": "kg/m³", "-": "", "none": "", "N m": "N·m", "degrees": "°", "deg": "°"}
-KNOWN = {
+KNOWN_QUANTITIES = {
     "load": Quantity("load multiplier λ"),
     "displacement": Quantity("control displacement", "m"),
     "step": Quantity("solver step"),
@@ -66,8 +66,8 @@ _MOST_WORDS = 46  # letters of a meaning that still fits an axis
 
 def of_output(name: str, units: Mapping[str, Any]) -> Quantity:
     """A column of results by its path in the summary; `units`: what its ".unit" columns hold, by their names."""
-    if name in KNOWN:
-        return KNOWN[name]
+    if name in KNOWN_QUANTITIES:
+        return KNOWN_QUANTITIES[name]
     if match := re.fullmatch(r"(peaks|monitors)\.(.+)\.(\w+)", name):
         _, monitor, part = match.groups()
         own = str(units.get(f"{match[1]}.{monitor}.unit", ""))

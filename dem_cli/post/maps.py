@@ -10,9 +10,9 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.post import chart, style
-from dem_cli.post.chart import Paper
+from dem_cli.post.chart import ChartOptions
 from dem_cli.post.labels import Quantity
-from dem_cli.post.table import SweepTable, distinct, is_answer_in_words, numeric, shown
+from dem_cli.post.sweep_table import SweepTable, distinct, is_answer_in_words, numeric, shown
 
 _MOST_NUMBERS = 160  # cells that are small enough to be read
 _DARK = 0.55  # luminance below which numbers are white
@@ -22,7 +22,7 @@ _FULL = 0.5  # of the cells must have a run, else the keys are no grid
 
 
 def draw_map(
-    table: SweepTable, x: str, y: str, z: str, path: Path, paper: Paper, quantities: Mapping[str, Quantity]
+    table: SweepTable, x: str, y: str, z: str, path: Path, options: ChartOptions, quantities: Mapping[str, Quantity]
 ) -> None:
     """z over the keys x and y. Raises UsageError where other keys vary too: which of their values is meant?"""
     others = [key for key in table.ranked() if key not in (x, y)]
@@ -30,7 +30,7 @@ def draw_map(
         raise UsageError(f"--map has two keys; choose of the others with --where {others[0]}=VALUE")
     across, upwards = distinct(table.columns[x]), distinct(table.columns[y])
     grid = table.count >= _FULL * len(across) * len(upwards)
-    with style.figure(path, figsize=paper.inches) as figure:
+    with style.figure(path, figsize=options.inches) as figure:
         axis = figure.add_subplot()
         axis.grid(False)
         if grid:

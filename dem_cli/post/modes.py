@@ -9,11 +9,11 @@ from typing import Any
 
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.shapes import placed_vertices, rest_vertices
+from dem_cli.output.vertices import placed_vertices, rest_vertices
 from dem_cli.post import style
 from dem_cli.post.collapse import draw_blocks, draw_rest, window
 
-MOST = 12  # modes in one picture
+MOST_MODES = 12  # modes in one picture
 STAGE = "mode"  # of their frames, whose step is the number of the mode
 _TITLE_ROOM = 0.55  # inches
 _WIDEST, _HIGHEST = 10.5, 2.9  # inches: of the picture, of a panel
@@ -44,7 +44,7 @@ def draw_modes(results: Results, path: Path) -> None:
 def shapes(results: Results) -> list[Frame]:
     """The frames that show modes, the first of them."""
     found: list[Frame] = [frame for frame in results.frames if frame.stage == STAGE]
-    return found[:MOST]
+    return found[:MOST_MODES]
 
 
 def _panel_title(summary: Mapping[str, Any], number: int) -> str:

@@ -9,28 +9,28 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.motion.eurocode import Target
-from dem_cli.motion.measures import LEAST_MEAN, spectra
+from dem_cli.motion.eurocode import TargetSpectrum
+from dem_cli.motion.intensity_measures import LEAST_MEAN, spectra
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import periods
 from dem_cli.post import style
 
-DAMPING = 0.05  # of spectra without a target
-POINTS = 4000  # of a curve
+SPECTRUM_DAMPING = 0.05  # of spectra without a target
+CURVE_POINTS = 4000  # of a curve
 _WIDTH = 7.4  # inch
 _TITLE: dict[str, Any] = {"x": 0.01, "ha": "left", "fontsize": 12, "fontweight": "bold"}
 _ROWS = (("acceleration", "m/s²"), ("velocity", "m/s"), ("displacement", "m"))
 
 
-class Suite(NamedTuple):
+class MotionSuite(NamedTuple):
     """The motions of one [motion] table."""
 
     motions: Sequence[Motion]
-    target: Target | None = None  # what they were made to fit
+    target: TargetSpectrum | None = None  # what they were made to fit
     chosen: int = 0  # which of them a time history uses
 
 
-def draw_spectra(suites: Sequence[Suite], path: Path, title: str = "") -> None:
+def draw_spectra(suites: Sequence[MotionSuite], path: Path, title: str = "") -> None:
     """Pseudo-acceleration by period: every motion thin, their mean thick, the target and 90 % of it."""
     height = 1.0 + 3.4 * len(suites)
     with style.figure(path, figsize=(_WIDTH, height)) as figure:
@@ -41,9 +41,9 @@ def draw_spectra(suites: Sequence[Suite], path: Path, title: str = "") -> None:
         figure.suptitle(_fitted(f"{title}: response spectra"), **_TITLE)
 
 
-def _draw_suite(axis: Any, suite: Suite) -> None:
+def _draw_suite(axis: Any, suite: MotionSuite) -> None:
     motions, target = suite.motions, suite.target
-    at, damping = periods(), DAMPING if target is None else target.damping
+    at, damping = periods(), SPECTRUM_DAMPING if target is None else target.damping
     values = spectra(motions, at, damping)
     alone = len(motions) == 1
     for i, row in enumerate(values):
@@ -65,7 +65,7 @@ def _draw_suite(axis: Any, suite: Suite) -> None:
     axis.legend(loc="upper right", fontsize=9)
 
 
-def draw_motions(suites: Sequence[Suite], path: Path, title: str = "") -> None:
+def draw_motions(suites: Sequence[MotionSuite], path: Path, title: str = "") -> None:
     """Acceleration, velocity and displacement by time: the chosen motions in colour, the others grey behind them."""
     with style.figure(path, figsize=(_WIDTH, 5.4)) as figure:
         axes: Any = figure.subplots(3, 1, sharex=True)
@@ -96,7 +96,7 @@ def _fitted(text: str) -> str:
 def _times(motion: Motion, end: float) -> np.ndarray:
     """Samples close enough for the picture, and the end of the longest motion."""
     own = motion.times()
-    many = own if len(own) >= POINTS else np.linspace(motion.start, motion.duration, POINTS)
+    many = own if len(own) >= CURVE_POINTS else np.linspace(motion.start, motion.duration, CURVE_POINTS)
     before = [0.0, motion.start * (1.0 - 1e-9)] if motion.start > 0.0 else []  # so that a jump is upright
     after = [motion.duration * (1.0 + 1e-9), end] if end > motion.duration else []
     return np.concatenate((before, many, after))

@@ -1,4 +1,4 @@
-"""How all pictures look: colours that everybody tells apart, one style, matplotlib without a display."""
+"""Plot style of all pictures: colours that everybody tells apart, one style, matplotlib without a display."""
 
 from __future__ import annotations
 
@@ -63,16 +63,16 @@ def canvas() -> Iterator[Callable[..., Any]]:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-        from dem_cli.post import verbatim
+        from dem_cli.post import verbatim_figure
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
 
     def make(**options: Any) -> Any:
-        drawn = verbatim.VerbatimFigure(layout="constrained", **options)
+        drawn = verbatim_figure.VerbatimFigure(layout="constrained", **options)
         FigureCanvasAgg(drawn)
         return drawn
 
-    with matplotlib.rc_context(_STYLE | verbatim.STYLE), warnings.catch_warnings():
+    with matplotlib.rc_context(_STYLE | verbatim_figure.VERBATIM_STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # in the font: a box stands there
         yield make
 

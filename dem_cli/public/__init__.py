@@ -1,0 +1,1 @@
+"""The public Python interface: run, load, open, and the results."""

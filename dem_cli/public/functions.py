@@ -109,5 +109,6 @@ class ProgressListener(RunListener):
         self.function = function
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Call it."""
         if self.function is not None:
             self.function(stage, load, displacement, fraction)

@@ -18,11 +18,11 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import CONTACT_UNITS, STATES, Frame
-from dem_cli.output.series import UNITS
-from dem_cli.output.shapes import placed_vertices
+from dem_cli.output.series import MONITOR_UNITS
 from dem_cli.output.store import contact_forces
-from dem_cli.post.columns import tables as columns_of
-from dem_cli.post.labels import KNOWN
+from dem_cli.output.vertices import placed_vertices
+from dem_cli.post.labels import KNOWN_QUANTITIES
+from dem_cli.post.run_columns import tables as columns_of
 from dem_cli.public.arrays import ArrayTable, MonitorHistory, unknown
 
 
@@ -172,13 +172,13 @@ class MonitorTable(dict[str, MonitorHistory]):
 
 def unit_of(column: str) -> str:
     """Unit of a column of the history."""
-    return KNOWN[column].unit if column in KNOWN else ""
+    return KNOWN_QUANTITIES[column].unit if column in KNOWN_QUANTITIES else ""
 
 
 def monitor_history(results: Results, name: str, told: dict[str, Any]) -> MonitorHistory:
     """One monitor. told: its table in the case."""
     quantity, absolute = str(told.get("quantity", "displacement")), bool(told.get("absolute", False))
-    unit, series = UNITS[quantity], results.series
+    unit, series = MONITOR_UNITS[quantity], results.series
     if series is not None and name in series.monitors:
         return MonitorHistory(series.monitors[name], unit, quantity, absolute, series.time, None)
     return MonitorHistory(results.monitors[name], unit, quantity, absolute, None, results.history["load"])

@@ -1,0 +1,1 @@
+"""Rendered pictures and movies of results, by VTK."""

@@ -1,4 +1,4 @@
-"""What is drawn on the blocks of a scene: joints by their state, and the forces that go through them."""
+"""Joints and forces of a rendered scene: stripes by the state of a joint, and the forces that go through it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
-from dem_cli.post import measures
+from dem_cli.post import frame_measures
 from dem_cli.render.solids import lifted
 
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
@@ -23,7 +23,7 @@ _STOUTEST = 0.3  # radius of the thickest bar over half its length
 _LONGEST_BAR = 0.85  # of the smaller side of the smaller block, to either side of the joint
 
 
-class Stripes(NamedTuple):
+class JointStripes(NamedTuple):
     """Joints as flat boxes that stand out of the stones a little; each contact point has its half of the joint."""
 
     points: np.ndarray  # corners [m], (8 n, 3)
@@ -32,7 +32,7 @@ class Stripes(NamedTuple):
     faint: np.ndarray  # a hairline, of each face, (6 n,) bool
 
 
-class Strokes(NamedTuple):
+class ForceStrokes(NamedTuple):
     """Forces as tubes along lines."""
 
     points: np.ndarray  # [m], (n, 3)
@@ -44,10 +44,12 @@ class Strokes(NamedTuple):
 _BOX = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
 
 
-def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
+def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStripes:
     """Joints of a 2D frame that is drawn `scale` times; stripes are `width` wide [m]."""
     contacts = frame.contacts
-    hairline = max(_HAIRLINE * measures.largest_displacement(model, frame), _UNSEEN * measures.size(model)) / scale
+    hairline = (
+        max(_HAIRLINE * frame_measures.largest_displacement(model, frame), _UNSEEN * frame_measures.size(model)) / scale
+    )
     ends = contacts.points
     centres = middles(contacts)
     along = centres - ends
@@ -68,7 +70,7 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> Stripes:
     points[:, :4, 2], points[:, 4:, 2] = -depth[:, np.newaxis], depth[:, np.newaxis]
     corners = _BOX[np.newaxis] + 8 * np.arange(n)[:, np.newaxis, np.newaxis]
     faces = np.concatenate((np.full((n, 6, 1), 4), corners), axis=2)
-    return Stripes(points.reshape(-1, 3), faces.ravel(), np.repeat(contacts.state, 6), np.repeat(faint, 6))
+    return JointStripes(points.reshape(-1, 3), faces.ravel(), np.repeat(contacts.state, 6), np.repeat(faint, 6))
 
 
 def middles(contacts: ContactRecord) -> np.ndarray:
@@ -78,39 +80,41 @@ def middles(contacts: ContactRecord) -> np.ndarray:
     return (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
 
 
-def forces(model: Model, frame: Frame, look: str, reach: float) -> Strokes | None:
+def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes | None:
     """Resultant force of each joint in front of the blocks; None where nothing is pressed.
 
     look     "bars": along the force, as thick as it is large; where every block has at most two pressed joints the
              bars join to the thrust line. "arrows": on the lower of two blocks, as long as the force is large
     reach    length of the longest arrow [m]; bars are as thick as becomes a picture of that scale
     """
-    found = measures.resultants(frame.contacts)
+    found = frame_measures.resultants(frame.contacts)
     sizes = np.linalg.norm(found.forces, axis=1)
     if not len(sizes) or sizes.max() <= 0.0:
         return None
     kept = sizes > _LEAST * sizes.max()
-    found, sizes = measures.Resultants(*(column[kept] for column in vars(found).values())), sizes[kept]
+    found, sizes = frame_measures.Resultants(*(column[kept] for column in vars(found).values())), sizes[kept]
     share = sizes / sizes.max()
     front = 0.5 * model.thickness[found.blocks].max(axis=1)
     if look == "arrows":
         return _arrows(found, share, front, reach, float(sizes.max()))
     radii = _THICKEST * reach * np.maximum(share, _FINEST)
     heights = front + _THICKEST * reach
-    chains = measures.chains(model, found)
+    chains = frame_measures.chains(model, found)
     if chains:
         order = np.concatenate(chains)
         lines = _lines([len(chain) for chain in chains])
-        return Strokes(lifted(found.points[order], heights[order]), radii[order], lines, float(sizes.max()))
-    lengths = _LONGEST_BAR * measures.block_reach(model, found.blocks)
+        return ForceStrokes(lifted(found.points[order], heights[order]), radii[order], lines, float(sizes.max()))
+    lengths = _LONGEST_BAR * frame_measures.block_reach(model, found.blocks)
     radii = np.minimum(radii, _STOUTEST * np.median(lengths) * np.maximum(share, _FINEST))
     arms = (lengths / sizes)[:, np.newaxis] * found.forces
     ends = np.stack((found.points - arms, found.points + arms), axis=1).reshape(-1, 2)
     n = len(sizes)
-    return Strokes(lifted(ends, np.repeat(heights, 2)), np.repeat(radii, 2), _lines([2] * n), float(sizes.max()))
+    return ForceStrokes(lifted(ends, np.repeat(heights, 2)), np.repeat(radii, 2), _lines([2] * n), float(sizes.max()))
 
 
-def _arrows(found: measures.Resultants, share: np.ndarray, front: np.ndarray, reach: float, largest: float) -> Strokes:
+def _arrows(
+    found: frame_measures.Resultants, share: np.ndarray, front: np.ndarray, reach: float, largest: float
+) -> ForceStrokes:
     """Tip at the joint, pointing downwards: what lies above pushes."""
     downwards = np.where(found.forces[:, 1] > 0.0, -1.0, 1.0)[:, np.newaxis]
     units = downwards * found.forces / np.linalg.norm(found.forces, axis=1, keepdims=True)
@@ -123,7 +127,7 @@ def _arrows(found: measures.Resultants, share: np.ndarray, front: np.ndarray, re
     points = tips[:, np.newaxis] - (lengths[:, np.newaxis] * at)[:, :, np.newaxis] * units[:, np.newaxis]
     radii = np.tile((radius, radius, _HEAD * radius, 0.02 * radius), len(lengths))
     heights = np.repeat(front + _HEAD * radius, 4)
-    return Strokes(lifted(points.reshape(-1, 2), heights), radii, _lines([4] * len(lengths)), largest)
+    return ForceStrokes(lifted(points.reshape(-1, 2), heights), radii, _lines([4] * len(lengths)), largest)
 
 
 def _lines(counts: list[int]) -> np.ndarray:

@@ -1,8 +1,7 @@
-"""Pictures one after the other as a GIF or an MP4 file."""
+"""GIF and MP4 movies of pictures one after the other."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 
-FORMATS = ("gif", "mp4")
+MOVIE_FORMATS = ("gif", "mp4")
 FPS = 12.5
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
 _COLOURS, _PAPER = 256, 242
@@ -28,7 +27,7 @@ def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
     """Write pictures (height, width, 3) of bytes, of equal size; the format is that of the file's name."""
     part = unfinished(path)
     {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
-    os.replace(part, path)
+    part.replace(path)
 
 
 def unfinished(path: Path) -> Path:

@@ -23,8 +23,8 @@ from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import collapse, measures, style, view
-from dem_cli.render import movie, paint
+from dem_cli.post import collapse, frame_measures, style, view_box
+from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
 
 STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
@@ -33,8 +33,8 @@ _STANDALONE = ("limit", "modes")  # kinds whose frames do not follow each other
 
 
 @dataclass(frozen=True)
-class Look:
-    """What is drawn, and how."""
+class RenderOptions:
+    """Options of a rendered picture: what is drawn, and how."""
 
     frame: str = "last"  # of a still: "last", "failure", a number, or a time such as "2.5s"
     view: str = "front"
@@ -46,7 +46,7 @@ class Look:
     fps: float = movie.FPS
 
 
-def render_apart(folder: Path, path: Path, look: Look) -> None:
+def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
     """Render the results in `folder` into a file: a still (.png) or a movie (.gif, .mp4).
 
     Raises UsageError where packages, graphics libraries or frames are missing, OutputError where the renderer died.
@@ -101,13 +101,13 @@ def _death(said: str) -> str:
     return f"the renderer died ({reason}); drivers may be to blame: `dem plot` draws without them"
 
 
-def render(folder: Path, path: Path, look: Look) -> None:
+def render(folder: Path, path: Path, look: RenderOptions) -> None:
     """As `render_apart`, in this process."""
-    from dem_cli.render import gl
+    from dem_cli.render import opengl
 
     results = read(folder)
     frames = chosen(results, look.frame) if path.suffix == ".png" else all_frames(results)
-    gl.choose_window()
+    opengl.choose_window()
     pages = draw(results, frames, look, MOVIE_WIDTH if len(frames) > 1 else STILL_WIDTH)
     if path.suffix == ".png":
         _write_png(pages[0], path)
@@ -120,20 +120,20 @@ def _write_png(page: np.ndarray, path: Path) -> None:
 
     part = movie.unfinished(path)
     Image.fromarray(page).save(part, "PNG", optimize=True)
-    os.replace(part, path)
+    part.replace(path)
 
 
-def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[np.ndarray]:
+def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int) -> list[np.ndarray]:
     """All pages, as (height, width, 3) bytes."""
     from dem_cli.render.scene import Scene, camera
     from dem_cli.render.sheet import Sheet, layout
 
     model = results.model
-    scale = look.scale or min(measures.visible_scale(model, frame) for frame in frames)
+    scale = look.scale or min(frame_measures.visible_scale(model, frame) for frame in frames)
     moves = [_moved(results, frame, scale) for frame in frames]
-    eye = camera(look.view, _seen(model, [view.corners(model, f, scale, m) for f, m in zip(frames, moves)]))
-    colours, bar = paint.colours(results, frames, look.colour)
-    handles = paint.legend(results, frames, look.joints, look.forces)
+    eye = camera(look.view, _seen(model, [view_box.corners(model, f, scale, m) for f, m in zip(frames, moves)]))
+    colours, bar = block_colours.colours(results, frames, look.colour)
+    handles = block_colours.legend(results, frames, look.joints, look.forces)
     plan = layout(look.size or (width, None), eye.height / eye.width, bool(handles), bar is not None)
     with style.canvas() as make:
         sheet = Sheet(make, plan, results.summary, handles, bar)
@@ -141,7 +141,7 @@ def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[
         try:
             pages = []
             for i, (frame, moved) in enumerate(zip(frames, moves)):
-                shown = measures.scaled(model, frame, scale)
+                shown = frame_measures.scaled(model, frame, scale)
                 picture = scene.picture(shown, scale, moved, look, None if colours is None else colours[i])
                 pages.append(sheet.page(picture, caption(results, frame, scale)))
         finally:
@@ -151,7 +151,7 @@ def draw(results: Results, frames: list[Frame], look: Look, width: int) -> list[
 
 def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
     """Corners of the blocks in space, as far as they are in the picture [m], (n, 3)."""
-    low, high = view.window(model, places, _AROUND)
+    low, high = view_box.window(model, places, _AROUND)
     half = 0.5 * model.thickness[model.vertex_blocks]
     inside = [np.clip(corners, low, high) for corners in places]
     return np.concatenate([lifted(corners, side * half) for corners in inside for side in (-1.0, 1.0)])
@@ -159,8 +159,8 @@ def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
 
 def _moved(results: Results, frame: Frame, scale: float) -> np.ndarray:
     """How far the ground carries everything in this frame [m], (d,)."""
-    if view.carried(results, scale):
-        return view.ground(results.series, frame)
+    if view_box.carried(results, scale):
+        return view_box.ground(results.series, frame)
     return np.zeros(results.model.dimension)
 
 

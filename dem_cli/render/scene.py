@@ -1,4 +1,4 @@
-"""Blocks in a stone look, rendered off screen by VTK: lit faces, crisp edges, joints and forces in front of them."""
+"""VTK scene of blocks in a stone look, off screen: lit faces, crisp edges, joints and forces in front of them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def camera(view: str, points: np.ndarray) -> Camera:
 
 
 class Scene:
-    """One picture after the other of the same structure; to be used only where `gl.choose_window` found a way."""
+    """One picture after the other of the same structure; to be used only where `opengl.choose_window` found a way."""
 
     def __init__(self, model: Model, eye: Camera, width: int, height: int, points: float, deep: bool):
         """points: pixels of a typographic point. deep: with shades in corners, for oblique views."""
@@ -91,7 +91,7 @@ class Scene:
     ) -> np.ndarray:
         """The structure as in `shown`, which is drawn `scale` times and `moved` along [m], (height, width, 3) bytes.
 
-        look: which joints and forces (render.Look); colours: of the blocks, (n_blocks, 3) in 0 … 1, else of stone.
+        look: which joints and forces (RenderOptions); colours: of the blocks, (n_blocks, 3) in 0 … 1, else of stone.
         """
         from PIL import Image
 

@@ -1,4 +1,4 @@
-"""What stands around a rendered picture: headline, what one sees and how large, legend, colour bar."""
+"""Headline, caption, legend and colour bar around a rendered picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _HEADER, _LEGEND, _BAR = 0.58, 0.34, 0.56  # inches
 _LOWEST, _HIGHEST = 0.3, 0.85  # of the width: the picture without what stands around it
 
 
-class Bar(NamedTuple):
+class ColourBar(NamedTuple):
     """A scale of colours."""
 
     label: str  # with its unit
@@ -24,7 +24,7 @@ class Bar(NamedTuple):
 
 
 class SheetLayout(NamedTuple):
-    """Sizes in pixels."""
+    """Layout of a sheet: sizes in pixels."""
 
     width: int
     height: int
@@ -56,7 +56,7 @@ class Sheet:
         plan: SheetLayout,
         summary: Mapping[str, Any],
         handles: Sequence[Any] = (),
-        bar: Bar | None = None,
+        bar: ColourBar | None = None,
     ):
         dpi = plan.width / WIDTH
         self.figure = make(figsize=(WIDTH, plan.height / dpi), dpi=dpi)
@@ -76,7 +76,7 @@ class Sheet:
                 handlelength=1.6, columnspacing=1.6, labelspacing=0.25,
             )  # fmt: skip
 
-    def _draw_bar(self, bar: Bar, plan: SheetLayout) -> None:
+    def _draw_bar(self, bar: ColourBar, plan: SheetLayout) -> None:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
 

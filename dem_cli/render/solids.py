@@ -12,7 +12,7 @@ import numpy as np
 
 from dem_cli.geometry.rotation import across, cross, matrices
 from dem_cli.model.model import Model
-from dem_cli.post import measures
+from dem_cli.post import frame_measures
 
 _CHAMFER = 0.05  # of the narrowest side of an ordinary block
 _LARGEST_CHAMFER = 0.006  # of the size of the structure
@@ -31,7 +31,7 @@ class Surface(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Where all blocks are."""
+    """Pose of all blocks: where they are, and how they are turned."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, 3)
     turns: np.ndarray  # rotation matrices, (n_blocks, 3, 3)
@@ -62,7 +62,7 @@ def placed(surface: Surface, where: Pose) -> np.ndarray:
 def surface(model: Model) -> Surface:
     """The faces of all blocks of a 2D model."""
     widths = [narrowest(part_corners(model, p)) for p in range(model.n_parts)]
-    usual = min(_CHAMFER * float(np.median(widths)), _LARGEST_CHAMFER * measures.size(model))
+    usual = min(_CHAMFER * float(np.median(widths)), _LARGEST_CHAMFER * frame_measures.size(model))
     points, owners, faces, face_owners, edges = [], [], [], [], []
     count = 0
     for p, block in enumerate(model.part_blocks):

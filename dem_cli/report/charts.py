@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
-from dem_cli.output.series import BASE, UNITS
+from dem_cli.output.series import BASE, MONITOR_UNITS
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
 from dem_cli.post.capacity import with_breaks
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import of_quantity, thinned
-from dem_cli.report.pack import pack
+from dem_cli.report.packed_arrays import pack
 
 Chart = dict[str, Any]
 _ZOOM_FROM = 6.0  # the collapse goes this many times farther than failure: the chart opens with a look at failure
@@ -84,7 +84,7 @@ def _histories(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Ch
         return []
     found: list[Chart] = []
     instant = {"x": "time [s]", "marks": [[frame["time"], None] for frame in frames], "verticals": _collapse(results)}
-    for quantity, unit in UNITS.items():
+    for quantity, unit in MONITOR_UNITS.items():
         lines = of_quantity(series, quantity)
         if not lines:
             continue
@@ -104,7 +104,7 @@ def _histories(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Ch
     moved = [k for k in range(shaken.shape[1]) if (shaken[:, k] != 0.0).any()]
     if moved:
         drawn = [line("xyz"[k], *thinned(series.time, shaken[:, k]), str(k)) for k in moved]
-        chart = {"id": "base", "title": "Base acceleration", "y": f"acceleration [{UNITS['acceleration']}]"}
+        chart = {"id": "base", "title": "Base acceleration", "y": f"acceleration [{MONITOR_UNITS['acceleration']}]"}
         found.append({**chart, **instant, "lines": drawn})
     return found
 
@@ -156,7 +156,7 @@ def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
 
 def _unit(name: str, values: np.ndarray) -> tuple[float, str]:
     """Of a monitor, by the quantity in its name; names that users give may not say."""
-    unit = next((UNITS[word] for word in reversed(name.split()) if word in UNITS), "SI")
+    unit = next((MONITOR_UNITS[word] for word in reversed(name.split()) if word in MONITOR_UNITS), "SI")
     return style.length_unit(float(np.nanmax(np.abs(values)))) if unit == "m" else (1.0, unit)
 
 

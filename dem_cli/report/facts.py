@@ -1,4 +1,4 @@
-"""What a page says in words: the answer in one line, how far the run can be trusted, and what the model is."""
+"""Answer, soundness and model of a report page in words: how far the run can be trusted, and what the model is."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.model.scales import CLOSURE, OVERLAP, smallest_edge
 from dem_cli.output.reader import Results
-from dem_cli.output.shapes import rest_vertices
 from dem_cli.output.store import IN_SECONDS
+from dem_cli.output.vertices import rest_vertices
 from dem_cli.post import style
 
-KINDS = {
+KIND_TITLES = {
     "pushover": "Pushover", "gravity": "Own weight", "settlement": "Settlement", "cycle": "Load path",
     "time-history": "Time history", "fragility": "Fragility", "modes": "Natural modes", "safety": "Factor of safety",
     "limit": "Limit analysis",
@@ -24,8 +24,8 @@ GOOD, LOOK, BAD = "good", "look", "bad"
 _MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
 
 
-class Answer(NamedTuple):
-    """The first thing that a reader sees."""
+class Headline(NamedTuple):
+    """Headline of a page: the first thing that a reader sees."""
 
     label: str
     value: str
@@ -33,8 +33,8 @@ class Answer(NamedTuple):
     tone: str  # GOOD, LOOK or BAD
 
 
-class Check(NamedTuple):
-    """One thing that tells a sound run from a doubtful one."""
+class SoundnessCheck(NamedTuple):
+    """Check of a run: one thing that tells a sound one from a doubtful one."""
 
     name: str
     value: str
@@ -42,14 +42,14 @@ class Check(NamedTuple):
     words: str  # what is good
 
 
-def answer(summary: Mapping[str, Any]) -> Answer:
+def answer(summary: Mapping[str, Any]) -> Headline:
     """Of any kind; a run that did not end well says so."""
     status = str(summary.get("status", "unfinished"))
     tone = GOOD if status == "ok" else BAD
     found = (_ANSWERS.get(str(summary.get("kind"))) or _status)(summary)
     if status != "ok" and found[1] != status:
         found = (found[0], found[1], "; ".join(filter(None, (status, found[2]))))
-    return Answer(*found, tone)
+    return Headline(*found, tone)
 
 
 def _status(summary: Mapping[str, Any]) -> tuple[str, str, str]:
@@ -134,15 +134,15 @@ _ANSWERS = {
 }  # fmt: skip
 
 
-def audit(summary: Mapping[str, Any], results: Results | None) -> list[Check]:
+def audit(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
     """How far this run can be trusted, with what is good in plain words."""
     status = str(summary.get("status", "unfinished"))
-    checks = [Check("status", status, GOOD if status == "ok" else BAD, "“ok”: the analysis reached its end.")]
+    checks = [SoundnessCheck("status", status, GOOD if status == "ok" else BAD, "“ok”: the analysis reached its end.")]
     closure = summary.get("energy_closure")
     if closure is not None:
         tone = GOOD if abs(closure) <= CLOSURE else BAD
         words = f"What the loads put in is stored, moving or lost to friction and damping; good below {CLOSURE:.0%}."
-        checks.append(Check("energy that is missing", f"{abs(closure):.2g} of the largest entry", tone, words))
+        checks.append(SoundnessCheck("energy that is missing", f"{abs(closure):.2g} of the largest entry", tone, words))
     overlap = summary.get("largest_overlap")
     if overlap is not None and results is not None:
         share = overlap / smallest_edge(results.model)
@@ -150,11 +150,11 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Check]:
         tone = GOOD if share <= OVERLAP else LOOK if hit else BAD
         text = f"{_metres(overlap)}, {share:.2g} of the smallest edge"
         words = f"Stone does not sink into stone; good below {OVERLAP:.0%}{', but for blocks that fall' * hit}."
-        checks.append(Check("largest overlap", text, tone, words))
+        checks.append(SoundnessCheck("largest overlap", text, tone, words))
     return checks + _balance(summary, results)
 
 
-def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Check]:
+def _balance(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
     """Of the state under own weight, which every static analysis starts from, and of the last state."""
     checks = []
     words = f"Largest force on a block that nothing balances, over its own weight; at rest below {BALANCED:.0e}."
@@ -163,13 +163,13 @@ def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Check]
         if len(rows):
             value = float(results.history["unbalanced"][rows[-1]])
             tone = GOOD if value <= BALANCED else LOOK
-            checks.append(Check("unbalanced under own weight", f"{value:.1g}", tone, words))
+            checks.append(SoundnessCheck("unbalanced under own weight", f"{value:.1g}", tone, words))
     last = summary.get("unbalanced_force")
     if last is not None and (not checks or f"{last:.1g}" != checks[0].value):
         falls = summary.get("failure_load") is not None or summary.get("kind") == "safety"
         tone = GOOD if last <= BALANCED else ""
         moving = "The last state is one of failure: blocks move, and forces need not balance." if falls else words
-        checks.append(Check("unbalanced in the end", f"{last:.1g}", tone, moving))
+        checks.append(SoundnessCheck("unbalanced in the end", f"{last:.1g}", tone, moving))
     return checks
 
 

@@ -1,4 +1,4 @@
-"""The page itself: a template, the style sheet and the scripts in one file, closed to the network.
+"""HTML page of a report: a template, the style sheet and the scripts in one file, closed to the network.
 
 The policy in its head lets the browser run the scripts of this file by their hashes, show pictures that are in it, and
 load nothing else.
@@ -17,7 +17,7 @@ from typing import Any
 from dem_cli.output.scalars import plain
 
 ASSETS = Path(__file__).parent / "assets"
-TEMPLATE, STYLE, THREE = "page.html", "page.css", "three.min.js"
+TEMPLATE, STYLE_SHEET, THREE = "page.html", "page.css", "three.min.js"
 SCRIPTS = ("chart.js", "scene.js", "marks.js", "eye.js", "player.js", "table.js", "main.js")
 
 
@@ -35,7 +35,11 @@ def render(data: Mapping[str, Any], **shown: Any) -> str:
         lstrip_blocks=True,
     )
     text: str = templates.get_template(TEMPLATE).render(
-        policy=policy(scripts, [asset(STYLE)]), style=asset(STYLE), scripts=scripts, data=script_json(data), **shown
+        policy=policy(scripts, [asset(STYLE_SHEET)]),
+        style=asset(STYLE_SHEET),
+        scripts=scripts,
+        data=script_json(data),
+        **shown,
     )
     return text
 

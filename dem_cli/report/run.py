@@ -1,4 +1,4 @@
-"""The page of one run."""
+"""Report page of one run."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results, read
 from dem_cli.output.store import CASE, RESULTS
-from dem_cli.post.plots import PICTURES, has_data
+from dem_cli.post.run_pictures import PICTURES, has_data
 from dem_cli.report.charts import charts
-from dem_cli.report.facts import KINDS, all_numbers, answer, audit, model_rows
+from dem_cli.report.facts import KIND_TITLES, all_numbers, answer, audit, model_rows
 from dem_cli.report.page import render
 from dem_cli.report.view import view
 
@@ -21,14 +21,14 @@ DRAWN_HERE = frozenset(("capacity.png", "histories.png", "energy.png", "fragilit
 _ALT = {"collapse.png": "The structure at failure and at the end", "modes.png": "Natural modes"}
 
 
-class Said(NamedTuple):
-    """What the command line says of a run."""
+class TerminalText(NamedTuple):
+    """Text of the command line on a run."""
 
     rows: Sequence[tuple[str, str]]  # label and text of each line
     verdicts: Sequence[tuple[str, str]]  # of [reference]: "good" or "bad", and in words
 
 
-def page(folder: Path, summary: Mapping[str, Any], said: Said) -> str:
+def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
     """HTML of the run in `folder`. Raises UsageError where it holds none."""
     results = read(folder) if (folder / RESULTS).is_file() else None
     if results is None and not summary:
@@ -39,7 +39,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: Said) -> str:
     return render(
         {"view": scene, "charts": drawn},
         title=str(summary.get("title") or folder.resolve().name),
-        kind=KINDS.get(str(summary.get("kind")), "Run"),
+        kind=KIND_TITLES.get(str(summary.get("kind")), "Run"),
         answer=answer(summary),
         verdicts=said.verdicts,
         warnings=[str(text) for text in summary.get("warnings") or ()],

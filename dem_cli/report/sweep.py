@@ -1,4 +1,4 @@
-"""The page of a sweep: a table of all runs to sort and filter, and a chart of any two of its columns."""
+"""Report page of a sweep: a table of all runs to sort and filter, and a chart of any two of its columns."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from urllib.parse import quote
 
 from dem_cli.errors import UsageError
 from dem_cli.output.store import CASE
-from dem_cli.output.sweeps import FACTS, RUNS
-from dem_cli.post.table import ANSWERS, SweepTable, distinct, read_sweep, shown
-from dem_cli.report.facts import BAD, GOOD, LOOK, Answer
+from dem_cli.output.sweep_files import FACTS, RUNS
+from dem_cli.post.sweep_table import ANSWER_COLUMNS, SweepTable, distinct, read_sweep, shown
+from dem_cli.report.facts import BAD, GOOD, LOOK, Headline
 from dem_cli.report.page import render
 
 OTHERS, MOST_LINES = "the other keys", 12  # of the chart at first
 MOST_VALUES = 12  # of a key that are listed
-PAGES = ("report.html", "collapse.png", "render.png", "summary.json")  # what a run's link opens, the best first
+RUN_PAGES = ("report.html", "collapse.png", "render.png", "summary.json")  # what a run's link opens, the best first
 
 
 def page(folder: Path, place: Path) -> str:
@@ -60,7 +60,15 @@ def main_columns(table: SweepTable) -> list[str]:
     reasons = ["reason"] if any(table.columns.get("reason", ())) else []
     modes = [name for name in ("failure_mode",) if name in table.columns]
     brackets = [name for name in table.columns if name.startswith(("peaks.", "failure_load_bracket"))]
-    return ["run", *table.keys, "status", *reasons, *(n for n in ANSWERS if n in table.columns), *modes, *brackets]
+    return [
+        "run",
+        *table.keys,
+        "status",
+        *reasons,
+        *(n for n in ANSWER_COLUMNS if n in table.columns),
+        *modes,
+        *brackets,
+    ]
 
 
 def axes(table: SweepTable) -> dict[str, str | None]:
@@ -75,18 +83,18 @@ def axes(table: SweepTable) -> dict[str, str | None]:
         return {"x": across, "y": None, "family": family}
 
 
-def answer(table: SweepTable) -> Answer:
+def answer(table: SweepTable) -> Headline:
     """How many runs there are and what they found."""
     states = [str(state) for state in table.columns["status"]]
     counts = {"solved": states.count("ok"), "to do": states.count("waiting")}
     counts["failed"] = len(states) - sum(counts.values())
     more = [f"{count:,} {name}" for name, count in counts.items() if count or name == "solved"]
-    for name in ANSWERS:
+    for name in ANSWER_COLUMNS:
         found = [value for value in table.columns.get(name, ()) if isinstance(value, float)]
         if found:
             more.append(f"{name.replace('_', ' ')} {min(found):.4g} to {max(found):.4g}")
     tone = BAD if not counts["solved"] else LOOK if counts["failed"] or counts["to do"] else GOOD
-    return Answer("sweep of", f"{table.count:,} runs", ", ".join(more), tone)
+    return Headline("sweep of", f"{table.count:,} runs", ", ".join(more), tone)
 
 
 def failures(table: SweepTable) -> list[str]:
@@ -117,7 +125,7 @@ def links(table: SweepTable, place: Path) -> dict[str, str]:
     """Of each run the best file to open, seen from `place`."""
     found, base = {}, Path(os.path.relpath(table.folder / RUNS, place)).as_posix()
     for run in filter(None, table.columns["run"]):
-        name = next((name for name in PAGES if (table.folder / RUNS / run / name).is_file()), None)
+        name = next((name for name in RUN_PAGES if (table.folder / RUNS / run / name).is_file()), None)
         if name:
             found[run] = quote(f"{base}/{run}/{name}")
     return found

@@ -1,4 +1,4 @@
-"""What the interactive view of a page draws: blocks as polyhedra, and of each frame the poses, joints and forces.
+"""Interactive view of a report page: blocks as polyhedra, and of each frame the poses, joints and forces.
 
 Everything has three columns, and hangs on blocks by arms in their own axes: the view can exaggerate displacements
 without new numbers, and 3D needs no other view.
@@ -15,18 +15,18 @@ from dem_cli.geometry.rotation import beside, matrices, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
-from dem_cli.output.shapes import in_space
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post import measures
-from dem_cli.post import view as stage
+from dem_cli.output.vertices import in_space
+from dem_cli.post import frame_measures
+from dem_cli.post import view_box as stage
 from dem_cli.render import marks
 from dem_cli.render.solids import surface
-from dem_cli.report.pack import pack
+from dem_cli.report.packed_arrays import pack
 
 MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
 MODE = "mode"  # stage of frames that show natural modes
-SHAPES = frozenset(("modes", "limit"))  # kinds whose displacements have no size
+SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no size
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _FAINT = len(STATES)  # the code of these
 _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
@@ -39,10 +39,10 @@ def view(results: Results) -> dict[str, Any]:
     skin, series = surface(model), results.series
     kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
     chosen = [frames[i] for i in kept]
-    scales = [1.0 if frame.stage == MODE else measures.visible_scale(model, frame) for frame in chosen]
+    scales = [1.0 if frame.stage == MODE else frame_measures.visible_scale(model, frame) for frame in chosen]
     return {
         "dimension": model.dimension,
-        "size": measures.size(model),
+        "size": frame_measures.size(model),
         "ids": list(model.block_ids),
         "materials": [model.material_names[i] for i in model.block_material],
         "masses": pack(model.masses),
@@ -61,7 +61,7 @@ def view(results: Results) -> dict[str, Any]:
         "start": _first_shown(chosen, results.summary),
         "in_seconds": results.kind in IN_SECONDS,
         "modes": chosen[0].stage == MODE,
-        "of_any_size": results.kind in SHAPES,
+        "of_any_size": results.kind in SHAPE_KINDS,
         "still": chosen[0].stage == AS_BUILT,
         "ground": in_space(np.stack([stage.ground(series, frame) for frame in chosen])).tolist(),
         "ground_moves": series is not None and bool(series.base[:, 2].any()),
@@ -148,7 +148,7 @@ def _says(frame: Frame, results: Results) -> str:
         return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
     if results.kind in IN_SECONDS:
         return f"{frame.time:.3f} s"
-    loaded = results.history.get("load", np.zeros(0)).any() or results.kind in SHAPES
+    loaded = results.history.get("load", np.zeros(0)).any() or results.kind in SHAPE_KINDS
     return f"λ = {frame.load:.4g}".replace("-", "−") if loaded else ""
 
 
@@ -164,11 +164,11 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
     middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
     if alone.any():
-        along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * measures.size(model)
+        along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * frame_measures.size(model)
         tangents = beside(contacts.normals) * np.where(alone, along, 0.0)[:, np.newaxis]
         ends, middles = ends - tangents, middles + tangents
     first = contacts.blocks[:, 0]
-    hairline = _HAIRLINE * measures.largest_displacement(model, frame)
+    hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame)
     states = np.where((contacts.state == STATES.index("open")) & (contacts.gap < hairline), _FAINT, contacts.state)
     strokes = np.stack((_arms(frame, ends, first), _arms(frame, middles, first)), axis=1)
     return {
@@ -180,7 +180,7 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
 
 def _forces(frame: Frame) -> dict[str, Any]:
     """The resultant of each joint that is pressed, at its centre of pressure."""
-    found = measures.resultants(frame.contacts)
+    found = frame_measures.resultants(frame.contacts)
     return {
         "force_blocks": pack(found.blocks),
         "force_arms": pack(_arms(frame, found.points, found.blocks[:, 0])),

@@ -1,0 +1,1 @@
+"""Generators of structures: walls, columns, arches."""

@@ -13,7 +13,7 @@ from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 
 
-class Support(CaseModel):
+class Pier(CaseModel):
     """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
 
     width: Positive = Field(description="width [m]; at least that of the springing joint", examples=[0.8])
@@ -69,12 +69,12 @@ class Arch(StructureBase):
         examples=[20.0],
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    columns: Support | None = Field(
+    columns: Pier | None = Field(
         None,
         description="columns below the springings; default: none, the springings are fixed",
         examples=[{"width": 0.3, "height": 1.0, "courses": 4}],
     )
-    buttresses: Support | None = Field(
+    buttresses: Pier | None = Field(
         None,
         description="buttresses below the springings, the same as columns; default: none",
         examples=[{"width": 0.8, "height": 1.0, "courses": 4}],
@@ -84,7 +84,7 @@ class Arch(StructureBase):
     )
 
     @property
-    def piers(self) -> Support | None:
+    def piers(self) -> Pier | None:
         """What the arch stands on; None for fixed springings."""
         return self.columns or self.buttresses
 
@@ -96,34 +96,38 @@ class Arch(StructureBase):
                 raise KeyProblem(f"not used by a {self.shape} arch, which is given by {', '.join(keys)}", key)
         if self.columns and self.buttresses:
             raise KeyProblem("an arch stands on columns or on buttresses, not on both", "buttresses")
-        SHAPES[self.shape](self)
+        SHAPE_JOINTS[self.shape](self)
         if self.piers:
-            _check_piers(self)
+            _check_piers(self, self.piers)
         return self
 
 
-def _check_piers(arch: Arch) -> None:
-    (inner, outer), key = SHAPES[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
+def _check_piers(arch: Arch, piers: Pier) -> None:
+    (inner, outer), key = SHAPE_JOINTS[arch.shape](arch)[0], "columns" if arch.columns else "buttresses"
     if outer[1] < inner[1] - 1e-9 * arch.ring:
         message = f"{arch.included_angle_deg:g} is not allowed; must be at most 180 for an arch on piers"
         raise KeyProblem(message, "included_angle_deg")
     least = inner[0] - outer[0]
-    if arch.piers.width < least * (1 - 1e-9):
-        message = f"{arch.piers.width:g} is not allowed; must be at least {least:g}, as the springing joint"
+    if piers.width < least * (1 - 1e-9):
+        message = f"{piers.width:g} is not allowed; must be at least {least:g}, as the springing joint"
         raise KeyProblem(message, key, "width")
 
 
-def _exactly_one(arch: Arch, *keys: str) -> None:
-    given = [key for key in keys if getattr(arch, key) is not None]
+def _exactly_one(arch: Arch, *keys: str) -> tuple[str, float]:
+    """The one of these keys that is given, and its value."""
+    given = [(key, value) for key in keys if (value := getattr(arch, key)) is not None]
     if len(given) != 1:
         found = "found none" if not given else "found both"
         raise KeyProblem(f"a {arch.shape} arch needs either {' or '.join(keys)}; {found}", keys[0])
+    return given[0]
 
 
-def _required(arch: Arch, *keys: str) -> None:
+def _required(arch: Arch, *keys: str) -> list[float]:
+    """The values of these keys."""
     for key in keys:
         if getattr(arch, key) is None:
             raise KeyProblem(f"missing: a {arch.shape} arch needs {' and '.join(keys)}", key)
+    return [getattr(arch, key) for key in keys]
 
 
 def _arc(inner_radius: float, ring: float, half_angle: float, voussoirs: int) -> np.ndarray:
@@ -137,38 +141,36 @@ def _arc(inner_radius: float, ring: float, half_angle: float, voussoirs: int) ->
 
 
 def _circular(arch: Arch) -> np.ndarray:
-    _exactly_one(arch, "radius", "inner_radius")
-    inner = arch.inner_radius if arch.inner_radius is not None else arch.radius - arch.ring / 2.0
+    key, radius = _exactly_one(arch, "radius", "inner_radius")
+    inner = radius if key == "inner_radius" else radius - arch.ring / 2.0
     if inner <= 0.0:
-        message = f"{arch.radius:g} is not allowed; must be more than {arch.ring / 2:g}, half the ring"
+        message = f"{radius:g} is not allowed; must be more than {arch.ring / 2:g}, half the ring"
         raise KeyProblem(message, "radius")
     angle = 180.0 if arch.included_angle_deg is None else arch.included_angle_deg
     return _arc(inner, arch.ring, np.radians(angle) / 2.0, arch.voussoirs)
 
 
 def _segmental(arch: Arch) -> np.ndarray:
-    _required(arch, "span", "rise")
-    half = arch.span / 2.0
-    if arch.rise > half * (1.0 + 1e-9):
-        message = f"{arch.rise:g} is not allowed; must be at most {half:g} (half the span, a semicircle)"
+    span, rise = _required(arch, "span", "rise")
+    half = span / 2.0
+    if rise > half * (1.0 + 1e-9):
+        message = f"{rise:g} is not allowed; must be at most {half:g} (half the span, a semicircle)"
         raise KeyProblem(message, "rise")
-    half_angle = 2.0 * np.arctan2(arch.rise, half)
+    half_angle = 2.0 * np.arctan2(rise, half)
     return _arc(half / np.sin(half_angle), arch.ring, half_angle, arch.voussoirs)
 
 
 def _pointed(arch: Arch) -> np.ndarray:
-    _required(arch, "span")
-    _exactly_one(arch, "rise", "inner_radius")
-    half, sides = arch.span / 2.0, arch.voussoirs // 2
+    (span,) = _required(arch, "span")
+    key, value = _exactly_one(arch, "rise", "inner_radius")
+    half, sides = span / 2.0, arch.voussoirs // 2
     if arch.voussoirs % 2:
         message = f"{arch.voussoirs} is not allowed; must be even: a pointed arch has a joint at the top"
         raise KeyProblem(message, "voussoirs")
-    key = "rise" if arch.rise is not None else "inner_radius"
-    value = getattr(arch, key)
     if value < half * (1.0 - 1e-9):
         message = f"{value:g} is not allowed; must be at least {half:g} (half the span, a semicircle)"
         raise KeyProblem(message, key)
-    inner = arch.inner_radius if arch.inner_radius is not None else (half**2 + arch.rise**2) / arch.span
+    inner = value if key == "inner_radius" else (half**2 + value**2) / span
     radii = np.array([inner, inner + arch.ring])
     centre = max(inner - half, 0.0)
     angles = np.arccos(centre / inner) * np.arange(sides + 1) / sides  # of the left arc, from its springing
@@ -179,16 +181,16 @@ def _pointed(arch: Arch) -> np.ndarray:
 
 
 def _flat(arch: Arch) -> np.ndarray:
-    _required(arch, "span")
-    inner = arch.span * (np.arange(arch.voussoirs + 1) / arch.voussoirs - 0.5)
+    (span,) = _required(arch, "span")
+    inner = span * (np.arange(arch.voussoirs + 1) / arch.voussoirs - 0.5)
     slope = np.tan(np.radians(20.0 if arch.skew_deg is None else arch.skew_deg))
-    outer = inner * (1.0 + arch.ring * slope / (arch.span / 2.0))
+    outer = inner * (1.0 + arch.ring * slope / (span / 2.0))
     joints = np.zeros((arch.voussoirs + 1, 2, 2))
     joints[:, 0, 0], joints[:, 1, 0], joints[:, 1, 1] = inner, outer, arch.ring
     return joints
 
 
-SHAPES: dict[str, Callable[[Arch], np.ndarray]] = {
+SHAPE_JOINTS: dict[str, Callable[[Arch], np.ndarray]] = {
     "circular": _circular,
     "segmental": _segmental,
     "pointed": _pointed,
@@ -198,10 +200,10 @@ SHAPES: dict[str, Callable[[Arch], np.ndarray]] = {
 
 def build(arch: Arch) -> list[Block]:
     """Blocks in local coordinates: fixed ones, piers left and right from below, voussoirs left to right."""
-    joints = SHAPES[arch.shape](arch)
+    joints = SHAPE_JOINTS[arch.shape](arch)
     if arch.piers:
         joints[:, :, 1] += arch.piers.height
-    blocks = _bases(arch, joints) + (_pier_blocks(arch, joints) if arch.piers else [])
+    blocks = _bases(arch, joints) + (_pier_blocks(arch, arch.piers, joints) if arch.piers else [])
     for k in range(arch.voussoirs):
         shape = np.array([joints[k, 0], joints[k + 1, 0], joints[k + 1, 1], joints[k, 1]])
         if not polygon.is_convex(shape):
@@ -228,9 +230,9 @@ def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
     return blocks
 
 
-def _pier_blocks(arch: Arch, joints: np.ndarray) -> list[Block]:
+def _pier_blocks(arch: Arch, pier: Pier, joints: np.ndarray) -> list[Block]:
     """Rectangles from below; the uppermost one ends in the springing joint and level with its outer edge."""
-    pier, blocks = arch.piers, []
+    blocks = []
     levels = pier.height * np.arange(pier.courses + 1) / pier.courses
     for side, (inner, outer) in (("left", joints[0]), ("right", joints[-1])):
         sign = -1.0 if side == "left" else 1.0

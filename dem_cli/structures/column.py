@@ -78,7 +78,7 @@ class Column(StructureBase):
     @property
     def profile(self) -> list[Drum]:
         """The drums from below, whichever way they were given."""
-        if self.drums:
+        if self.block is None or self.courses is None:
             return list(self.drums)
         width, height = self.block
         widths = np.linspace(width, self.top_width or width, self.courses + 1)
@@ -110,6 +110,6 @@ def build(column: Column) -> list[Block]:
 
 def _levels(column: Column, drums: list[Drum]) -> np.ndarray:
     """Heights of the joints [m], (n + 1,)."""
-    if column.drums:
+    if column.block is None or column.courses is None:
         return np.concatenate([[0.0], np.cumsum([drum.height for drum in drums])])
     return np.arange(column.courses + 1) * column.block[1]

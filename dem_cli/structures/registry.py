@@ -11,7 +11,7 @@ from dem_cli.structures import arch, column, wall
 
 
 class Generator(NamedTuple):
-    """One kind of structure."""
+    """Generator of one kind of structure."""
 
     kind: str  # as in the case file
     parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies

@@ -154,13 +154,14 @@ def build(wall: Wall) -> list[Block]:
         blocks.append(Block("base", (shape,), "", wall.thickness, fixed=True))
     small = SLIVER * min(wall.block[0], wall.block[1])
     for k, box in enumerate(boxes):
+        pieces = box
         for hole in (*holes, *(lintel for lintel in lintels if lintel)):
-            box = _cut(box, hole, small)
-        for n, shape in enumerate(_corners(box)):
+            pieces = _cut(pieces, hole, small)
+        for n, shape in enumerate(_corners(pieces)):
             blocks.append(Block(f"{k + 1}-{n + 1}", (shape,), "", wall.thickness))
-    for i, (opening, box) in enumerate(zip(wall.openings, lintels, strict=True)):
-        if box:
-            shape = _corners(np.array([box]))[0]
+    for i, (opening, lintel_box) in enumerate(zip(wall.openings, lintels, strict=True)):
+        if opening.lintel:
+            shape = _corners(np.array([lintel_box]))[0]
             blocks.append(Block(f"lintel-{i + 1}", (shape,), opening.lintel.material, wall.thickness))
     if all(block.fixed for block in blocks):
         raise ValueError("the openings leave nothing of the wall")

@@ -1,0 +1,1 @@
+"""Parameter studies: the plan of a sweep, its runs and its table."""

@@ -11,10 +11,10 @@ from typing import Any
 
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.sweep.identity import program
-from dem_cli.sweep.pool import Died
+from dem_cli.sweep.pool import WorkerDeath
 from dem_cli.sweep.run import Summary, SweepJob
 
-GONE = "the cluster went away; what was done is kept, run the same command again"
+CLUSTER_GONE = "the cluster went away; what was done is kept, run the same command again"
 PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
 
 
@@ -71,7 +71,7 @@ def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tupl
 
 def on_cluster(
     client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[SweepJob]
-) -> Iterator[tuple[int, Summary | Died]]:
+) -> Iterator[tuple[int, Summary | WorkerDeath]]:
     """Number and result of each job as they come.
 
     A job whose worker dies is done again by another, a few times, by Dask; what seems to kill its workers is then done
@@ -79,7 +79,7 @@ def on_cluster(
     """
     suspects: list[int] = []
     for number, result in _asked_for(client, do, list(enumerate(jobs)), ""):
-        if isinstance(result, Died):
+        if isinstance(result, WorkerDeath):
             suspects.append(number)
         else:
             yield number, result
@@ -89,7 +89,7 @@ def on_cluster(
 
 def _asked_for(
     client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[tuple[int, SweepJob]], suffix: str
-) -> Iterator[tuple[int, Summary | Died]]:
+) -> Iterator[tuple[int, Summary | WorkerDeath]]:
     """Number and result of numbered jobs. Raises SolverError where the cluster goes away."""
     from dask.distributed import CancelledError, KilledWorker, as_completed
 
@@ -98,14 +98,14 @@ def _asked_for(
     try:
         for future in as_completed(futures, loop=client.loop):
             if isinstance(future.exception() if future.status == "error" else None, KilledWorker):
-                yield numbers[future.key], Died()
+                yield numbers[future.key], WorkerDeath()
             elif future.cancelled():
-                raise SolverError(GONE)
+                raise SolverError(CLUSTER_GONE)
             else:
                 yield numbers[future.key], future.result()
             future.release()
     except CancelledError:
-        raise SolverError(GONE) from None
+        raise SolverError(CLUSTER_GONE) from None
     except BaseException:
         client.cancel(futures)
         raise

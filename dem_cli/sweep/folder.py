@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
+from dem_cli.output.atomic_file import PART, write_text
 from dem_cli.output.folder import locked, write_error
 from dem_cli.output.store import CASE
-from dem_cli.output.sweeps import CSV, FACTS, RUNS, SQLITE
-from dem_cli.output.whole import PART, write_text
+from dem_cli.output.sweep_files import CSV, FACTS, RUNS, SQLITE
 
 LOCK, TABLES_LOCK = ".sweep{}.lock", ".tables.lock"
 STALE = 3600.0  # s after which a half-written table is one that a killed sweep left
@@ -32,7 +32,7 @@ def opened(folder: Path, fresh: bool, force: bool, shard: str = "") -> Iterator[
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"output folder {folder}: a file of that name exists")
     if folder.is_dir() and not force:
-        foreign = sorted(n for n in os.listdir(folder) if n not in OURS and not n.startswith("."))
+        foreign = sorted(p.name for p in folder.iterdir() if p.name not in OURS and not p.name.startswith("."))
         if foreign:
             raise UsageError(
                 f"output folder {folder}: holds files that a sweep did not write ({', '.join(foreign[:3])}); "

@@ -1,4 +1,4 @@
-"""What makes two runs the same: the case, the records that it names, and the program."""
+"""Identity of a run, which tells whether two are the same: the case, the records that it names, and the program."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dem_cli.output.provenance import provenance
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-DIGITS = 12  # of a name: two of a million runs meet with a chance of one in 500
+NAME_DIGITS = 12  # of a name: two of a million runs meet with a chance of one in 500
 
 
 @cache
@@ -37,4 +37,4 @@ def facts(case: Case, text: str) -> dict[str, str]:
 
 def name_of(found: Mapping[str, str]) -> str:
     """A short name for a run with these facts: the same for the same run, today and on another machine."""
-    return hashlib.sha256("\n".join(found.values()).encode()).hexdigest()[:DIGITS]
+    return hashlib.sha256("\n".join(found.values()).encode()).hexdigest()[:NAME_DIGITS]

@@ -14,17 +14,17 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.overrides import Override, key_path
 from dem_cli.case.sweep import Sweep
-from dem_cli.case.words import listing, show, unknown_name
+from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
-from dem_cli.output.sweeps import FIRST
-from dem_cli.sweep.forms import DRAWN, EVEN, MOST, drawn, even, latin_hypercube
+from dem_cli.output.sweep_files import IDENTITY_COLUMNS
+from dem_cli.sweep.distributions import EVEN_KEYS, MOST_RUNS, QUANTILES, drawn, even, latin_hypercube
 
-NAME = "name"  # of a [[sweep.run]]: a label, no key of the case
-COLUMNS = (NAME, *FIRST)  # of the table, which no axis of bundles is called
+LABEL_KEY = "name"  # of a [[sweep.run]]: a label, no key of the case
+RESERVED_NAMES = (LABEL_KEY, *IDENTITY_COLUMNS)  # of the table, which no axis of bundles is called
 LEAVE_OUT = Override("sweep", ("sweep",), None)  # a run is one case
 
 
-class Change(NamedTuple):
+class KeyChange(NamedTuple):
     """One key of one run: as a column of the table, and what it does to the case."""
 
     key: str
@@ -36,7 +36,7 @@ class Change(NamedTuple):
 class SweepRun(NamedTuple):
     """What a run changes, in the order in which it is applied."""
 
-    changes: tuple[Change, ...]
+    changes: tuple[KeyChange, ...]
     sampled: bool  # whether anything of it was drawn
 
     @property
@@ -51,21 +51,21 @@ class SweepRun(NamedTuple):
         return (*(override for change in by_size for override in change.overrides), LEAVE_OUT)
 
 
-class Plan(NamedTuple):
+class SweepPlan(NamedTuple):
     """All runs; `keys` are the columns that tell them apart."""
 
     keys: tuple[str, ...]
     runs: tuple[SweepRun, ...]
 
 
-def plan_of(table: Sweep, seed: int) -> Plan:
+def plan_of(table: Sweep, seed: int) -> SweepPlan:
     """The runs that a [sweep] asks for. Raises CaseError, by key, where it asks for something impossible.
 
     seed: of whatever is drawn.
     """
     axes, samples = _axes(table)
     for axis, names in table.bundle.items():
-        if axis in COLUMNS:
+        if axis in RESERVED_NAMES:
             raise _wrong(("sweep", "bundle", axis), f"'{axis}' is a column of the table already; call it otherwise")
         axes.setdefault(axis, [_bundled(table, axis, name, ("sweep", "bundle", axis)) for name in names])
     if not axes and not samples and not table.run:
@@ -82,7 +82,7 @@ def plan_of(table: Sweep, seed: int) -> Plan:
             runs.append(SweepRun(changes, bool(sample)))
     _check_order(runs)
     keys = dict.fromkeys(change.key for run in runs for change in run.changes)
-    return Plan(tuple(sorted(keys, key=lambda key: key != NAME)), tuple(runs))  # the label comes first
+    return SweepPlan(tuple(sorted(keys, key=lambda key: key != LABEL_KEY)), tuple(runs))  # the label comes first
 
 
 def show_value(value: Any) -> str:
@@ -90,15 +90,15 @@ def show_value(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
-Axes = dict[str, list[Change]]
+Axes = dict[str, list[KeyChange]]
 
 
 def _check_number(rows: int, axes: Axes, side_by_side: bool, points: int) -> None:
     """Raises CaseError where there would be too many runs."""
     lengths = [len(values) for values in axes.values()] or [1]
     count = rows * points * (max(lengths) if side_by_side else prod(lengths))
-    if count > MOST:
-        raise _wrong(("sweep",), f"asks for {count:,} runs; at most {MOST:,}")
+    if count > MOST_RUNS:
+        raise _wrong(("sweep",), f"asks for {count:,} runs; at most {MOST_RUNS:,}")
 
 
 def _check_order(runs: Sequence[SweepRun]) -> None:
@@ -125,13 +125,13 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
         key = dotted(path[1:]) if len(path) > 2 else str(path[1])
         if key in axes or key in samples:
             raise _wrong(path, f"{key} has its values already, further up")
-        if isinstance(form, Mapping) and form.keys() & DRAWN.keys():
+        if isinstance(form, Mapping) and form.keys() & QUANTILES.keys():
             samples[key] = (path, form)
             continue
         values = even(path, form) if isinstance(form, Mapping) else form
         if not isinstance(values, (list, tuple)):
             raise _wrong(path, f"{show(values)} is not allowed; must be a list of values, {{ from, to, count }}, or "
-                               f"one of {listing(DRAWN)} with its two numbers")  # fmt: skip
+                               f"one of {listing(QUANTILES)} with its two numbers")  # fmt: skip
         if not values:
             raise _wrong(path, "an empty list leaves nothing to run")
         listed = not isinstance(form, Mapping)
@@ -140,25 +140,25 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
         key, (path, _) = next(iter(samples.items()))
         raise _wrong(path, "drawn values need their number, such as samples = 100 under [sweep]")
     if table.samples is not None and not samples:
-        raise _wrong(("sweep", "samples"), f"nothing to be drawn; give a key one of {listing(DRAWN)}")
+        raise _wrong(("sweep", "samples"), f"nothing to be drawn; give a key one of {listing(QUANTILES)}")
     return axes, samples
 
 
 def _leaves(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, Any]]:
     """Keys and values of nested tables: joints.dry.friction = [...] without quotes is a table of tables."""
     for key, item in value.items():
-        if isinstance(item, Mapping) and not item.keys() & (DRAWN.keys() | EVEN):
+        if isinstance(item, Mapping) and not item.keys() & (QUANTILES.keys() | EVEN_KEYS):
             yield from _leaves((*path, key), item)
         else:
             yield (*path, key), item
 
 
-def _row(table: Sweep, number: int, row: Mapping[str, Any]) -> tuple[Change, ...]:
+def _row(table: Sweep, number: int, row: Mapping[str, Any]) -> tuple[KeyChange, ...]:
     """The changes of a [[sweep.run]]."""
     changes = []
     for path, value in _flat(("sweep", "run", number), row):
         key = dotted(path[3:]) if len(path) > 4 else str(path[3])
-        changes.append(Change(NAME, value, ()) if key == NAME else _change(table, key, value, path))
+        changes.append(KeyChange(LABEL_KEY, value, ()) if key == LABEL_KEY else _change(table, key, value, path))
     return tuple(changes)
 
 
@@ -171,21 +171,21 @@ def _flat(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, An
             yield (*path, key), item
 
 
-def _change(table: Sweep, key: str, value: Any, path: KeyPath) -> Change:
+def _change(table: Sweep, key: str, value: Any, path: KeyPath) -> KeyChange:
     """A key takes a value; the name of an axis of bundles takes that bundle."""
     if key in table.bundle:
         return _bundled(table, key, value, path)
-    return Change(key, _plain(value), (_override(key, value, path),))
+    return KeyChange(key, _plain(value), (_override(key, value, path),))
 
 
-def _bundled(table: Sweep, axis: str, name: Any, path: KeyPath) -> Change:
+def _bundled(table: Sweep, axis: str, name: Any, path: KeyPath) -> KeyChange:
     """All changes of a bundle."""
     bundles = table.bundle[axis]
     if name not in bundles:
         raise _wrong(path, unknown_name("bundle", name, list(bundles)))
     place = ("sweep", "bundle", axis, name)
     changes = [_override(key, value, (*place, key)) for key, value in bundles[name].items()]
-    return Change(axis, name, tuple(changes), bundled=True)
+    return KeyChange(axis, name, tuple(changes), bundled=True)
 
 
 def _override(key: str, value: Any, path: KeyPath) -> Override:
@@ -198,7 +198,7 @@ def _override(key: str, value: Any, path: KeyPath) -> Override:
     return Override(key, found, _plain(value), path)
 
 
-def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[Change, ...]]:
+def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[KeyChange, ...]]:
     """All combinations, the last key changing fastest, or the lists side by side."""
     if not side_by_side:
         yield from product(*axes.values())
@@ -211,7 +211,7 @@ def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[Change, ...]]:
 
 
 def _drawn_points(samples: Mapping[str, tuple[KeyPath, Mapping[str, Any]]], count: int | None,
-                  seed: int) -> list[tuple[Change, ...]]:  # fmt: skip
+                  seed: int) -> list[tuple[KeyChange, ...]]:  # fmt: skip
     """The points of the Latin hypercube; one empty point where nothing is drawn."""
     if not samples or count is None:
         return [()]
@@ -219,7 +219,7 @@ def _drawn_points(samples: Mapping[str, tuple[KeyPath, Mapping[str, Any]]], coun
     columns = []
     for i, (key, (path, form)) in enumerate(samples.items()):
         values = drawn(path, form, unit[:, i])
-        columns.append([Change(key, value, (_override(key, value, path),)) for value in values])
+        columns.append([KeyChange(key, value, (_override(key, value, path),)) for value in values])
     return list(zip(*columns, strict=True))
 
 

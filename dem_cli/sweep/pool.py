@@ -1,4 +1,4 @@
-"""Work in processes of this machine: what kills a process does not stop the others, and nobody outlives the parent."""
+"""Process pool of this machine: what kills a process does not stop the others, and nobody outlives the parent."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ GRACE = 1.0  # s
 AHEAD = 2  # items handed out per process: nobody waits for the next one
 
 
-class Died:
-    """In place of a result: the process that worked on it died, alone and for the second time."""
+class WorkerDeath:
+    """Death of a worker process in place of a result: it died, alone and for the second time."""
 
 
 def each_done(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, first_alone: bool = False
-) -> Iterator[tuple[int, Result | Died]]:
+) -> Iterator[tuple[int, Result | WorkerDeath]]:
     """Number and result of each item as they come; one process: in this one, in order.
 
     function must be importable, items and results picklable. When a process dies, items that it may have had are done
-    again, each alone in a new process; one that kills that one as well is `Died`.
+    again, each alone in a new process; one that kills that one as well is a `WorkerDeath`.
     first_alone: the others wait for the first one, which leaves what they would otherwise all make (compiled code).
     """
     if min(jobs, len(items)) <= 1:
@@ -60,7 +60,7 @@ def each_done(
                 try:
                     yield number, alone.submit(function, item).result()
                 except BrokenProcessPool:
-                    yield number, Died()
+                    yield number, WorkerDeath()
 
 
 class _Pool(ProcessPoolExecutor):

@@ -15,20 +15,20 @@ from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 from dem_cli.output.folder import OWN_KEYS, SUMMARY, abandoned, write_error
-from dem_cli.output.sweeps import RUNS
+from dem_cli.output.sweep_files import RUNS
 from dem_cli.sweep.identity import facts, name_of
-from dem_cli.sweep.plan import Plan, SweepRun
-from dem_cli.sweep.pool import Died
+from dem_cli.sweep.plan import SweepPlan, SweepRun
+from dem_cli.sweep.pool import WorkerDeath
 
 FAILED, WAITING = "failed", "waiting"
-FEW = 5  # mistakes that are listed
+MOST_MISTAKES = 5  # mistakes that are listed
 LIGHT = (("output.frames", 0), ("analysis.follow", 0.0))  # what a table of answers does not need
 DIED = "its process died, twice; perhaps for want of memory"
 Summary = Mapping[str, Any]
 
 
 class SweepJob(NamedTuple):
-    """All that a process elsewhere needs to know of a run."""
+    """Job of a sweep: all that a process elsewhere needs to know of a run."""
 
     id: str
     path: str  # of the case file, for messages and records beside it
@@ -40,13 +40,13 @@ class SweepJob(NamedTuple):
 class PlannedSweep(NamedTuple):
     """A sweep that can be done: one job per row of its table; equal runs have equal jobs."""
 
-    plan: Plan
+    plan: SweepPlan
     jobs: tuple[SweepJob | None, ...]  # None: the changes of this run make no valid case
     reasons: dict[int, str]  # why not, by row
     base: dict[str, Any]  # value in the file of each key that some runs leave alone
 
 
-def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Override], light: bool) -> PlannedSweep:
+def prepared(loaded: LoadedCase, plan: SweepPlan, folder: Path, given: Sequence[Override], light: bool) -> PlannedSweep:
     """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
     one that is given is changed by all of them.
 
@@ -70,11 +70,11 @@ def prepared(loaded: LoadedCase, plan: Plan, folder: Path, given: Sequence[Overr
     _buildable(loaded, next(job for job in jobs if job is not None) if len(wrong) < len(jobs) else None)
     mistaken = _mistaken(plan.runs, wrong)
     if mistaken:
-        raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:FEW]])
+        raise CaseError([CaseProblem((), line) for line in list(dict.fromkeys(mistaken))[:MOST_MISTAKES]])
     return PlannedSweep(plan, tuple(jobs), {row: str(error) for row, error in wrong.items()}, _base(loaded, plan))
 
 
-def _in_vain(given: Sequence[Override], plan: Plan) -> None:
+def _in_vain(given: Sequence[Override], plan: SweepPlan) -> None:
     """Raises UsageError where every run changes what the command line gave."""
     swept = set.intersection(*({tuple(map(str, change.path)) for change in run.overrides} for run in plan.runs))
     for override in given:
@@ -92,7 +92,7 @@ def _buildable(loaded: LoadedCase, first: SweepJob | None) -> None:
         api.build_model(api.load_case(loaded.path, loaded.overrides, loaded.text))
 
 
-def _light(loaded: LoadedCase, plan: Plan) -> tuple[Override, ...]:
+def _light(loaded: LoadedCase, plan: SweepPlan) -> tuple[Override, ...]:
     """No snapshots, and no following of the collapse."""
     swept = {override.path[:2] for run in plan.runs for override in run.overrides}
     other_kinds = swept & {("analysis",), ("analysis", "kind")}
@@ -113,7 +113,7 @@ def _mistaken(runs: Sequence[SweepRun], wrong: Mapping[int, CaseError]) -> list[
     ]
 
 
-def _base(loaded: LoadedCase, plan: Plan) -> dict[str, Any]:
+def _base(loaded: LoadedCase, plan: SweepPlan) -> dict[str, Any]:
     """What the file says of keys that not every run changes."""
     found = {}
     for key in plan.keys:
@@ -154,14 +154,16 @@ def tidy(folder: Path) -> None:
             shutil.rmtree(entry.path, ignore_errors=True)
 
 
-Spread = Callable[[Sequence[SweepJob]], Iterator[tuple[int, Summary | Died]]]  # does jobs somewhere, in any order
+Spread = Callable[
+    [Sequence[SweepJob]], Iterator[tuple[int, Summary | WorkerDeath]]
+]  # does jobs somewhere, in any order
 
 
 def carried_out(sweep: PlannedSweep, known: Mapping[str, Summary], spread: Spread) -> Iterator[tuple[str, Summary]]:
     """Name and summary of each run as it ends; `known` ones are not done again."""
     left = list({job.id: job for job in sweep.jobs if job is not None and job.id not in known}.values())
     for number, summary in spread(left):
-        if isinstance(summary, Died):
+        if isinstance(summary, WorkerDeath):
             summary = failure(left[number], DIED)
         yield left[number].id, summary
 

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dem_cli.output.atomic_file import whole
 from dem_cli.output.scalars import plain
-from dem_cli.output.sweeps import CSV, FIRST, SQLITE
-from dem_cli.output.whole import whole
+from dem_cli.output.sweep_files import CSV, IDENTITY_COLUMNS, SQLITE
 from dem_cli.sweep.plan import show_value
 from dem_cli.sweep.run import FAILED, WAITING, PlannedSweep, Summary
 
@@ -75,7 +75,7 @@ def answers(summary: Summary) -> Row:
 
 def columns(table: Sequence[Row], keys: Sequence[str]) -> list[str]:
     """Every column, in the order of first appearance."""
-    wanted = dict.fromkeys(["run", *keys, *FIRST[1:]])
+    wanted = dict.fromkeys(["run", *keys, *IDENTITY_COLUMNS[1:]])
     for row in table:
         wanted |= dict.fromkeys(row)
     return list(wanted)

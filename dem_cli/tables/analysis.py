@@ -1,4 +1,4 @@
-"""The contract of an analysis kind."""
+"""[analysis] of the case file: one table per kind, and the contract of a kind."""
 
 from __future__ import annotations
 
@@ -211,10 +211,11 @@ class FragilityAnalysis(ShakingAnalysis):
             raise KeyProblem("missing; give intensities, or lowest, highest and resolution", missing)
         if self.search == "grid":
             raise KeyProblem("'grid' needs intensities", "search")
-        if not self.lowest < self.highest:  # type: ignore[operator]
-            raise KeyProblem(f"{self.highest:g} is not allowed; must be more than lowest", "highest")
-        if self.resolution > self.highest - self.lowest:  # type: ignore[operator]
-            raise KeyProblem(f"{self.resolution:g} is not allowed; is more than highest − lowest", "resolution")
+        lowest, highest, resolution = self.range
+        if not lowest < highest:
+            raise KeyProblem(f"{highest:g} is not allowed; must be more than lowest", "highest")
+        if resolution > highest - lowest:
+            raise KeyProblem(f"{resolution:g} is not allowed; is more than highest − lowest", "resolution")
         return self
 
     @property

@@ -13,7 +13,7 @@ DEFAULT_FRACTION = 0.35  # thesis 6.1: best for the restitution of blocks with h
 JOINTS = ("contact_fraction", "restitution", "rayleigh", "stiffness")  # each sets the dashpots: one of them
 
 
-class Rayleigh(CaseModel):
+class RayleighDamping(CaseModel):
     """damping.rayleigh: damping ratio of elastic modes, c = a0 m + a1 k."""
 
     ratio: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
@@ -31,7 +31,7 @@ class Rayleigh(CaseModel):
     stiffness: bool = Field(default=True, description="with the part that is proportional to stiffness")
 
     @model_validator(mode="after")
-    def _frequencies_and_parts(self) -> Rayleigh:
+    def _frequencies_and_parts(self) -> RayleighDamping:
         if (self.frequency is None) == (self.frequencies is None):
             both = "'frequency' and 'frequencies' are"
             found = both if self.frequency else "neither 'frequency' nor 'frequencies' is"
@@ -55,7 +55,7 @@ class Rayleigh(CaseModel):
         return share * self.ratio * omega * self.mass, share * self.ratio / omega * self.stiffness
 
 
-class Element(CaseModel):
+class MaxwellElement(CaseModel):
     """damping.maxwell: a spring and a dashpot in series beside each spring of a joint."""
 
     ratio: Annotated[float, Field(gt=0.0, lt=0.5)] = Field(
@@ -84,7 +84,7 @@ class DampingTable(CaseModel):
         "and the heaviest block on a support for a restitution",
         examples=["column-1"],
     )
-    rayleigh: Rayleigh | None = Field(
+    rayleigh: RayleighDamping | None = Field(
         default=None,
         description="damping ratio of elastic modes: { ratio, frequency or frequencies, mass, stiffness }",
         examples=[{"ratio": 0.02, "frequency": 10.0}],
@@ -95,7 +95,7 @@ class DampingTable(CaseModel):
     mass: Positive | None = Field(
         default=None, description="damping force over mass and velocity of blocks [1/s]", examples=[0.5]
     )
-    maxwell: Annotated[tuple[Element, ...], Field(min_length=1)] | None = Field(
+    maxwell: Annotated[tuple[MaxwellElement, ...], Field(min_length=1)] | None = Field(
         default=None,
         description="elements beside each spring: [{ ratio, frequency }]",
         examples=[[{"ratio": 0.03, "frequency": 5.0}]],

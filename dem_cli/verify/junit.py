@@ -5,9 +5,9 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.records import Record
-from dem_cli.verify.words import judgement
+from dem_cli.verify.verdict_words import judgement
 
 NOT_SOLVED = "not solved"
 

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from dem_cli.verify.records import Record, counts, on_shelves
-from dem_cli.verify.words import VERDICTS, allowed, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, off, share, shown
 
 ABOUT = {
     "verification": "Exact answers: closed forms, limit analysis, motions integrated apart from dem to full accuracy. "
@@ -17,7 +17,7 @@ ABOUT = {
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
 }
 KEPT = "\N{NO-BREAK SPACE}"
-HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
+TABLE_HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
 
 Written by `dem verify cases --write docs/verification.md`; do not edit. Every case file under `cases/` that has a
@@ -70,7 +70,7 @@ def _table(records: Sequence[Record]) -> list[str]:
         for number, answer in enumerate(record["references"]):
             name = f"{_link(record)}<br>{_cell(record['title'])}" if number == 0 else ""
             rows.append([name, *_answer(answer)])
-    return _rows(HEAD, rows)
+    return _rows(TABLE_HEAD, rows)
 
 
 def _answer(answer: dict[str, Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""What is kept of a verified case, and of all of them: verification.json."""
+"""Verification records: what is kept of a verified case, and of all of them in verification.json."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
 from dem_cli.output.reference import as_declared, error, verdicts
 from dem_cli.output.scalars import plain
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 
 Record = dict[str, Any]  # of a case: see `record`
-STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
+VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
 
 
 def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
@@ -75,7 +75,7 @@ def counts(records: Iterable[Record]) -> dict[str, int]:
     """How many cases and references there are, and how many references in each state; cases without an answer."""
     records = list(records)
     states = [answer["state"] for record in records for answer in record["references"]]
-    found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in STATES}
+    found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in VERDICT_STATES}
     return found | {"not solved": sum("error" in record for record in records)}
 
 

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from dem_cli.motion.eurocode import SOILS
-from dem_cli.motion.measures import fit
+from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
 from dem_cli.motion.synthetic import suite, target_of
 from dem_cli.motion.table import ArtificialTable
-from dem_cli.post.spectra import Suite, draw_motions, draw_spectra
+from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
 from studies.places import DOCS
 from studies.study import StudyRunner
 from studies.template import table as markdown
@@ -88,7 +88,7 @@ class MotionStudy(StudyRunner):
     def redraw(self) -> None:
         table = ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0, count=OF_SEVEN)
         motions = [Motion(record, name=f"artificial {i}") for i, record in enumerate(suite(table, 1), 1)]
-        made = [Suite(motions, target_of(table))]
+        made = [MotionSuite(motions, target_of(table))]
         draw_spectra(made, PAGE.with_name("motion_spectra.png"), "Suite of seven")
         draw_motions(made, PAGE.with_name("motion_records.png"), "Suite of seven")
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
 
-from dem_cli.structures.place import place
+from dem_cli.structures.placement import place
 from dem_cli.structures.registry import GENERATORS
 
 CASES = Path(__file__).resolve().parents[2] / "cases"

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli.bench import joints, others, registry, sweeps
-from dem_cli.bench.cases import KNOWN
+from dem_cli.bench.cases import KNOWN_STRUCTURES
 from dem_cli.cli import main as cli
 from dem_cli.cli.bench import command
 from dem_cli.engine.properties import joint_properties, law_of
@@ -47,7 +47,7 @@ def test_quick_measures_every_group(quick):
 
 @pytest.mark.parametrize("name", joints.VARIANTS)
 def test_joint_models_are_valid(name):
-    case, model = joints.with_joint(KNOWN[joints.QUICK_CASE], joints.VARIANTS[name], joints.OTHER).build()
+    case, model = joints.with_joint(KNOWN_STRUCTURES[joints.QUICK_CASE], joints.VARIANTS[name], joints.OTHER).build()
     assert set(case.joints) == {"dry", "other"}
     assert law_of(case).bonded  # as the other joint is
     joint_properties(case, model)

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from oracle.rolling_column import fall, foot
 
 from dem_cli import api
-from dem_cli.calibrate.answer import TrialAnswer, closest, distance, rows
+from dem_cli.calibrate.comparison import TrialAnswer, closest, distance, rows
 from dem_cli.calibrate.table import Calibration, NamedShape
 from dem_cli.calibrate.trials import trials
 from dem_cli.cli.main import main

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli.cli.main import main
-from dem_cli.cli.new import KINDS, TEMPLATES
+from dem_cli.cli.new import TEMPLATE_KINDS, TEMPLATES
 from dem_cli.structures.registry import GENERATORS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,7 +21,7 @@ def dem(*words: str):
     return result
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", TEMPLATE_KINDS)
 def test_what_new_prints_passes_check_as_it_is(kind, tmp_path):
     printed = dem("new", kind)
     path = tmp_path / "case.toml"
@@ -31,7 +31,7 @@ def test_what_new_prints_passes_check_as_it_is(kind, tmp_path):
     assert (checked.exit_code, checked.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", TEMPLATE_KINDS)
 def test_what_new_prints_explains_every_key(kind):
     for line in (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8").splitlines():
         assert len(line) <= 120
@@ -39,7 +39,7 @@ def test_what_new_prints_explains_every_key(kind):
 
 
 def test_there_is_a_template_for_every_generator():
-    assert set(KINDS) == {*GENERATORS, "block", "shaken", "safety", "sweep"}
+    assert set(TEMPLATE_KINDS) == {*GENERATORS, "block", "shaken", "safety", "sweep"}
 
 
 def test_a_template_that_is_uncommented_is_valid_too(tmp_path):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from shown import Reader, blocks
 
-from dem_cli.cli.new import KINDS
+from dem_cli.cli.new import TEMPLATE_KINDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs" / "guide").glob("*.md"))
@@ -30,7 +30,7 @@ def test_paths_that_are_named_exist(page):
 
 def test_all_templates_are_named():
     text = (ROOT / "docs" / "guide" / "install.md").read_text(encoding="utf-8")
-    assert not [kind for kind in KINDS if f"`{kind}`" not in text]
+    assert not [kind for kind in TEMPLATE_KINDS if f"`{kind}`" not in text]
 
 
 def test_the_guide_shows_something():

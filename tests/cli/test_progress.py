@@ -6,8 +6,8 @@ import io
 
 import pytest
 
-from dem_cli.cli.words import count
-from dem_cli.cli.words.count import Count
+from dem_cli.cli.words import run_counter
+from dem_cli.cli.words.run_counter import RunCounter
 
 
 class Clock:
@@ -23,12 +23,12 @@ class Clock:
 @pytest.fixture
 def clock(monkeypatch):
     clock = Clock()
-    monkeypatch.setattr(count, "time", clock)
+    monkeypatch.setattr(run_counter, "time", clock)
     return clock
 
 
 def test_a_line_says_where_it_stands(clock):
-    bar = Count(1000, 400, stream=io.StringIO())
+    bar = RunCounter(1000, 400, stream=io.StringIO())
     for _ in range(20):
         clock.now += 0.5
         bar.update(failed=False)
@@ -38,7 +38,7 @@ def test_a_line_says_where_it_stands(clock):
 
 
 def test_slow_runs_have_their_time(clock):
-    bar = Count(10, stream=io.StringIO())
+    bar = RunCounter(10, stream=io.StringIO())
     clock.now += 90.0
     bar.update()
     assert bar.line() == "1 of 10 runs, 90 s a run, about 14 min left"
@@ -47,7 +47,7 @@ def test_slow_runs_have_their_time(clock):
 def test_lines_come_every_ten_seconds_and_never_when_quiet(clock):
     for quiet in (False, True):
         stream = io.StringIO()
-        with Count(100, quiet=quiet, stream=stream) as bar:
+        with RunCounter(100, quiet=quiet, stream=stream) as bar:
             for _ in range(50):
                 clock.now += 0.5
                 bar.update()
@@ -57,7 +57,7 @@ def test_lines_come_every_ten_seconds_and_never_when_quiet(clock):
 def test_a_bar_on_a_terminal():
     stream = io.StringIO()
     stream.isatty = lambda: True  # type: ignore[method-assign]
-    with Count(3, stream=stream) as bar:
+    with RunCounter(3, stream=stream) as bar:
         for _ in range(3):
             bar.update(failed=True)
     assert "3/3" in stream.getvalue()

@@ -24,10 +24,10 @@ pytest.importorskip("matplotlib")
 from PIL import Image
 
 from dem_cli.post import style
-from dem_cli.render import gl, movie, paint, render
-from dem_cli.render.render import Look
+from dem_cli.render import block_colours, movie, opengl, render
+from dem_cli.render.render import RenderOptions
 
-ASK = "from dem_cli.render.gl import choose_window; choose_window()"
+ASK = "from dem_cli.render.opengl import choose_window; choose_window()"
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +66,8 @@ def near(picture, colour, within=12):
 def drawn(folder, monkeypatch, width=600, **look):
     """A page, rendered in this process."""
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", ""))
-    gl.choose_window()
-    look = Look(**look)
+    opengl.choose_window()
+    look = RenderOptions(**look)
     results = read(folder)
     return render.draw(results, render.chosen(results, look.frame), look, width)[0]
 
@@ -134,14 +134,14 @@ def test_mp4_of_a_shaken_wall(graphics, tmp_path):
 
 def test_no_graphics_libraries(monkeypatch):
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
-    monkeypatch.setattr(gl, "loaded", lambda name: None)
+    monkeypatch.setattr(opengl, "loaded", lambda name: None)
     monkeypatch.setattr(sys, "platform", "linux")
     with pytest.raises(UsageError, match="apt-get install libegl1 libgl1-mesa-dri"):
-        gl.choose_window()
+        opengl.choose_window()
 
 
 def test_a_library_that_is_missing_is_none():
-    assert gl.loaded("libno-such-thing.so.9") is None
+    assert opengl.loaded("libno-such-thing.so.9") is None
 
 
 def test_a_renderer_that_dies_is_reported():
@@ -229,7 +229,7 @@ def test_captions_say_how_many_times_larger(folder):
 def test_colours_run_from_nothing_to_the_largest(folder):
     results = read(folder)
     frame = results.frames[-1]
-    drawn, bar = paint.colours(results, [frame], "displacement")
+    drawn, bar = block_colours.colours(results, [frame], "displacement")
     moved = np.linalg.norm(frame.positions - results.model.centroids, axis=1)
     assert bar.label == "displacement of the block [mm]"
     assert bar.high == pytest.approx(1e3 * moved.max())

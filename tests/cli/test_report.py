@@ -19,7 +19,7 @@ from synthetic.shaking import write_shaking
 from dem_cli.cli.main import main
 from dem_cli.output.store import ResultWriter
 from dem_cli.report import facts
-from dem_cli.report.page import ASSETS, SCRIPTS, STYLE, TEMPLATE, THREE, policy, script_json
+from dem_cli.report.page import ASSETS, SCRIPTS, STYLE_SHEET, TEMPLATE, THREE, policy, script_json
 from dem_cli.report.view import turns, view
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -269,7 +269,7 @@ def test_the_answer_of_each_kind_in_one_line(kind, found, label, value, more):
     assert facts.answer({"kind": kind, "status": "ok", **found}) == (label, value, more, "good")
 
 
-@pytest.mark.parametrize("kind", facts.KINDS)
+@pytest.mark.parametrize("kind", facts.KIND_TITLES)
 def test_a_run_that_was_stopped_says_so(kind):
     answer = facts.answer({"kind": kind, "status": "interrupted"})
     assert "interrupted" in answer.value + answer.more
@@ -307,7 +307,7 @@ def test_everything_the_page_is_made_of_is_packaged():
     patterns = project["tool"]["setuptools"]["package-data"]["dem_cli.report"]
     kept = {path for pattern in patterns for path in ASSETS.parent.glob(pattern)}
     assert kept == set(ASSETS.iterdir())
-    assert {path.name for path in kept} >= {TEMPLATE, STYLE, THREE, *SCRIPTS}
+    assert {path.name for path in kept} >= {TEMPLATE, STYLE_SHEET, THREE, *SCRIPTS}
 
 
 def test_three_comes_with_its_licence():

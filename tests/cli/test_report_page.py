@@ -21,7 +21,7 @@ from synthetic.shaking import write_shaking
 
 from dem_cli.cli.main import main
 from dem_cli.output.scalars import scalars
-from dem_cli.post.measures import scaled
+from dem_cli.post.frame_measures import scaled
 from dem_cli.render.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js

@@ -121,7 +121,7 @@ def test_a_picture_that_cannot_be_drawn_costs_no_results(tmp_path, monkeypatch, 
     def fault(*_):
         raise ZeroDivisionError("in a picture")
 
-    monkeypatch.setattr("dem_cli.post.plots.draw_all", fault)
+    monkeypatch.setattr("dem_cli.post.run_pictures.draw_all", fault)
     summary, folder = run(tmp_path, solver(), plot=True)
     assert (summary["status"], (folder / "results.h5").is_file()) == ("ok", True)
     assert "no pictures: internal error: ZeroDivisionError: in a picture" in capsys.readouterr().err

@@ -281,7 +281,7 @@ def test_a_whole_sweep_waits_for_no_shard(case, tmp_path):
 
 
 def test_files_of_several_writers_are_whole(tmp_path):
-    from dem_cli.output.whole import whole
+    from dem_cli.output.atomic_file import whole
 
     with whole(tmp_path / "table.csv") as one, whole(tmp_path / "table.csv") as other:
         one.write_text("one")

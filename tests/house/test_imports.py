@@ -35,7 +35,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "structures.registry",
         "tables",
     },
-    "public": {"api", "case", "model.model", "output", "pipeline", "post.columns", "post.labels"},
+    "public": {"api", "case", "model.model", "output", "pipeline", "post.run_columns", "post.labels"},
     "pipeline": {
         "analyses.solve",
         "api",
@@ -69,7 +69,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "geometry",
         "assembly",
         "case.schema",
-        "case.vary",
+        "case.variation",
         "dynamics",
         "engine",
         "kernels.records",

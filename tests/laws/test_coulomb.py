@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from dem_cli.laws.drive import drive
+from dem_cli.laws.displacement_path import drive
 from dem_cli.laws.registry import LAWS
 
 KN, KS, MU = 2.0e6, 1.0e6, 0.6

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lawpaths import joint, ramp
 
-from dem_cli.laws.drive import drive
+from dem_cli.laws.displacement_path import drive
 
 KN, KS, AREA = 1.0e10, 5.0e9, 0.02
 FC, MU = 8.0e6, 0.6

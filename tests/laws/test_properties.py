@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lawpaths import joint
 
 from dem_cli.laws.decay import slip_on_decay
-from dem_cli.laws.drive import drive
+from dem_cli.laws.displacement_path import drive
 from dem_cli.laws.mohr_coulomb import slip_while_dilating
 
 U = 1e-5

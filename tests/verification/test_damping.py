@@ -91,9 +91,9 @@ def test_stiffness_damping_does_not_shrink_the_time_step(first_frequency):
 
 
 def test_a_pair_of_frequencies_has_the_ratio_at_both():
-    from dem_cli.tables.damping import Rayleigh
+    from dem_cli.tables.damping import RayleighDamping
 
-    mass, stiffness = Rayleigh(ratio=0.03, frequencies=(5.0, 40.0)).coefficients()
+    mass, stiffness = RayleighDamping(ratio=0.03, frequencies=(5.0, 40.0)).coefficients()
     for frequency in (5.0, 40.0):
         omega = 2.0 * math.pi * frequency
         assert 0.5 * (mass / omega + stiffness * omega) == pytest.approx(0.03, rel=1e-12)

@@ -14,7 +14,7 @@ from oracle.rolling_column import foot
 from reference import value as book
 
 from dem_cli.cli.verify import verified
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.page import page
 from dem_cli.verify.records import all_well, digest, on_shelves
 

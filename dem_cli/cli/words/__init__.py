@@ -1,1 +1,1 @@
-"""What users read: answers, remarks and tables in words."""
+"""Terminal texts: answers, remarks and tables in words."""

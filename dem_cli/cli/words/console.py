@@ -1,4 +1,4 @@
-"""Every line that a user of `dem run` reads: progress on stderr, the answer on stdout."""
+"""Terminal output of `dem run`, every line that a user reads: progress on stderr, the answer on stdout."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def seconds(value: float) -> str:
 
 
 class Progress:
-    """A bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
+    """Progress of a run: a bar on a terminal, otherwise a plain line every 10 s; nothing when `quiet`."""
 
     def __init__(self, quiet: bool = False, stream: TextIO | None = None):
         self.quiet = quiet

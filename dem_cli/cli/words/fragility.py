@@ -1,4 +1,4 @@
-"""What a user of `dem run` reads of many runs: the curve of a fragility study, the spread of repeats."""
+"""Fragility curves and the spread of repeats in words: what a user of `dem run` reads of many runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 Rows = list[tuple[str, str]]
-MOST = 8  # levels, records or monitors that are listed
+MOST_LISTED = 8  # levels, records or monitors that are listed
 
 
 def fragility_rows(summary: Mapping[str, Any]) -> Rows:
@@ -56,7 +56,7 @@ def _shares(summary: Mapping[str, Any]) -> Rows:
     levels = list(zip(summary.get("levels") or (), summary.get("share") or ()))
     if not levels:
         return []
-    told = levels if len(levels) <= MOST else [p for p in levels if p[1] not in (0.0, 1.0)][:MOST]
+    told = levels if len(levels) <= MOST_LISTED else [p for p in levels if p[1] not in (0.0, 1.0)][:MOST_LISTED]
     text = ", ".join(f"{100 * share:.0f} % at {level:g}" for level, share in told if share is not None)
     return [("share", text)] if text else []
 
@@ -64,19 +64,19 @@ def _shares(summary: Mapping[str, Any]) -> Rows:
 def _non_monotone(found: list[dict[str, Any]]) -> Rows:
     """Records that a structure survived above a collapse."""
     rows = []
-    for one in found[:MOST]:
+    for one in found[:MOST_LISTED]:
         who = one["record"] + (f", structure {one['structure']}" if one["structure"] else "")
         survived = ", ".join(f"{level:g}" for level in one["survived"])
         rows.append(("not monotone", f"{who}: collapsed at {one['collapsed']:g}, survived {survived}"))
-    if len(found) > MOST:
-        rows.append(("", f"and {len(found) - MOST} more in summary.json"))
+    if len(found) > MOST_LISTED:
+        rows.append(("", f"and {len(found) - MOST_LISTED} more in summary.json"))
     return rows
 
 
 def _repeats(repeats: Mapping[str, Any]) -> Rows:
     """The spread of the peaks over perturbed structures."""
     rows = [("repeats", f"{repeats['collapsed']} of {repeats['runs']} perturbed structures collapsed")]
-    for name, spread in list(repeats["peaks"].items())[:MOST]:
+    for name, spread in list(repeats["peaks"].items())[:MOST_LISTED]:
         if spread is None:
             rows.append(("", f"{name}: none of them stood"))
             continue

@@ -1,11 +1,11 @@
-"""What a user of `dem run` reads of natural frequencies: a table, and what to write into [joints]."""
+"""Natural frequencies in words: a table, and what to write into [joints]."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-MOST = 20  # lines of the table
+MOST_LINES = 20  # lines of the table
 
 
 def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -15,11 +15,11 @@ def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         return []
     total, masses = summary["total_mass"], summary["effective_masses"]
     rows = []
-    for i, frequency in enumerate(frequencies[:MOST]):
+    for i, frequency in enumerate(frequencies[:MOST_LINES]):
         shares = "  ".join(f"{axis} {100 * values[i] / total:5.1f} %" for axis, values in masses.items())
         rows.append((f"mode {i + 1}", f"{frequency:10.4g} Hz   mass along {shares}"))
-    if len(frequencies) > MOST:
-        rows.append(("", f"and {len(frequencies) - MOST} more in summary.json"))
+    if len(frequencies) > MOST_LINES:
+        rows.append(("", f"and {len(frequencies) - MOST_LINES} more in summary.json"))
     if not len(frequencies):
         return [("modes", "none: no joint holds any block")]
     sums = "  ".join(f"{axis} {100 * sum(values) / total:5.1f} %" for axis, values in masses.items())

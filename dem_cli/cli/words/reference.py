@@ -1,4 +1,4 @@
-"""What a user reads of a comparison with the `[reference]` of a case."""
+"""Comparison with the `[reference]` of a case in words."""
 
 from __future__ import annotations
 

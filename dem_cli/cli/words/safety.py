@@ -1,4 +1,4 @@
-"""What a user of `dem run` reads of a safety analysis: the factor or the value, its bracket, and what decided it."""
+"""Safety factors in words: the factor or the value, its bracket, and what decided it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 Rows = list[tuple[str, str]]
-UNITS = {"friction": "", "cohesion": " Pa", "tension": " Pa"}
+STRENGTH_UNITS = {"friction": "", "cohesion": " Pa", "tension": " Pa"}
 NO_CHANGE = ("no failure", "fails even")  # how the status begins where all factors end alike
-MOST = 8  # joints that are listed
+MOST_JOINTS = 8  # joints that are listed
 
 
 def safety_rows(summary: Mapping[str, Any]) -> Rows:
@@ -65,8 +65,8 @@ def _no_change(stands: float | None, fails: float | None) -> str:
 def _needed(summary: Mapping[str, Any]) -> Rows:
     """Strengths with which it just stands."""
     rows = []
-    for joint, values in list((summary.get("strengths_needed") or {}).items())[:MOST]:
-        text = ", ".join(f"{name} {value:.4g}{UNITS[name]}" for name, value in values.items())
+    for joint, values in list((summary.get("strengths_needed") or {}).items())[:MOST_JOINTS]:
+        text = ", ".join(f"{name} {value:.4g}{STRENGTH_UNITS[name]}" for name, value in values.items())
         if text:
             rows.append(("just stands", f"'{joint}': {text}"))
     return rows

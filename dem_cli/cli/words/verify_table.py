@@ -11,18 +11,20 @@ from rich.console import Console
 from rich.table import Table
 
 from dem_cli.cli.words.console import seconds
-from dem_cli.verify.find import SHELVES
+from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.records import Record, on_shelves
-from dem_cli.verify.words import VERDICTS, allowed, judgement, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, judgement, off, share, shown
 
-WIDE = 240  # where there is no terminal: lines are not cut
+UNCUT_WIDTH = 240  # where there is no terminal: lines are not cut
 STYLES = {"passed": "green", "missed": "yellow", "failed": "bold red", "met": "bold red"}
-NUMBERS = ("ours", "reference", "error", "%", "allowed", "time")
+NUMBER_COLUMNS = ("ours", "reference", "error", "%", "allowed", "time")
 
 
 def show_tables(records: Sequence[Record]) -> None:
     """Prints a table for each shelf, then a sentence for everything that did not pass."""
-    screen = Console(file=sys.stdout, width=None if sys.stdout.isatty() else WIDE, highlight=False, soft_wrap=False)
+    screen = Console(
+        file=sys.stdout, width=None if sys.stdout.isatty() else UNCUT_WIDTH, highlight=False, soft_wrap=False
+    )
     for shelf in SHELVES.values():
         of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
         if of_shelf:
@@ -40,7 +42,7 @@ def show_tables(records: Sequence[Record]) -> None:
 def _table(shelf: str, records: Sequence[Record]) -> Table:
     table = Table(title=shelf, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False)
     for name in ("case", "quantity", "ours", "reference", "error", "%", "allowed", "verdict", "time"):
-        table.add_column(name, justify="right" if name in NUMBERS else "left", overflow="fold")
+        table.add_column(name, justify="right" if name in NUMBER_COLUMNS else "left", overflow="fold")
     for record in records:
         path, took = PurePosixPath(record["case"]), seconds(record["seconds"])
         for answer in record["references"]:

@@ -9,7 +9,7 @@ import tomllib
 from typing import Any
 
 from dem_cli.output.reader import read
-from dem_cli.output.shapes import rest_vertices
+from dem_cli.output.vertices import rest_vertices
 from studies.places import CASES, ROOT
 from studies.polygons import rectangle
 from studies.solution import bracket_of, corners_of, from_tables, solve

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.bench.draw import COLOURS, MARKS
+from dem_cli.bench.diagrams import COLOURS, MARKERS
 from dem_cli.bench.table import percent
 from dem_cli.post import style
 from studies.chapter6.shaken_case import extremes, run
@@ -108,7 +108,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         rigid = (1.0 - 1.5 / (1.0 + smooth**2)) ** 2
         axis.plot(smooth, rigid, color=style.INK, lw=1.4, label="Housner")
         for i, z in enumerate(FRACTIONS):
-            axis.plot(aspects, [means[a, z] for a in aspects], MARKS[i], color=COLOURS[i], ms=6, label=f"ζ = {z:g}")
+            axis.plot(aspects, [means[a, z] for a in aspects], MARKERS[i], color=COLOURS[i], ms=6, label=f"ζ = {z:g}")
         for name, marker in (("col_r_dem", "s"), ("col_r_exp", "*")):
             row = results("thesis_arch_shaking")[name]
             label = f"column of 6.2, {'thesis DEM' if marker == 's' else 'measured'}"

@@ -41,11 +41,11 @@ def measure() -> list[dict[str, Any]]:
 def shaken(model: Any, friction: float, frequency: float, a: float, rate: int) -> dict[str, float | None]:
     """Time of collapse [s], or how far the lowest voussoir sank [m]; gravity turns as it does for who moves along."""
     from dem_cli.bench.box2d_walls import THIN, Box2DWorld
-    from dem_cli.bench.tilting import Setting
+    from dem_cli.bench.tilting import EngineSettings
 
     scale, dt, iterations = EDGE / RING, 1.0 / rate, (10, 4)
     gravity = 9.81 * scale
-    setting = Setting("", EDGE, gravity, dt, iterations, options=THIN)
+    setting = EngineSettings("", EDGE, gravity, dt, iterations, options=THIN)
     world = Box2DWorld(model, friction, setting, RING)
     world.step(rate // 2)  # to rest
     start, sank = world.places()[:, 1], 0.0

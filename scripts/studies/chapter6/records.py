@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.bench.draw import COLOURS
+from dem_cli.bench.diagrams import COLOURS
 from dem_cli.bench.table import percent
 from dem_cli.post import style
 from studies.chapter6.arch import UNIT, sizes

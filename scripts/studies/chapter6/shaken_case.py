@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli import api
 from dem_cli.analyses.solve import solve as solve_model
 from dem_cli.errors import SolverError
-from dem_cli.output import shapes
+from dem_cli.output import vertices
 from dem_cli.output.record import Frame
 from studies.observer import RunKeeper
 from studies.places import CASES
@@ -57,8 +57,8 @@ def run(case: str, *overrides: str) -> ShakenCase:
 
 def blocks_of(model: Any, frame: Frame) -> list[list[list[float]]]:
     """Corners of each block as they are drawn [m]."""
-    corners = shapes.placed_vertices(model, frame.positions, frame.orientations)
-    owner = shapes.vertex_blocks(model)
+    corners = vertices.placed_vertices(model, frame.positions, frame.orientations)
+    owner = vertices.vertex_blocks(model)
     return [rounded(corners[owner == k], DRAWN) for k in range(model.n_blocks)]
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from oracle import rolling_polygons as statics
 from reference import results
 
-from dem_cli.bench.draw import COLOURS, MARKS
+from dem_cli.bench.diagrams import COLOURS, MARKERS
 from dem_cli.bench.table import percent
 from dem_cli.post import style
 from studies.chapter7.load_path import middle, run, top, without_curve
@@ -185,7 +185,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         left, right = figure.subplots(1, 2)
         for i, shape in enumerate(dict.fromkeys(row.shape for row in rows)):
             mine = [row for row in rows if row.shape == shape]
-            look: Any = {"color": COLOURS[i], "marker": MARKS[i], "ms": 5}
+            look: Any = {"color": COLOURS[i], "marker": MARKERS[i], "ms": 5}
             left.plot([r.percent for r in mine], [r.ours for r in mine], lw=1.2, label=f"{shape}: dem", **look)
             left.plot([r.percent for r in mine], [r.thesis for r in mine], ls=":", lw=1.0, mfc="none", **look)
             right.plot([1e3 * r.top for r in mine], [r.ours for r in mine], ls="", **look)

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 
 from dem_cli.api import make_case_model
 from dem_cli.assembly.assemble import assembly
-from dem_cli.case.reader import Source, validate
+from dem_cli.case.reader import CaseSource, validate
 from dem_cli.post import style
 
 LENGTH, HEIGHT, BLOCKS = 40.0, 17.5, 3  # [mm], [mm], in a full course
@@ -71,7 +71,7 @@ def walls(path: Path) -> None:
         for axis, (title, errors) in zip(figure.subplots(1, len(ERRORS)), ERRORS.items()):
             tables = {"materials": {"stone": {"density": 2000.0}}, "joints": {"dry": {"friction": 0.6}}}
             tables |= {"structure": [WALL], "imperfection": [errors]}
-            for block in assembly(validate(tables, make_case_model(), Source(path, ""))).blocks:
+            for block in assembly(validate(tables, make_case_model(), CaseSource(path, ""))).blocks:
                 colour = style.GROUND if block.fixed else style.STONE
                 for part in block.parts:
                     axis.fill(*part.T, facecolor=colour, edgecolor=style.STONE_EDGE, lw=0.8)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.laws.drive import Driven, drive
+from dem_cli.laws.displacement_path import PathResponse, drive
 from dem_cli.laws.law import Law
 from dem_cli.laws.registry import LAWS
 
@@ -57,7 +57,7 @@ class LawPage(NamedTuple):
         """`law` in a case file."""
         return self.law.name if self.law.name in LAWS else "coulomb"
 
-    def along(self, path: Any, **options: Any) -> Driven:
+    def along(self, path: Any, **options: Any) -> PathResponse:
         """A point of 1 m² moved along a path: forces are stresses."""
         keys = self.keys | options.pop("keys", {})
         table = LAWS[self.key].parameters.model_validate({"law": self.key, **keys})
@@ -72,7 +72,7 @@ def through(*corners: Sequence[float], n: int = 400) -> np.ndarray:
 
 def slid(
     page: LawPage, stress: float, *slides: float, n: int = 400, keys: dict | None = None, **options: Any
-) -> tuple[Any, Any, Driven]:
+) -> tuple[Any, Any, PathResponse]:
     """Slide [m], shear stress against it [Pa], everything; under a normal stress [Pa], slid from place to place."""
     gap = -stress / page.kn
     done = page.along(through((0.0, 0.0), (gap, 0.0), *[(gap, s) for s in slides], n=n), keys=keys or {}, **options)
@@ -98,7 +98,7 @@ def back(page: LawPage, stress: float) -> float:
     return 0.6 * stress / page.ks
 
 
-def pulled(page: LawPage, *gaps: float, n: int = 400, **options: Any) -> tuple[Any, Any, Driven]:
+def pulled(page: LawPage, *gaps: float, n: int = 400, **options: Any) -> tuple[Any, Any, PathResponse]:
     """Gap [m], normal stress, compression positive [Pa], everything; moved from gap to gap."""
     done = page.along(through((0.0, 0.0), *[(gap, 0.0) for gap in gaps], n=n), **options)
     return done.path[:, 0], done.normal, done

@@ -8,7 +8,7 @@ import sys
 import tomli_w
 
 from dem_cli.case.base import CaseModel
-from dem_cli.case.keys import CaseTable, Key
+from dem_cli.case.keys import CaseKey, CaseTable
 from dem_cli.laws.stiffness import StiffJoint
 from studies.laws.diagrams import PAGES
 from studies.laws.driven_point import LawPage
@@ -70,7 +70,7 @@ def parameters(page: LawPage) -> list[str]:
 def row(model: type[CaseModel], key: str) -> tuple[str, ...]:
     """Key, unit, range, default and meaning of a key."""
     table = CaseTable(("joints", "NAME"), model, False, "law", (), "")
-    found = Key(table, key, model.model_fields[key])
+    found = CaseKey(table, key, model.model_fields[key])
     default = "**required**" if found.required else found.default or "–"
     return f"`{key}`", " ".join(found.units) or "–", limits(found.allowed), default, found.meaning.replace("|", "\\|")
 

@@ -16,7 +16,7 @@ import numpy as np
 from dem_cli.api import build_model
 from dem_cli.ensembles.shaken_run import RestedStructure
 from dem_cli.ensembles.variants import Variant
-from dem_cli.motion.build import suites_of
+from dem_cli.motion.ground_motions import suites_of
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.pulses import impulse
 from dem_cli.output.record import Observer

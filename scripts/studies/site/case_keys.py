@@ -9,8 +9,8 @@ from itertools import combinations
 from pydantic import BaseModel, ValidationError
 
 from dem_cli.api import make_case_model
-from dem_cli.case.explain import Entry
-from dem_cli.case.keys import CaseTable, Key, tables
+from dem_cli.case.explain import CaseEntry
+from dem_cli.case.keys import CaseKey, CaseTable, tables
 from studies.places import DOCS
 from studies.template import table as markdown
 
@@ -75,24 +75,24 @@ def section(found: Sequence[CaseTable]) -> list[str]:
     return parts
 
 
-def plain(table: CaseTable) -> list[Key]:
+def plain(table: CaseTable) -> list[CaseKey]:
     """The keys of a table; at the top of a case only those that are no tables."""
     return [key for key in table.keys if table.path or not key.only_tables]
 
 
-def common(kinds: Sequence[CaseTable]) -> list[Key]:
+def common(kinds: Sequence[CaseTable]) -> list[CaseKey]:
     """Keys that all kinds have and explain alike."""
     said = [{(key.name, key.description, key.allowed, key.default) for key in table.keys} for table in kinds]
     alike = set.intersection(*said)
     return [key for key in kinds[0].keys if (key.name, key.description, key.allowed, key.default) in alike]
 
 
-def rows_of(keys: Sequence[Key]) -> list[str]:
+def rows_of(keys: Sequence[CaseKey]) -> list[str]:
     """A table of keys; nothing for none."""
     return [markdown(HEAD, map(row, keys))] if keys else []
 
 
-def row(key: Key) -> tuple[str, ...]:
+def row(key: CaseKey) -> tuple[str, ...]:
     units = ", ".join("–" if unit == "-" else unit for unit in key.units)
     default = "**required**" if key.required else safe(key.default)
     return f"`{key.name}`", safe(key.allowed.replace("'", '"')), units, default, safe(key.meaning)
@@ -130,7 +130,7 @@ def paragraphs(table: CaseTable) -> str:
 
 def more(table: CaseTable) -> str:
     """A link to the page that says most about a table, where there is one beside this."""
-    page = Entry(table, None, table.kinds).page.removeprefix("docs/")
+    page = CaseEntry(table, None, table.kinds).page.removeprefix("docs/")
     title = (DOCS / page).read_text(encoding="utf-8").split("\n")[0].removeprefix("# ")
     return "" if page == "case.md" else f" More: [{title}]({page})."
 

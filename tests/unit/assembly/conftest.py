@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dem_cli.api import make_case_model
-from dem_cli.case.reader import Source, validate
+from dem_cli.case.reader import CaseSource, validate
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def case_of():
             "materials": {"peperino": {"density": 2143.0}},
             "joints": {"dry": {"friction": 0.6}},
         } | tables
-        return validate(given, make_case_model(), Source(Path("case.toml"), ""))
+        return validate(given, make_case_model(), CaseSource(Path("case.toml"), ""))
 
     return build
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from dem_cli.assembly.assemble import assembly
 from dem_cli.assembly.validate import problems
-from dem_cli.case.imperfection import Normal, drawn
+from dem_cli.case.imperfection import NormalDistribution, drawn
 from dem_cli.case.reader import parse_toml
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError
@@ -127,7 +127,7 @@ def test_uniform_and_normal():
     assert uniform.max() <= 3.0
     counts = np.histogram(uniform, bins=20, range=(-1.0, 3.0))[0]
     assert ((counts - 500.0) ** 2 / 500.0).sum() < 43.8  # chi-squared, 19 degrees of freedom, 0.1 %
-    normal = np.array([drawn(Normal(mean=1.0, deviation=2.0), 7, 0, "height", name) for name in names])
+    normal = np.array([drawn(NormalDistribution(mean=1.0, deviation=2.0), 7, 0, "height", name) for name in names])
     assert normal.mean() == pytest.approx(1.0, abs=3.3 * 2.0 / 100.0)
     assert normal.std() == pytest.approx(2.0, rel=3.3 / math.sqrt(2 * len(names)))
     assert abs(np.corrcoef(uniform, normal)[0, 1]) > 0.9  # the same chance, table and key
@@ -216,7 +216,7 @@ def test_every_block_rests_on_the_highest_below(seed, bond, courses, count, erro
     from pathlib import Path
 
     from dem_cli.api import make_case_model
-    from dem_cli.case.reader import Source, validate
+    from dem_cli.case.reader import CaseSource, validate
 
     structure = {"kind": "wall", "block": [0.04, 0.0175], "courses": courses, "blocks_per_course": count, "bond": bond,
                  "ends": "toothed" if toothed else "half", "rotation_deg": math.degrees(turn)}  # fmt: skip
@@ -224,7 +224,7 @@ def test_every_block_rests_on_the_highest_below(seed, bond, courses, count, erro
     case = validate(
         {"materials": {"p": {"density": 1.0}}, "joints": {"dry": {"friction": 0.6}}, "structure": [structure],
          "imperfection": [table], "seed": seed},
-        make_case_model(), Source(Path("case.toml"), ""),
+        make_case_model(), CaseSource(Path("case.toml"), ""),
     )  # fmt: skip
     corners = {name: polygon.moved(c, -turn, (0.0, 0.0)) for name, c in shapes(case).items() if name != "wall-base"}
     lefts = [{} for _ in range(courses)]

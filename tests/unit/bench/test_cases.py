@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from oracle.limit_lp import frictionless_heads, limit_load
 
-from dem_cli.bench.cases import FOLDER, KNOWN, SIZES, answer
+from dem_cli.bench.cases import FOLDER, KNOWN_STRUCTURES, SIZES, answer
 from dem_cli.bench.kernels import blocks_of
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import limit_loads
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
-COMPUTED = [*KNOWN.values(), *(known for known in SIZES if blocks_of(known) <= 231)]
+COMPUTED = [*KNOWN_STRUCTURES.values(), *(known for known in SIZES if blocks_of(known) <= 231)]
 
 
 def oracle(known, heads):
@@ -66,7 +66,7 @@ def test_walls_have_as_many_blocks_as_they_say(known):
 
 
 def test_an_answer_that_is_none_says_why():
-    known = KNOWN["COL14"]
+    known = KNOWN_STRUCTURES["COL14"]
     found = answer(known, {"status": "not converged", "failure_load": None, "steps": 9, "warnings": ["a", "gave up"]})
     assert (found["error"], found["status"], found["warning"]) == (None, "not converged", "gave up")
     assert answer(known, {"status": "ok", "failure_load": known.load, "steps": 9}) == {

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from dem_cli.bench import precision
-from dem_cli.bench.cases import KNOWN, solve
+from dem_cli.bench.cases import KNOWN_STRUCTURES, solve
 from dem_cli.bench.points import points_per_joint, refined, shares
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation
 
 
 def test_settings_of_a_run_are_named_in_its_summary():
-    case, model = KNOWN["COL14"].build()
+    case, model = KNOWN_STRUCTURES["COL14"].build()
     assert "settings" not in solve(case, model)
     changed = solve(case, model, settings=precision.tolerance(1e-3))["settings"]
     assert changed == {"relaxation.tolerance": 1e-3, "relaxation.gravity_tolerance": 1e-3}
@@ -21,7 +21,7 @@ def test_settings_of_a_run_are_named_in_its_summary():
 
 def test_a_loose_tolerance_overrates_a_column():
     """A claimed equilibrium that is none: the higher the unbalanced force, the higher the load."""
-    known = KNOWN["COL14"]
+    known = KNOWN_STRUCTURES["COL14"]
     case, model = known.build()
     loose = solve(case, model, settings=precision.tolerance(1e-2))["failure_load"]
     assert known.error(loose) > 0.01
@@ -29,7 +29,7 @@ def test_a_loose_tolerance_overrates_a_column():
 
 
 def test_shorter_time_steps_need_more_of_them():
-    case, model = KNOWN["T21 μ 0.5"].build()
+    case, model = KNOWN_STRUCTURES["T21 μ 0.5"].build()
     usual = solve(case, model)["steps"]
     assert solve(case, model, settings=precision.time_step(0.5))["steps"] > 1.3 * usual
 
@@ -42,7 +42,7 @@ def test_places_of_points(layout, places):
 
 
 def test_refined_joints_have_the_same_stiffness_and_ends():
-    case, model = KNOWN["T21 μ 0.6"].build()
+    case, model = KNOWN_STRUCTURES["T21 μ 0.6"].build()
     sim = Simulation(model, law_of(case), joint_properties(case, model))
     joints, contacts = refined(sim.joints, sim.contacts, shares("5"))
     n = len(sim.joints.blocks)
@@ -57,7 +57,7 @@ def test_refined_joints_have_the_same_stiffness_and_ends():
 
 def test_points_at_the_ends_are_exact_and_points_inside_are_not():
     """A wall that rocks about the ends of its joints; two points in the quarters halve its width."""
-    known = KNOWN["T21 μ 1"]
+    known = KNOWN_STRUCTURES["T21 μ 1"]
     case, model = known.build("analysis.resolution=0.01")
     with points_per_joint("3"):
         assert abs(known.error(solve(case, model)["failure_load"])) < 0.01

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from oracle.housner import Block, rock
 
-from dem_cli.bench.time_histories import LANDINGS, History, distance, landing_error
+from dem_cli.bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
 from dem_cli.output.record import Samples
 
 
-def history(times: np.ndarray, values: np.ndarray) -> History:
-    made = History()
+def history(times: np.ndarray, values: np.ndarray) -> FirstMonitor:
+    made = FirstMonitor()
     half = len(times) // 2
     for part in (slice(None, half), slice(half, None)):
         made.samples(Samples(times[part], np.zeros((len(times[part]), 3, 2)), values[part, None]))

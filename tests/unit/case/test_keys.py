@@ -10,8 +10,8 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from dem_cli.api import make_case_model
 from dem_cli.case.base import CaseModel, Positive
-from dem_cli.case.explain import PAGES, entries, find
-from dem_cli.case.keys import UNITS, CaseTable, tables, toml
+from dem_cli.case.explain import DOC_PAGES, entries, find
+from dem_cli.case.keys import KNOWN_UNITS, CaseTable, tables, toml
 from dem_cli.errors import UsageError
 
 MODEL = make_case_model()
@@ -64,7 +64,7 @@ def test_every_key_says_what_it_means_and_in_which_unit(table):
     for key in table.keys:
         assert len(key.meaning) > 3, f"{key.path} needs a description"
         if key.numeric:
-            assert key.units, f"{key.path} needs a unit in its description: one of {', '.join(UNITS)}"
+            assert key.units, f"{key.path} needs a unit in its description: one of {', '.join(KNOWN_UNITS)}"
 
 
 @pytest.mark.parametrize("table", TABLES, ids=label)
@@ -134,4 +134,4 @@ def test_every_page_exists():
     assert len(pages) > 10
     assert not [page for page in pages if not (root / page).exists()]
     found = {".".join(table.path) for table in TABLES} | {f"{t.path[0]}.{k}" for t in TABLES for k in t.kinds if t.tag}
-    assert {name.split(".NAME")[0] for name in PAGES} <= {name.split(".NAME")[0] for name in found}
+    assert {name.split(".NAME")[0] for name in DOC_PAGES} <= {name.split(".NAME")[0] for name in found}

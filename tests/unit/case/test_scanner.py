@@ -7,7 +7,7 @@ import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.case.scanner import Places
+from dem_cli.case.scanner import KeyPositions
 
 TEXT = '''\
 title = "a # b"   # comment = 1
@@ -39,12 +39,12 @@ def paths(value, path=()):
 
 
 def test_every_path_is_found_and_no_other():
-    places = Places(TEXT)
+    places = KeyPositions(TEXT)
     assert set(places.values) == set(places.keys) == set(paths(tomli.loads(TEXT))) - {()}
 
 
 def test_places():
-    places = Places(TEXT)
+    places = KeyPositions(TEXT)
     assert places.locate(("title",)) == (1, 9)
     assert places.locate(("title",), key=True) == (1, 1)
     assert places.locate(("a", "b", "c d", 1, 2, "z.y", "w")) == (2, 54)
@@ -55,7 +55,7 @@ def test_places():
 
 
 def test_what_is_missing_is_where_its_table_begins():
-    places = Places(TEXT)
+    places = KeyPositions(TEXT)
     assert places.locate(("s", 0, "missing")) == (7, 1)
     assert places.locate(("s", 1, "sub", "y", "missing")) == (11, 3)
     assert places.locate(("missing",)) == (1, 1)
@@ -81,7 +81,7 @@ values = st.recursive(
 @settings(deadline=None)
 def test_any_text_that_tomli_w_writes(data, multiline):
     text = tomli_w.dumps(data, multiline_strings=multiline)
-    places = Places(text)
+    places = KeyPositions(text)
     for path in paths(tomli.loads(text)):
         assert path == () or path in places.values, path
     lines = text.replace("\r\n", "\n").split("\n")

@@ -11,18 +11,18 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from dem_cli.motion.motion import Motion, moving_at_the_end
-from dem_cli.motion.pulses import Ricker, Steps, Wave, impulse
+from dem_cli.motion.pulses import RectangularPulses, RickerWavelet, SineWave, impulse
 from dem_cli.motion.record import record
 
 SHAPES = {
-    "sine": Wave(3.0, 1.5, 1 / 1.5),
-    "cosine": Wave(3.0, 1.5, 1 / 1.5, math.pi / 2),
-    "half-sine": Wave(-2.0, 2.0, 0.25),
-    "harmonic with ramps": Wave(1.2, 2.5, 3.7, 0.4, 1.1),
-    "only ramps": Wave(1.0, 2.0, 3.0, 0.0, 1.5),
-    "ricker": Ricker(2.0, 3.0),
+    "sine": SineWave(3.0, 1.5, 1 / 1.5),
+    "cosine": SineWave(3.0, 1.5, 1 / 1.5, math.pi / 2),
+    "half-sine": SineWave(-2.0, 2.0, 0.25),
+    "harmonic with ramps": SineWave(1.2, 2.5, 3.7, 0.4, 1.1),
+    "only ramps": SineWave(1.0, 2.0, 3.0, 0.0, 1.5),
+    "ricker": RickerWavelet(2.0, 3.0),
     "impulse": impulse(4.0, 0.3, 0.5),
-    "steps": Steps([0.2, 0.1, 0.5], [1.0, -3.0, 0.7]),
+    "steps": RectangularPulses([0.2, 0.1, 0.5], [1.0, -3.0, 0.7]),
     "acceleration": record(np.array([0.0, 0.1, 0.25, 0.3, 0.9]), np.array([0.5, 2.0, -1.0, 0.3, 0.0])),
     "velocity": record(np.linspace(0, 1, 9), np.sin(np.linspace(0, 7, 9)), "velocity"),
     "displacement": record(np.linspace(0, 1, 9), np.sin(np.linspace(0, 7, 9)) ** 2, "displacement"),

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from dem_cli.motion.eurocode import SOILS, damping_correction, eurocode, listed
-from dem_cli.motion.pulses import Wave
+from dem_cli.motion.pulses import SineWave
 from dem_cli.motion.spectrum import crest, exponential, oscillator, peak, response_spectrum, responses, subdivided
 
 NOISE = np.cumsum(np.random.default_rng(1).normal(size=400)) * np.hanning(400)
@@ -53,7 +53,7 @@ def test_resonance_closed_form():
     """Undamped at resonance u = (A/2ω²)(ωt cos ωt − sin ωt), largest at the end of n cycles: (A/2ω²) 2πn."""
     cycles, frequency = 5, 2.0
     w = 2 * math.pi * frequency
-    wave = Wave(1.0, frequency, cycles / frequency)
+    wave = SineWave(1.0, frequency, cycles / frequency)
     times = np.linspace(0, wave.duration, 4001)
     spectrum = response_spectrum(wave.acceleration(times), times[1], np.array([1 / frequency]), 0.0)
     assert spectrum.displacement[0] == pytest.approx(2 * math.pi * cycles / (2 * w * w), rel=1e-5)
@@ -67,7 +67,7 @@ def test_half_sine_pulse_closed_form(ratio):
     td = 0.5
     period = td / ratio
     times = np.linspace(0, td, 20_001)
-    wave = Wave(1.0, 1 / (2 * td), td)
+    wave = SineWave(1.0, 1 / (2 * td), td)
     spectrum = response_spectrum(wave.acceleration(times), times[1], np.array([period]), 0.0)
     if ratio < 0.5:
         factor = abs(4 * ratio * math.cos(math.pi * ratio) / (1 - 4 * ratio**2))
@@ -97,7 +97,7 @@ def test_rectangular_pulse_doubles():
 
 def test_short_periods_have_the_peak_of_the_ground_and_long_ones_its_displacement():
     times = np.linspace(0, 4, 401)
-    ground = Wave(2.0, 1.0, 4.0, math.pi / 2, 1.0)
+    ground = SineWave(2.0, 1.0, 4.0, math.pi / 2, 1.0)
     spectrum = response_spectrum(ground.acceleration(times), 0.01, np.array([0.005, 400.0]), 0.05)
     assert spectrum.acceleration[0] == pytest.approx(2.0, rel=2e-3)
     assert spectrum.displacement[1] == pytest.approx(np.abs(ground.displacement(times)).max(), rel=1e-2)

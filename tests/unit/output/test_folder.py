@@ -133,7 +133,7 @@ def test_leftovers_of_killed_runs_go_and_running_ones_stay(tmp_path):
 
 def test_results_put_aside_by_a_killed_run_come_back(tmp_path):
     put(tmp_path / "out", 1)
-    os.rename(tmp_path / "out", tmp_path / ".out.dem-old-00000001")
+    (tmp_path / "out").rename(tmp_path / ".out.dem-old-00000001")
     with OutputFolder(tmp_path / "out"):
         assert (tmp_path / "out" / "results.h5").read_text() == "1"
     assert names(tmp_path) == ["out"]

@@ -7,7 +7,7 @@ import pytest
 from synthetic import DEPTH, HEIGHT, LENGTH, boxes_model, no_contacts, wall_frames, wall_model
 
 from dem_cli.output.record import STATES
-from dem_cli.post import measures, view
+from dem_cli.post import frame_measures, view_box
 from dem_cli.render import marks, solids
 
 
@@ -95,7 +95,7 @@ def test_joints_lie_on_their_contact_points():
 def test_bars_are_as_thick_as_forces_are_large():
     model = wall_model()
     frame = wall_frames(model, 6)[2]
-    resultants = measures.resultants(frame.contacts)
+    resultants = frame_measures.resultants(frame.contacts)
     sizes = np.linalg.norm(resultants.forces, axis=1)
     found = marks.forces(model, frame, "bars", 0.02)
     assert found.largest == pytest.approx(sizes.max())
@@ -113,7 +113,7 @@ def test_arrows_point_downwards_at_the_joint():
     assert (tips[:, 1] < tails[:, 1]).all()
     lengths = np.linalg.norm(tips - tails, axis=1)
     assert lengths.max() == pytest.approx(0.02)
-    centres = measures.resultants(frame.contacts).points
+    centres = frame_measures.resultants(frame.contacts).points
     assert min(np.linalg.norm(centres - tips[0, :2], axis=1)) < 1e-9
 
 
@@ -125,12 +125,12 @@ def test_without_contacts_there_are_no_forces():
 
 def test_what_fell_far_away_is_not_in_the_picture():
     model = wall_model()
-    start = view.corners(model, wall_frames(model, 4)[0], 1.0)
-    low, high = view.window(model, [start], 0.0)
+    start = view_box.corners(model, wall_frames(model, 4)[0], 1.0)
+    low, high = view_box.window(model, [start], 0.0)
     fallen = start.copy()
     fallen[-4:] -= (0.0, 5.0)
-    assert view.window(model, [fallen], 0.0)[0] == pytest.approx(low)
+    assert view_box.window(model, [fallen], 0.0)[0] == pytest.approx(low)
     beside = start.copy()
     beside[-4:] += (0.5 * LENGTH, 0.0)
-    wider = view.window(model, [beside], 0.0)[1]
+    wider = view_box.window(model, [beside], 0.0)[1]
     assert wider[0] == pytest.approx(max(high[0], 3.5 * LENGTH), abs=HEIGHT)

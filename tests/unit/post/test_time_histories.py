@@ -16,7 +16,7 @@ from dem_cli.output.store import ResultWriter
 pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
-from dem_cli.post import animation, histories, plots, style, view
+from dem_cli.post import animation, histories, run_pictures, style, view_box
 
 
 @pytest.fixture
@@ -100,10 +100,10 @@ def test_animation(results, tmp_path):
 
 
 def test_the_ground_is_seen_to_move_unless_it_goes_far(results):
-    assert view.carried(results, 1.0)
-    assert not view.carried(results, 10.0)
+    assert view_box.carried(results, 1.0)
+    assert not view_box.carried(results, 10.0)
     far = results.series._replace(base=100.0 * results.series.base)
-    assert not view.carried(type(results)(**{**vars(results), "series": far}), 1.0)
+    assert not view_box.carried(type(results)(**{**vars(results), "series": far}), 1.0)
 
 
 def test_an_animation_of_other_runs(tmp_path):
@@ -111,7 +111,7 @@ def test_an_animation_of_other_runs(tmp_path):
     for frame in wall_frames(wall_model(), 6):
         writer.frame(frame)
     writer.close(wall_summary())
-    assert plots.draw_all(tmp_path, tmp_path, animate=True)[-1] == tmp_path / "collapse.gif"
+    assert run_pictures.draw_all(tmp_path, tmp_path, animate=True)[-1] == tmp_path / "collapse.gif"
 
 
 def test_no_frames_no_animation(tmp_path):

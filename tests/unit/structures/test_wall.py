@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from dem_cli.geometry import polygon
-from dem_cli.structures.place import corner_blocks
+from dem_cli.structures.placement import corner_blocks
 from dem_cli.structures.wall import Wall, build
 
 

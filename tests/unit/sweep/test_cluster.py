@@ -50,5 +50,5 @@ def test_a_job_that_kills_its_workers(tmp_path):
     )
     found = sorted(line for line in done.stdout.splitlines() if line.startswith("result"))
     expected = [f"result {n} {n}" for n in range(6)]
-    expected[3] = "result 3 Died"
+    expected[3] = "result 3 WorkerDeath"
     assert found == expected, done.stderr

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from dem_cli.case.sweep import Sweep
 from dem_cli.errors import CaseError
-from dem_cli.sweep.forms import drawn, even, latin_hypercube
+from dem_cli.sweep.distributions import drawn, even, latin_hypercube
 from dem_cli.sweep.plan import plan_of
 
 FRICTION, COURSES = "joints.dry.friction", "structure.0.courses"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.sweep.pool import Died, each_done
+from dem_cli.sweep.pool import WorkerDeath, each_done
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -45,7 +45,7 @@ def test_a_death_is_tried_again_and_stops_nobody(tmp_path):
     tasks[3] = (3, str(tmp_path / "once"))
     tasks[7] = (7, str(tmp_path / "always"))
     found = dict(each_done(square_or_die, tasks, 2))
-    assert isinstance(found.pop(7), Died)
+    assert isinstance(found.pop(7), WorkerDeath)
     assert found == {n: n * n for n in range(12) if n != 7}
 
 

@@ -1,0 +1,174 @@
+"""Cross-references between the tables of a case: names that may be left out are filled in, the rest is checked.
+
+All but `check_names` work on the tables as read, so that slips are reported along with the validator's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from dem_cli.case.schema import Case
+from dem_cli.case.wording import either, listing, show, unknown_name
+from dem_cli.errors import CaseProblem, KeyPath, dotted
+
+ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
+
+
+def complete(data: dict[str, Any], title: str) -> None:
+    """Fill in, in place, the title, the only material and the ids of structures; a table alone becomes a list."""
+    if data.get("title", "") == "":
+        data["title"] = title
+    for key in ONE_OR_MORE:
+        if isinstance(data.get(key), dict):
+            data[key] = [data[key]]
+    materials = data.get("materials")
+    only = next(iter(materials)) if isinstance(materials, dict) and len(materials) == 1 else ""
+    tables = [table for _, table in entries(data, "structure")]
+    taken = {table.get("id") for table in tables if isinstance(table.get("id", 0), str)}
+    for table in tables + [table for _, table in entries(data, "block")]:
+        if only and table.get("material", "") == "":
+            table["material"] = only
+    for table in tables:
+        kind = table.get("kind")
+        if table.get("id", "") == "" and isinstance(kind, str):
+            number = 1
+            while (name := kind if number == 1 else f"{kind}{number}") in taken:
+                number += 1
+            table["id"] = name
+            taken.add(name)
+
+
+def problems(data: dict[str, Any]) -> list[CaseProblem]:
+    """Unknown or doubled names, and a case without blocks."""
+    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
+    for key in ("structure", "block"):
+        seen: dict[str, KeyPath] = {}
+        for path, table in entries(data, key):
+            name = table.get("id")
+            if isinstance(name, str) and name in seen:
+                message = f"{show(name)} is used twice, first at {dotted(seen[name])}"
+                found.append(CaseProblem((*path, "id"), message))
+            elif isinstance(name, str):
+                seen[name] = (*path, "id")
+    analysis = data["analysis"] if isinstance(data.get("analysis"), dict) else {}
+    live = [table for _, table in entries(data, "load") if table.get("kind") == "live"]
+    if analysis.get("pattern") == "live" and not live:
+        found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] with kind = 'live'"))
+    if analysis.get("kind") == "settlement" and not data.get("settlement"):
+        found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
+    if not data.get("structure") and not data.get("block"):
+        found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
+    return found
+
+
+def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Every `material` in a structure or a block, and where there are several, its absence."""
+    materials = names(data, "materials")
+    for key in ("structure", "block"):
+        for path, table in entries(data, key):
+            if materials and table.get("material", "") == "":
+                yield CaseProblem((*path, "material"), f"missing; must be {either(materials)}")
+            for place, name in mentions(table, path):
+                if materials and name not in materials:
+                    yield CaseProblem(place, unknown_name("material", name, materials))
+
+
+def mentions(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
+    """Where a material is named, at any depth."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key == "material" and isinstance(item, str) and item:
+                yield (*path, key), item
+            else:
+                yield from mentions(item, (*path, key))
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for i, item in enumerate(value):
+            yield from mentions(item, (*path, i))
+
+
+def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Materials and joints of [[interface]] tables that do not exist."""
+    materials, joints = names(data, "materials"), names(data, "joints")
+    for path, table in entries(data, "interface"):
+        between = table.get("between")
+        for i, name in enumerate(between if isinstance(between, list) else ()):
+            if isinstance(name, str) and name not in materials:
+                yield CaseProblem((*path, "between", i), unknown_name("material", name, materials))
+        joint = table.get("joint")
+        if isinstance(joint, str) and joint not in joints:
+            yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
+
+
+def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Structures of [[imperfection]] tables that do not exist."""
+    ids = [table["id"] for _, table in entries(data, "structure") if isinstance(table.get("id"), str)]
+    for path, table in entries(data, "imperfection"):
+        name = table.get("structure")
+        if isinstance(name, str) and name not in ids:
+            yield CaseProblem((*path, "structure"), unknown_name("structure", name, ids))
+
+
+def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
+    """The tables of an array of tables with their key paths; what is no table is left to the validator."""
+    tables = data.get(key)
+    pairs = enumerate(tables) if isinstance(tables, list) else ()
+    return [((key, i), table) for i, table in pairs if isinstance(table, dict)]
+
+
+def names(data: dict[str, Any], key: str) -> list[str]:
+    """Keys of a table of tables; none where it is no table."""
+    table = data.get(key)
+    return list(table) if isinstance(table, dict) else []
+
+
+def check_names(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None) -> list[CaseProblem]:
+    """Tables about blocks that do not exist, and settlements and motions of free blocks.
+
+    blocks  number of the block by its id and its aliases, known only after the structures are built
+    fixed   for each block, whether it is a support
+    """
+    found = [
+        CaseProblem((key, i, "block"), unknown_name("block", table.block, list(blocks)))
+        for key in ("imperfection", "load", "settlement", "monitor")
+        for i, table in enumerate(getattr(case, key))
+        if table.block is not None and table.block not in blocks
+    ]
+    found += [
+        CaseProblem(("monitor", i, "between", k), unknown_name("block", name, list(blocks)))
+        for i, monitor in enumerate(case.monitor)
+        for k, name in enumerate(monitor.between or ())
+        if name not in blocks
+    ]
+    for i, settlement in enumerate(case.settlement):
+        if fixed is not None and settlement.block in blocks and not fixed[blocks[settlement.block]]:
+            message = f"block {show(settlement.block)} is not fixed; only a fixed block can be moved"
+            found.append(CaseProblem(("settlement", i, "block"), message))
+    found += _initial_problems(case, blocks, fixed)
+    if case.damping is not None and case.damping.block is not None and case.damping.block not in blocks:
+        found.append(CaseProblem(("damping", "block"), unknown_name("block", case.damping.block, list(blocks))))
+    return [*found, *_motion_problems(case, blocks, fixed)]
+
+
+def _motion_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
+    """[[motion]] tables about blocks that do not exist or are not supports."""
+    supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
+    for i, motion in enumerate(case.motion):
+        for k, name in enumerate(motion.blocks):
+            path = ("motion", i, "blocks", k)
+            if name not in blocks:
+                yield CaseProblem(path, unknown_name("support", name, supports))
+            elif name not in supports:
+                message = f"block {show(name)} is not fixed; only a fixed block can be moved"
+                yield CaseProblem(path, f"{message} (fixed: {listing(supports)})")
+
+
+def _initial_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
+    """[[initial]] tables about blocks that do not exist or cannot move."""
+    for i, table in enumerate(case.initial):
+        for k, name in enumerate(table.names):
+            path = ("initial", i, "block") if table.block is not None else ("initial", i, "blocks", k)
+            if name not in blocks:
+                yield CaseProblem(path, unknown_name("block", name, list(blocks)))
+            elif fixed is not None and fixed[blocks[name]]:
+                yield CaseProblem(path, f"block {show(name)} is fixed; only blocks that can move have a start")

@@ -1,0 +1,142 @@
+"""Words of messages about a case: what may stand somewhere, the value found, the nearest name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
+
+import annotated_types as limits
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+MOST_NAMES = 24  # names beyond this are not listed
+# Kinds that are part of the format, but not of this version.
+FUTURE_KINDS = ("coursed-wall", "voronoi-wall")
+NUMBER_WORDS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
+TEXT_WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
+LIMIT_SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
+
+
+class DeclaredType(NamedTuple):
+    """A type as declared, without Annotated and None: the type and the limits on its value."""
+
+    type: Any
+    limits: tuple[Any, ...] = ()
+
+    @property
+    def choices(self) -> tuple[DeclaredType, ...]:
+        """The members of a union; of anything else, itself."""
+        if get_origin(self.type) not in (Union, UnionType):
+            return (self,)
+        return tuple(choice for member in get_args(self.type) for choice in kind_of(member).choices)
+
+
+def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> DeclaredType:
+    """Take Annotated and None off a declared type, keeping the limits."""
+    found = list(metadata)
+    while True:
+        arguments = get_args(declared)
+        if get_origin(declared) is Annotated:
+            declared = arguments[0]
+            found += arguments[1:]
+        elif NoneType in arguments and get_origin(declared) in (Union, UnionType):
+            members = tuple(member for member in arguments if member is not NoneType)
+            declared = Union[members]  # noqa: UP007 (a tuple of members)
+        else:
+            parts = [item.metadata if isinstance(item, FieldInfo) else (item,) for item in found]
+            return DeclaredType(declared, tuple(part for some in parts for part in some))
+
+
+def is_table(declared: Any) -> bool:
+    """Whether a declared type is a table of the case file."""
+    return isinstance(declared, type) and issubclass(declared, BaseModel)
+
+
+def allowed(kinds: Iterable[DeclaredType], many: bool = False) -> str:
+    """What may stand there: `a number > 0 or 'auto'`."""
+    choices = [choice for kind in kinds for choice in kind.choices]
+    return " or ".join(dict.fromkeys(allowed_one(choice, many) for choice in choices))
+
+
+def allowed_one(kind: DeclaredType, many: bool = False) -> str:
+    """The words for one kind; `many` for the plural."""
+    declared, arguments, origin = kind.type, get_args(kind.type), get_origin(kind.type)
+    pairs = [(limit, sign) for sign in LIMIT_SIGNS for limit in kind.limits if isinstance(limit, sign)]
+    bounds = [f"{LIMIT_SIGNS[sign][1]} {show(getattr(limit, LIMIT_SIGNS[sign][0]))}" for limit, sign in pairs]
+    least = next((limit.min_length for limit in kind.limits if isinstance(limit, limits.MinLen)), 0)
+    if declared in NUMBER_WORDS:
+        return " ".join([NUMBER_WORDS[declared][many], " and ".join(bounds)]).strip()
+    if declared is str and least:
+        return "non-empty strings" if many else "a non-empty string"
+    if declared in TEXT_WORDS:
+        return TEXT_WORDS[declared][many]
+    if origin is Literal:
+        return either(arguments)
+    if origin is dict or is_table(declared):
+        return "tables" if many else "a table" + (" with at least one entry" if least else "")
+    if origin in (tuple, list):
+        variable = origin is list or arguments[-1] is Ellipsis
+        count = (f"at least {least} " if least else "") if variable else f"{len(arguments)} "
+        return f"{'lists' if many else 'a list'} of {count}{allowed((kind_of(arguments[0]),), many=True)}"
+    return "something else"
+
+
+def literals(kinds: Iterable[DeclaredType]) -> list[str]:
+    """The names that may stand there."""
+    choices = [choice.type for kind in kinds for choice in kind.choices]
+    return [name for choice in choices if get_origin(choice) is Literal for name in get_args(choice)]
+
+
+def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
+    """`-3 is not allowed; must be an integer ≥ 1`, with a hint for a name nearly right."""
+    kinds = tuple(kinds)
+    hint = nearest(value, literals(kinds)) if isinstance(value, str) else ""
+    must = f"must be {allowed(kinds)}"
+    return f"{show(value)} is not allowed" + (f", {hint} ({must})" if hint else f"; {must}")
+
+
+def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
+    """`unknown law 'colomb', did you mean 'coulomb'? (allowed: 'coulomb')`"""
+    if value in FUTURE_KINDS:
+        return f"{show(value)} is not available yet in this version (allowed: {listing(names)})"
+    hint = nearest(value, names)
+    return f"unknown {what} {show(value)}{hint and ', ' + hint} (allowed: {listing(names)})"
+
+
+def nearest(value: Any, names: Iterable[Any]) -> str:
+    """`did you mean 'x'?`, or nothing when no name is near."""
+    close = get_close_matches(str(value), [str(name) for name in names], 1, 0.6)
+    return f"did you mean '{close[0]}'?" if close else ""
+
+
+def listing(names: Iterable[Any]) -> str:
+    """Names to choose from; of very many the first few."""
+    words = [show(name) for name in names]
+    if len(words) > MOST_NAMES:
+        return f"{', '.join(words[:6])}, ... {len(words)} in all"
+    return ", ".join(words) or "none"
+
+
+def either(names: Sequence[Any]) -> str:
+    """'a', 'b' or 'c'"""
+    words = [show(name) for name in names]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+
+
+def show(value: Any) -> str:
+    """A value as it stands in the file, not longer than a glance."""
+    if isinstance(value, str):
+        text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
+    elif isinstance(value, bool):
+        text = "true" if value else "false"
+    elif isinstance(value, float):
+        text = f"{value:.12g}"
+    elif isinstance(value, dict):
+        text = "a table" if value else "an empty table"
+    elif isinstance(value, (list, tuple)):
+        text = f"[{', '.join(show(item) for item in value)}]"
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,193 @@
+"""Accelerogram files: columns of time and value (CSV and its kin), and the AT2, VT2, DT2 files of PEER.
+
+Errors are RecordError: one message with the file, the line and what is wrong.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+EVEN_SHARE, EVEN_WITHIN = 0.8, 0.4  # so many steps that close to the median make a record that is meant to be even
+GAP = 1.6  # steps of the median: longer is a gap in such a record
+FEWEST = 20  # rows below which any steps are taken as meant
+PEER_QUANTITIES = {"ACCELERATION": "acceleration", "VELOCITY": "velocity", "DISPLACEMENT": "displacement"}
+PEER_UNITS = {"G": "g", "CM/S": "cm/s", "CM/SEC": "cm/s", "CM": "cm", "CM/S2": "cm/s2", "M/S2": "m/s2"}
+PEER_COUNT = re.compile(r"NPTS\s*=?\s*(\d+)", re.IGNORECASE)
+PEER_STEP = re.compile(r"DT\s*=?\s*([0-9.]+(?:E[-+]?\d+)?)", re.IGNORECASE)
+PEER_OLD = re.compile(r"^\s*(\d+)\s+([0-9.]+(?:E[-+]?\d+)?)\s+NPTS", re.IGNORECASE)
+
+
+class RecordError(ValueError):
+    """A record that cannot be used; the message says which file, where in it, and why."""
+
+
+class RecordSamples(NamedTuple):
+    """Samples as they stand in a file."""
+
+    times: np.ndarray  # [s], (n,)
+    values: np.ndarray  # in `unit`, (n,)
+    quantity: str | None = None  # as a PEER header says; None: the file does not say
+    unit: str | None = None
+
+
+def read_series(
+    path: Path, step: float | None = None, column: int | None = None, uneven: bool = False
+) -> RecordSamples:
+    """The samples in a file. Raises RecordError.
+
+    step    time step of a file that has values only [s]
+    column  number of the column with the values, the first one is 1; may be left out when there is no choice
+    uneven  steps that differ are meant: no gaps are looked for
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise RecordError(f"{path.name}: not a text file (byte {error.start})") from None
+    except OSError as error:
+        raise RecordError(f"{path.name}: cannot be read ({error.strerror or error})") from None
+    lines = text.splitlines()
+    if any(PEER_COUNT.search(line) or PEER_OLD.search(line) for line in lines[:8]):
+        return _peer(path.name, lines)
+    rows, numbers = _rows(path.name, lines)
+    if step is None:
+        times, values = _two_columns(path.name, rows, numbers, column)
+        _check_times(path.name, times, numbers, uneven)
+    else:
+        values = _column(path.name, rows, numbers, column)
+        times = step * np.arange(len(values))
+    return RecordSamples(times, values)
+
+
+def _rows(name: str, lines: list[str]) -> tuple[list[list[float]], list[int]]:
+    """The numbers in each line that has any, and the numbers of these lines."""
+    rows: list[list[float]] = []
+    numbers: list[int] = []
+    for number, line in enumerate(lines, 1):
+        fields = _fields(line)
+        if not fields:
+            continue
+        try:
+            row = [float(field) for field in fields]
+        except ValueError:
+            if not rows and not any(map(_is_number, fields)):
+                continue  # a header
+            wrong = next(field for field in fields if not _is_number(field))
+            raise RecordError(f"{name}:{number}: '{wrong[:40]}' is not a number") from None
+        if not all(map(math.isfinite, row)):
+            wrong = next(field for field, value in zip(fields, row) if not math.isfinite(value))
+            raise RecordError(f"{name}:{number}: '{wrong}' is not allowed; a record has finite numbers only")
+        if rows and len(row) != len(rows[0]):
+            columns = f"{len(row)} column{'s' * (len(row) > 1)} where the lines above have {len(rows[0])}"
+            raise RecordError(f"{name}:{number}: {columns}")
+        rows.append(row)
+        numbers.append(number)
+    if len(rows) < 2:
+        found = "no numbers" if not rows else "a single row of numbers"
+        raise RecordError(f"{name}: {found}; a record has at least two")
+    return rows, numbers
+
+
+def _fields(line: str) -> list[str]:
+    """What stands between the separators of a line: ';', tab, ',' or blanks; beside the first two ',' is decimal."""
+    line = line.partition("#")[0].strip()
+    if ";" in line or "\t" in line:
+        fields = [field.strip().replace(",", ".") for field in re.split(r"[;\t]", line)]
+    elif "," in line:
+        fields = [field.strip() for field in line.split(",")]
+    else:
+        return line.split()
+    while fields and not fields[-1]:  # a separator at the end of the line
+        fields.pop()
+    return fields
+
+
+def _is_number(field: str) -> bool:
+    try:
+        float(field)
+    except ValueError:
+        return False
+    return True
+
+
+def _two_columns(
+    name: str, rows: list[list[float]], numbers: list[int], column: int | None
+) -> tuple[np.ndarray, np.ndarray]:
+    width = len(rows[0])
+    if width == 1:
+        raise RecordError(f"{name}:{numbers[0]}: one column; time and value are two, or give step = ... [s]")
+    if column == 1:
+        raise RecordError(f"{name}: column 1 is the time; values stand in another one")
+    if width > 2 and column is None:
+        raise RecordError(f"{name}:{numbers[0]}: {width} columns; say which one holds the values, such as column = 2")
+    return np.array([row[0] for row in rows]), _column(name, rows, numbers, column or 2)
+
+
+def _column(name: str, rows: list[list[float]], numbers: list[int], column: int | None) -> np.ndarray:
+    width = len(rows[0])
+    if column is not None and column > width:
+        raise RecordError(f"{name}:{numbers[0]}: there is no column {column}, only {width}")
+    if column is None and width > 1:
+        raise RecordError(f"{name}:{numbers[0]}: {width} columns; beside 'step' there is one, or say column = ...")
+    return np.array([row[(column or 1) - 1] for row in rows])
+
+
+def _check_times(name: str, times: np.ndarray, numbers: list[int], uneven: bool) -> None:
+    """Raises RecordError where time does not increase, or makes a jump in a record that is even otherwise."""
+    steps = np.diff(times)
+    back = np.flatnonzero(steps <= 0.0)
+    if back.size:
+        i = back[0] + 1
+        raise RecordError(f"{name}:{numbers[i]}: time does not increase ({times[i]:g} s after {times[i - 1]:g} s)")
+    median = float(np.median(steps))
+    even = np.abs(steps - median) <= EVEN_WITHIN * median
+    gaps = np.flatnonzero(steps > GAP * median)
+    if uneven or len(times) < FEWEST or even.mean() < EVEN_SHARE or not gaps.size:
+        return
+    i = gaps[0] + 1
+    more = f", and {gaps.size - 1} more gaps" if gaps.size > 1 else ""
+    raise RecordError(
+        f"{name}:{numbers[i]}: a gap in time, from {times[i - 1]:g} s to {times[i]:g} s where the step is {median:g} s"
+        f"{more}; uneven = true if that is meant"
+    )
+
+
+def _peer(name: str, lines: list[str]) -> RecordSamples:
+    """A file of the PEER strong-motion database: header with NPTS and DT, then values, several in a line."""
+    at = next(i for i, line in enumerate(lines[:8]) if PEER_COUNT.search(line) or PEER_OLD.search(line))
+    old = PEER_OLD.search(lines[at])
+    count_found, step_found = PEER_COUNT.search(lines[at]), PEER_STEP.search(lines[at])
+    if old:
+        count, step = int(old[1]), float(old[2])
+    elif count_found and step_found:
+        count, step = int(count_found[1]), float(step_found[1])
+    else:
+        raise RecordError(f"{name}:{at + 1}: DT is missing beside NPTS")
+    if step <= 0.0:
+        raise RecordError(f"{name}:{at + 1}: DT = {step:g} is not allowed; must be > 0")
+    values: list[float] = []
+    for number, line in enumerate(lines[at + 1 :], at + 2):
+        for field in line.split():
+            if not _is_number(field):
+                raise RecordError(f"{name}:{number}: '{field[:40]}' is not a number")
+            values.append(float(field))
+            if not math.isfinite(values[-1]):
+                raise RecordError(f"{name}:{number}: '{field}' is not allowed; a record has finite numbers only")
+    if len(values) != count:
+        raise RecordError(f"{name}:{at + 1}: NPTS says {count} values, the file has {len(values)}")
+    if count < 2:
+        raise RecordError(f"{name}:{at + 1}: NPTS = {count}; a record has at least two values")
+    quantity, unit = _peer_quantity("\n".join(lines[:at]).upper())
+    return RecordSamples(step * np.arange(count), np.array(values), quantity, unit)
+
+
+def _peer_quantity(header: str) -> tuple[str | None, str | None]:
+    """Quantity and unit by the line `ACCELERATION TIME SERIES IN UNITS OF G`."""
+    said = re.search(r"(ACCELERATION|VELOCITY|DISPLACEMENT)[^\n]*?UNITS?\s+OF\s+(\S+)", header)
+    if not said:
+        return None, None
+    return PEER_QUANTITIES[said[1]], PEER_UNITS.get(said[2].rstrip(".,"))

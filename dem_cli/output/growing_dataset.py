@@ -1,0 +1,57 @@
+"""Datasets of an HDF5 group that grow row by row; handles are kept: opening one costs more than a row."""
+
+from __future__ import annotations
+
+import h5py
+import numpy as np
+from h5py import h5s
+
+_CHUNK_BYTES = 32768
+_FEWEST_ROWS = 64
+
+
+class GrowingDataset:
+    """HDF5 dataset that grows row by row."""
+
+    def __init__(self, group: h5py.Group, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int):
+        width = tuple(max(1, size) for size in shape)
+        row_bytes = dtype.itemsize * int(np.prod(width))
+        chunk = max(1, min(max(_FEWEST_ROWS, n_rows), _CHUNK_BYTES // row_bytes))
+        data = group.create_dataset(name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *width))
+        self.id, self.shape, self.dtype, self.length = data.id, shape, dtype, 0
+
+    def append(self, rows: np.ndarray) -> int:
+        """Add rows; returns the length that there was before."""
+        start = self.length
+        self.length = start + len(rows)
+        if len(rows):
+            self.id.set_extent((self.length, *self.shape))
+            space = self.id.get_space()
+            space.select_hyperslab((start, *(0 for _ in self.shape)), rows.shape)
+            self.id.write(h5s.create_simple(rows.shape), space, np.ascontiguousarray(rows, dtype=self.dtype))
+        return start
+
+
+class GrowingGroup:
+    """The growing datasets of one group, made when they first get rows."""
+
+    def __init__(self, group: h5py.Group):
+        self.group = group
+        self._columns: dict[str, GrowingDataset] = {}
+
+    def append(self, name: str, rows: np.ndarray) -> int:
+        """Add rows to the dataset `name` (a path inside the group); returns the length that it had."""
+        rows = np.asarray(rows)
+        column = self._columns.get(name)
+        if column is None:
+            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, len(rows))
+            self._columns[name] = column
+        return column.append(rows)
+
+    def append_one(self, name: str, value: float, dtype: type = np.int64) -> int:
+        """Add a single number."""
+        return self.append(name, np.array([value], dtype=dtype))
+
+    def link(self, name: str, target: str) -> None:
+        """Let `name` be another name of the dataset `target`."""
+        self.group[name] = self.group[target]

@@ -1,0 +1,33 @@
+"""Vertices of the blocks in space and their velocities, for files and pictures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.geometry.rotation import matrices, swept
+from dem_cli.model.model import Model
+
+
+def placed_vertices(model: Model, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+    """Corners in space [m], (n_vertices, d)."""
+    blocks = model.vertex_blocks
+    turned = np.einsum("nij,nj->ni", matrices(orientations)[blocks], model.vertices)
+    return positions[blocks] + turned
+
+
+def rest_vertices(model: Model) -> np.ndarray:
+    """Corners of the undeformed structure [m], (n_vertices, d)."""
+    return model.centroids[model.vertex_blocks] + model.vertices
+
+
+def vertex_velocities(model: Model, vertices: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    """Velocity of each corner, (n_vertices, d), from the generalised velocities of the blocks."""
+    blocks, d = model.vertex_blocks, model.dimension
+    return velocities[blocks, :d] + swept(velocities[blocks, d:], vertices - positions[blocks])
+
+
+def in_space(vectors: np.ndarray) -> np.ndarray:
+    """Vectors as VTK wants them: three float32 components, the third one zero in 2D."""
+    out = np.zeros((len(vectors), 3), dtype=np.float32)
+    out[:, : vectors.shape[1]] = vectors
+    return out

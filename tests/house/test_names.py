@@ -1,0 +1,29 @@
+"""Names say what they are: no class name twice in the package, no file that could hold anything."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MODULES = sorted((ROOT / "dem_cli").rglob("*.py"))
+SAY_NOTHING = {"common", "core", "data", "helper", "helpers", "lib", "manager", "misc", "stuff",
+               "tools", "util", "utils"}  # fmt: skip
+
+
+def classes() -> dict[str, list[str]]:
+    """Files of each class, by its name."""
+    found: dict[str, list[str]] = {}
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    return found
+
+
+def test_no_class_name_twice():
+    assert not {name: files for name, files in classes().items() if len(files) > 1}
+
+
+def test_no_file_that_could_hold_anything():
+    assert not [str(path) for path in MODULES if path.stem in SAY_NOTHING]
