@@ -44,7 +44,9 @@ def describe(case: Case, model: Model) -> Rows:
     properties = joint_properties(case, model, _ratio(case, model))
 
     def simulation(kinematics: str) -> Simulation:
-        return Simulation(model, law_of(case), properties, kinematics, live_scale=scale, tilting=tilting, safety=1.0)
+        sim = Simulation(model, law_of(case), properties, kinematics, live_scale=scale, tilting=tilting)
+        sim.use(1.0)  # masses at the limit of stability
+        return sim
 
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None

@@ -51,12 +51,14 @@ class Site(NamedTuple):
     level: np.ndarray  # blocks that stand upright, (n_blocks,) bool
 
 
-class Imperfect(NamedTuple):
+class ImperfectBlocks(NamedTuple):
+    """Blocks with the errors of [[imperfection]]."""
+
     blocks: list[Block]  # with errors, in the same order
     doubts: list[CaseProblem]  # what looks like a slip
 
 
-def imperfect(case: Case, model: Model, blocks: Sequence[Block]) -> Imperfect:
+def imperfect(case: Case, model: Model, blocks: Sequence[Block]) -> ImperfectBlocks:
     """The blocks with all errors of the case. Raises CaseError: errors that leave nothing of a block, and the like.
 
     model: of the blocks as drawn, their order, names, corners and parts
@@ -79,7 +81,7 @@ def imperfect(case: Case, model: Model, blocks: Sequence[Block]) -> Imperfect:
     if left:
         corners = _misshapen(site, corners, _sum(site, left))
     parts = iter(np.split(corners, model.part_starts[1:-1]))
-    return Imperfect([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
+    return ImperfectBlocks([replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks], doubts)
 
 
 def _site(case: Case, model: Model, blocks: Sequence[Block]) -> Site:

@@ -125,8 +125,9 @@ def execute(
 
     with console.Progress(quiet) as bar:
         listener = TerminalListener(bar, quiet, plot)
+        destination = execution.Destination(output, force=force)
         return execution.execute(
-            loaded, model, output, started, force=force, solve=solve, options=options, listener=listener
+            loaded, model, destination, started, solve=solve, options=options, listener=listener
         )
 
 

@@ -1,0 +1,1 @@
+"""Contact: which faces meet, contact points between them, and what these remember."""

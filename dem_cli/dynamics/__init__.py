@@ -1,0 +1,1 @@
+"""Time histories: real masses, ground motion, damping, frequencies, collapse."""

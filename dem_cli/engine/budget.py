@@ -14,6 +14,7 @@ class Budget:
     left: int
 
     def spend(self, steps: int, doing: str) -> None:
+        """Takes steps off. Raises SolverError when more are spent than there were."""
         self.left -= steps
         if self.left < 0:
             raise SolverError(f"gave up {doing}: all steps of analysis.max_steps are used up")

@@ -28,27 +28,33 @@ class Clock(Observer):
         self.observer = observer
 
     def frame(self, frame: Frame) -> None:
+        """Hands on a frame, off the clock."""
         begun = time.perf_counter()
         self.observer.frame(frame)
         self.observing += time.perf_counter() - begun
 
     def row(self, row: HistoryRow) -> None:
+        """Hands on a row, off the clock."""
         begun = time.perf_counter()
         self.observer.row(row)
         self.observing += time.perf_counter() - begun
 
     def samples(self, samples: Samples) -> None:
+        """Hands on samples, off the clock."""
         begun = time.perf_counter()
         self.observer.samples(samples)
         self.observing += time.perf_counter() - begun
 
     def runs(self, rows: Sequence[RunRow]) -> None:
+        """Hands on the table of all runs."""
         self.observer.runs(rows)
 
     def structure(self, model: Model) -> None:
+        """Hands on another structure."""
         self.observer.structure(model)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Hands on where the run stands, off the clock."""
         begun = time.perf_counter()
         self.observer.progress(stage, load, displacement, fraction)
         self.observing += time.perf_counter() - begun
@@ -71,6 +77,7 @@ class Clock(Observer):
         self.compiling += time.perf_counter() - begun
 
     def seconds(self) -> float:
+        """Seconds of solving so far."""
         return time.perf_counter() - self.started - self.compiling - self.observing
 
 

@@ -37,16 +37,22 @@ class DynamicSimulation(Simulation):
     """
 
     def __init__(
-        self, model: Model, law: Law, properties: JointProperties, damping: Damping,
-        settings: Settings = DEFAULT,
-    ):  # fmt: skip
+        self, model: Model, law: Law, properties: JointProperties, damping: Damping, settings: Settings = DEFAULT
+    ):
         self.damping = damping
         self.real, self.dt = False, 1.0
         self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
-        n_damped = model.dimension * (1 + len(damping.elements)) if damping.in_joints else 0
-        super().__init__(
-            model, law, properties, "large", n_damped=n_damped, skin=settings.detection.wide_skin, settings=settings
-        )
+        super().__init__(model, law, properties, "large", settings=settings)
+
+    @property
+    def n_damped(self) -> int:
+        """Numbers that dashpots and Maxwell elements remember of each contact point."""
+        return self.model.dimension * (1 + len(self.damping.elements)) if self.damping.in_joints else 0
+
+    @property
+    def skin(self) -> float:
+        """Reach of detection of blocks that rock far, in smallest edges."""
+        return self.settings.detection.wide_skin
 
     # -- from pseudo-time to time ------------------------------------------------------------------
 
@@ -76,6 +82,7 @@ class DynamicSimulation(Simulation):
         self.bodies.velocities[self.free] -= 0.5 * change
 
     def set_masses(self) -> None:
+        """Fictitious masses, as long as masses are not real."""
         if not self.real:
             super().set_masses()
 

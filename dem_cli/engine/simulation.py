@@ -68,9 +68,6 @@ class Simulation:
 
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
-    n_damped    numbers that the dampers of a time history remember of each point
-    safety      of the fictitious masses (None: that of a creep)
-    skin        reach of detection, in smallest edges (None: that of the settings)
     """
 
     def __init__(
@@ -81,17 +78,12 @@ class Simulation:
         kinematics: str = "fixed",
         live_scale: float = 1.0,
         tilting: bool = False,
-        safety: float | None = None,
-        n_damped: int = 0,
-        skin: float | None = None,
         settings: Settings = DEFAULT,
     ):
         self.settings, relaxation = settings, settings.relaxation
-        skin = settings.detection.skin if skin is None else skin
-        safety = relaxation.creep_safety if safety is None else safety
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
-        self.live_scale, self.tilting, self.safety = live_scale, tilting, safety
+        self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         n = model.n_blocks
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -125,13 +117,23 @@ class Simulation:
         self.steps = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
-        self.tracking = self._track(law.n_memory(model.dimension) + n_damped, skin * self.smallest)
+        self.tracking = self._track(law.n_memory(model.dimension) + self.n_damped, self.skin * self.smallest)
         self.control[slot.TRAVEL_LIMIT] = 0.5 * self.tracking.reach
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = self._play()
         self.first_places = self.places()
+
+    @property
+    def n_damped(self) -> int:
+        """Numbers that dampers remember of each contact point."""
+        return 0
+
+    @property
+    def skin(self) -> float:
+        """Reach of detection, in smallest edges."""
+        return self.settings.detection.skin
 
     def _track(self, n_memory: int, reach: float) -> JointTracking:
         """The joints of the blocks where they start."""
@@ -272,6 +274,7 @@ class Simulation:
 
     @property
     def creep_mode(self) -> int:
+        """The mode of a creep (kernels.records)."""
         return slot.TILT_CREEP if self.tilting else slot.CREEP
 
     @property

@@ -1,0 +1,1 @@
+"""Many runs: variants of a structure, records, capacities and their distribution."""

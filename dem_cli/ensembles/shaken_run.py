@@ -50,6 +50,7 @@ class ProgressOnly(Observer):
         self.observer = observer
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Hands on where the run stands."""
         self.observer.progress(stage, load, displacement, fraction)
 
 

@@ -1,0 +1,1 @@
+"""Geometry in numpy: polygons, topology, rotation, profiles."""

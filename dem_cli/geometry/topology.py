@@ -22,6 +22,7 @@ class Topology(NamedTuple):
 
     @property
     def n_faces(self) -> int:
+        """Number of faces of all parts."""
         return len(self.face_starts) - 1
 
     @property

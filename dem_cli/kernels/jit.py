@@ -15,6 +15,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, Protocol, cast
 
 import numba
 from numba.extending import overload, register_jitable
@@ -44,7 +45,7 @@ def _writable(folder: Path) -> bool:
 
 def cache_folder() -> Path:
     """Where compiled code is kept: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
-    home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     folder = Path(home) / "dem-cli" / _source_hash()
     if _writable(folder):
         return folder
@@ -77,9 +78,19 @@ vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
 _load_numba_without_blas()
 
 
-def kernel(function: Callable) -> Callable:
+class CompiledKernel(Protocol):
+    """A compiled function, and the Python function that it was compiled from."""
+
+    py_func: Callable
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
+
+
+def kernel(function: Callable) -> CompiledKernel:
     """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
-    return numba.njit(cache=True, error_model="numpy", fastmath=False, nogil=True)(function)
+    compiled = numba.njit(cache=True, error_model="numpy", fastmath=False, nogil=True)(function)
+    return cast(CompiledKernel, compiled)
 
 
 inline = register_jitable

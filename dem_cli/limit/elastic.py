@@ -103,6 +103,7 @@ class Elastic:
 
     @property
     def n_points(self) -> int:
+        """Number of contact points."""
         return len(self.kn)
 
     def _pattern(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:

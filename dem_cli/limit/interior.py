@@ -25,6 +25,7 @@ class Iterate:
     x: np.ndarray  # N, c₊, c₋, p, a₊, a₋, all positive, (6·n_points,)
 
     def copy(self) -> Iterate:
+        """The same, to be kept."""
         return Iterate(self.u.copy(), self.load, self.shear.copy(), self.x.copy())
 
 

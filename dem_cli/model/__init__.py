@@ -1,0 +1,1 @@
+"""The model of a structure: arrays only."""

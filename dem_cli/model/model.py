@@ -46,10 +46,12 @@ class Model(ModelArrays):
 
     @property
     def n_blocks(self) -> int:
+        """Number of blocks."""
         return len(self.block_ids)
 
     @property
     def n_parts(self) -> int:
+        """Number of convex parts of all blocks."""
         return len(self.part_blocks)
 
     @cached_property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -37,14 +38,21 @@ Solve = Callable[["Case", "Model", "Observer"], SolverOutcome]
 RunOutcome = tuple[dict[str, Any], Path]  # the summary, and the folder with the results
 
 
+@dataclass(frozen=True)
+class Destination:
+    """Where the results of a run go, and what to do with what is there (output/folder.py: OutputFolder)."""
+
+    output: Path
+    force: bool = False  # write among files that dem did not write
+    recover: bool = True  # look after the leftovers of a killed run
+
+
 def run_case(
     loaded: LoadedCase,
-    output: Path,
+    destination: Destination,
     started: float,
     *,
-    force: bool = False,
     options: BatchOptions | None = None,
-    recover: bool = True,
     listener: RunListener | None = None,
     interrupts: Interrupts | None = None,
 ) -> RunOutcome:
@@ -54,11 +62,9 @@ def run_case(
     return execute(
         loaded,
         api.build_model(loaded),
-        output,
+        destination,
         started,
-        force=force,
         options=options,
-        recover=recover,
         listener=listener,
         interrupts=interrupts,
     )
@@ -67,19 +73,17 @@ def run_case(
 def execute(
     loaded: LoadedCase,
     model: Model,
-    output: Path,
+    destination: Destination,
     started: float,
     *,
-    force: bool = False,
     solve: Solve | None = None,
     options: BatchOptions | None = None,
-    recover: bool = True,
     listener: RunListener | None = None,
     interrupts: Interrupts | None = None,
 ) -> RunOutcome:
-    """Solve a built case and write its results; nothing is left in `output` where it fails.
+    """Solve a built case and write its results; nothing is left where it fails.
 
-    started: time.perf_counter() when the work began. force, recover: as OutputFolder. solve: another solver.
+    started: time.perf_counter() when the work began. solve: another solver.
     Raises CaseError, UsageError and OutputError; a solver that gives up is the status "not converged", and one that
     is interrupted has "interrupted", with the results so far (KeyboardInterrupt where there are none).
     """
@@ -92,10 +96,11 @@ def execute(
     case, names = loaded.case, monitor_names(loaded.case.monitor)
     with loaded.located():
         check_quantities(case, names)
-    with interrupts or Interrupts() as stops, OutputFolder(output, force=force, recover=recover) as folder:
+    results = OutputFolder(destination.output, force=destination.force, recover=destination.recover)
+    with interrupts or Interrupts() as stops, results as folder:
         with stops.shielded():
             text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
-            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, output, quantities)
+            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
         with (
             abandoning(writer),
             loaded.located(),

@@ -38,7 +38,7 @@ def _solved(
 ) -> dict[str, Any]:
     from dem_cli import api
     from dem_cli.pipeline.batches import BatchOptions
-    from dem_cli.pipeline.execution import run_case
+    from dem_cli.pipeline.execution import Destination, run_case
 
     started = time.perf_counter()
     loaded = api.load_case(path, overrides, text)
@@ -46,7 +46,7 @@ def _solved(
     with nullcontext(folder) if folder is not None else tempfile.TemporaryDirectory() as place:
         output = Path(place) if kept else Path(place) / "results"
         options = BatchOptions(threads=1, resume=kept)  # what a killed one of many runs left is taken up
-        return run_case(loaded, output, started, force=kept, options=options, recover=not kept)[0]
+        return run_case(loaded, Destination(output, force=kept, recover=not kept), started, options=options)[0]
 
 
 def do_job(job: SweepJob) -> Summary:

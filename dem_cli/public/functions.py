@@ -16,7 +16,7 @@ from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import text_of_tables
 from dem_cli.errors import UsageError
 from dem_cli.pipeline.batches import BatchOptions, check
-from dem_cli.pipeline.execution import one_of_many, run_case
+from dem_cli.pipeline.execution import Destination, one_of_many, run_case
 from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.public.result import Result
@@ -77,11 +77,9 @@ def run(
     try:
         summary, folder = run_case(
             loaded,
-            output,
+            Destination(output, force=force, recover=place is None),
             started,
-            force=force,
             options=options,
-            recover=place is None,
             listener=ProgressListener(progress),
             interrupts=Interrupts(("SIGINT",), ends_program=False),
         )

@@ -1,0 +1,1 @@
+"""Statics: equilibrium, failure and its proof, failure load, post-peak path."""

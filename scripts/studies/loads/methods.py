@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.associated import OK, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 
@@ -28,7 +28,10 @@ from dem_cli.output.record import Observer
 # Where joints slide in another order, another load is reached: increments must be small enough for it to settle.
 FINE_WAYS = ((0.25, 1.25), (0.2, 1.15), (0.3, 1.4))
 FINE_ATTEMPTS = ((1.0, 0), (0.92, 0), (0.84, 0), (1.0, 4), (0.92, 4), (1.3, 0), (1.3, 4), (2.0, 0))
-FINE_PLATEAU = 1e-4
+FINE = replace(
+    DEFAULT_LIMIT,
+    path=replace(DEFAULT_LIMIT.path, ways=FINE_WAYS, attempts=FINE_ATTEMPTS, slower=FINE_WAYS[0][1], plateau=1e-4),
+)
 
 
 @dataclass
@@ -76,30 +79,18 @@ def measure(file: Path, overrides: Sequence[str] = (), default: bool = True) -> 
     row = CaseLoads(f"{file.parent.name}/{file.stem}", int((~model.fixed).sum()), associated)
     if bound.status == OK:
         row.path = by_path(structure, friction)
-        with fine_increments():
-            row.fine = by_path(structure, friction, FINE_PLATEAU)
+        row.fine = by_path(structure, friction, FINE)
     row.gravity = explicit(row, *loaded(file, [*overrides, "analysis.start=gravity"]))
     if default:
         row.default = explicit(row, case, model)
     return row
 
 
-def by_path(structure: Structure, friction: np.ndarray, plateau: float = paths.PLATEAU) -> MethodLoad:
+def by_path(structure: Structure, friction: np.ndarray, settings: LimitSettings = DEFAULT_LIMIT) -> MethodLoad:
     """The load of joints that do not dilate: where it grows no more, and the highest on the way there."""
-    path, seconds = timed(lambda: paths.trace(structure, friction, plateau))
+    path, seconds = timed(lambda: paths.trace(structure, friction, settings=settings))
     ok = path.status == paths.OK
     return MethodLoad(path.status, path.load if ok else None, max(path.loads, default=None), seconds=seconds)
-
-
-@contextmanager
-def fine_increments() -> Iterator[None]:
-    """The path with FINE_WAYS and FINE_ATTEMPTS for a while."""
-    usual = paths.WAYS, paths.ATTEMPTS, paths.SLOWER
-    paths.WAYS, paths.ATTEMPTS, paths.SLOWER = FINE_WAYS, FINE_ATTEMPTS, FINE_WAYS[0][1]
-    try:
-        yield
-    finally:
-        paths.WAYS, paths.ATTEMPTS, paths.SLOWER = usual
 
 
 def loaded(file: Path, overrides: Sequence[str]) -> tuple[Case, Model]:
