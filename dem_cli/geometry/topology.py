@@ -6,14 +6,16 @@ faces are one thing.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from dem_cli.geometry import polygon
 
 
-class Topology(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Topology:
     """Which corners bound which face of which convex part."""
 
     part_faces: np.ndarray  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
@@ -25,12 +27,12 @@ class Topology(NamedTuple):
         """Number of faces of all parts."""
         return len(self.face_starts) - 1
 
-    @property
+    @cached_property
     def face_parts(self) -> np.ndarray:
         """Part of each face, (n_faces,)."""
         return np.repeat(np.arange(len(self.part_faces) - 1), np.diff(self.part_faces))
 
-    @property
+    @cached_property
     def ends(self) -> np.ndarray:
         """First and last corner of each face, (n_faces, 2): in the plane the ends of the edge."""
         return np.column_stack([self.face_corners[self.face_starts[:-1]], self.face_corners[self.face_starts[1:] - 1]])
