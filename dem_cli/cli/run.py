@@ -126,9 +126,7 @@ def execute(
     with console.Progress(quiet) as bar:
         listener = TerminalListener(bar, quiet, plot)
         destination = execution.Destination(output, force=force)
-        return execution.execute(
-            loaded, model, destination, started, solve=solve, options=options, listener=listener
-        )
+        return execution.execute(loaded, model, destination, started, solve=solve, options=options, listener=listener)
 
 
 def draw(folder: Path, quiet: bool) -> None:

@@ -92,7 +92,7 @@ def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaPr
     first = np.zeros((n_groups, 2))
     first[groups[::-1]] = parts.centroid[::-1]  # a point of each body, against loss of digits
     local = parts.centroid - first[groups]
-    shift = np.stack([np.bincount(groups, parts.area * local[:, k], n_groups) for k in (0, 1)], axis=1)
+    shift: np.ndarray = np.stack([np.bincount(groups, parts.area * local[:, k], n_groups) for k in (0, 1)], axis=1)
     shift = shift / np.where(total == 0.0, 1.0, total)[:, None]
     arm = local - shift[groups]
     polar = np.bincount(groups, parts.polar_moment + parts.area * (arm * arm).sum(axis=1), n_groups)

@@ -58,7 +58,7 @@ def run(case: str, *overrides: str) -> ShakenCase:
 def blocks_of(model: Any, frame: Frame) -> list[list[list[float]]]:
     """Corners of each block as they are drawn [m]."""
     corners = vertices.placed_vertices(model, frame.positions, frame.orientations)
-    owner = vertices.vertex_blocks(model)
+    owner = model.vertex_blocks
     return [rounded(corners[owner == k], DRAWN) for k in range(model.n_blocks)]
 
 
