@@ -130,7 +130,7 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
     if found:
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
-    source.old_keys, found = retired_keys.rename(data)
+    source.old_keys, found = retired_keys.rename(data, {override.path for override in source.overrides})
     cross_references.complete(data, source.path.stem)
     case = None
     try:

@@ -5,7 +5,7 @@ What a version promises about keys stands in docs/versions.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from dem_cli.case.keys import NAME_PLACEHOLDER
@@ -25,23 +25,33 @@ class RetiredKey(NamedTuple):
 RETIRED: tuple[RetiredKey, ...] = ()
 
 
-def rename(
-    data: dict[str, Any], retired: Sequence[RetiredKey] | None = None
-) -> tuple[list[CaseProblem], list[CaseProblem]]:
-    """Gives retired keys in `data` the names that they have now, in place: warnings, and what is refused."""
+def rename(data: dict[str, Any], overridden: Collection[KeyPath] = ()) -> tuple[list[CaseProblem], list[CaseProblem]]:
+    """Gives retired keys in `data` the names that they have now, in place: warnings, and what is refused.
+
+    overridden: key paths that an override asked for; by an old name it counts more than the new one in the file.
+    """
     warned: list[CaseProblem] = []
     refused: list[CaseProblem] = []
-    for old in RETIRED if retired is None else retired:
+    for old in RETIRED:
         *above, key = old.path.split(".")
         for path, table in tables_at(data, above):
             if key not in table:
                 continue
-            value, twice = table.pop(key), old.name in table
+            value, twice = table.pop(key), old.name in table and (*path, key) not in overridden
             if old.name and not twice:
                 table[old.name] = value
             found = refused if old.refused or twice else warned
             found.append(CaseProblem((*path, key), message(old, twice), at_key=True))
     return warned, refused
+
+
+def retired(words: Sequence[str]) -> RetiredKey | None:
+    """The retired key that a user means, by its path or by the key alone."""
+    for old in RETIRED:
+        table, *_, key = old.path.split(".") if "." in old.path else ("", old.path)
+        if words[-1:] == [key] and (len(words) == 1 or words[0] == table):
+            return old
+    return None
 
 
 def message(old: RetiredKey, twice: bool = False) -> str:

@@ -8,7 +8,7 @@ from dem_cli import api
 from dem_cli.case import retired_keys
 from dem_cli.case.explain import find
 from dem_cli.case.retired_keys import RETIRED, RetiredKey
-from dem_cli.errors import CaseError
+from dem_cli.errors import CaseError, UsageError
 
 CASE = """\
 [materials.stone]
@@ -89,6 +89,19 @@ def test_what_is_set(load):
     loaded = load(overrides=["joints.dry.mu=0.5"])
     assert loaded.case.joints["dry"].friction == 0.5
     assert loaded.warnings[0].startswith("--set joints.dry.mu: retired in version 0.9.0")
+
+
+def test_what_is_set_counts_more_than_the_new_name_in_the_file(load):
+    loaded = load(CASE.replace("mu = 0.6", "friction = 0.6"), overrides=["joints.dry.mu=0.5"])
+    assert loaded.case.joints["dry"].friction == 0.5
+    assert loaded.warnings[0].startswith("--set joints.dry.mu: retired in version 0.9.0")
+
+
+@pytest.mark.parametrize("query", ["mu", "joints.dry.mu"])
+def test_explained_by_the_new_name(load, query):
+    load()
+    with pytest.raises(UsageError, match=f"{query}: retired in version 0.9.0: its name is 'friction'"):
+        find(api.make_case_model(), query)
 
 
 def test_without_retired_keys_they_are_unknown(load):
