@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 LEVEL = ("wall", "column")  # kinds of structures whose blocks are upright, in courses
-LARGE = 0.1  # of a block's height or length: a larger error looks like a wrong unit
-STEEP = 0.1  # a larger lean looks like degrees
-REACH = 0.5  # of the smallest side of a free block: neighbours that may come to touch
+LARGE_ERROR = 0.1  # of a block's height or length: a larger error looks like a wrong unit
+STEEP_CHANGE = 0.1  # a larger lean looks like degrees
+LAYING_REACH = 0.5  # of the smallest side of a free block: neighbours that may come to touch
 
 
 class Errors(NamedTuple):
@@ -175,7 +175,7 @@ def _nothing_left(site: Site, size: np.ndarray, tables: Sequence[Errors]) -> lis
         k = errors.blocks
         totals[:, k] += [errors.length, errors.height, errors.wedge]
         changes = np.stack([totals[0], totals[1] + np.minimum(totals[2], 0.0)], axis=1)
-        wrong = (size + changes)[k] <= polygon.TOLERANCE * size[k]
+        wrong = (size + changes)[k] <= polygon.ROUND_OFF * size[k]
         for axis, name in enumerate(("length", "height")):
             if wrong[:, axis].any():
                 worst = k[np.argmin(np.where(wrong[:, axis], changes[k, axis], np.inf))]
@@ -192,14 +192,14 @@ def _doubts(site: Site, size: np.ndarray, errors: Errors, i: int) -> list[CasePr
     for key, axis in (("height", 1), ("wedge", 1), ("length", 0)):
         values = getattr(errors, key)
         share = np.abs(values) / size[errors.blocks, axis]
-        if share.max(initial=0.0) > LARGE:
+        if share.max(initial=0.0) > LARGE_ERROR:
             k = int(np.argmax(share))
             of = f"the {'height' if axis else 'length'} of block '{site.blocks[errors.blocks[k]].id}'"
             message = f"{values[k]:.3g} m is {share[k]:.0%} of {of}; errors are given in m"
             found.append(CaseProblem(("imperfection", i, key), message))
     lean = site.case.imperfection[i].lean
     steepest = max(abs(number) for number in _numbers(lean))
-    if steepest > STEEP:
+    if steepest > STEEP_CHANGE:
         angle = math.degrees(math.atan(steepest))
         message = f"{show(steepest)} is {angle:.3g}° out of plumb; a lean is shift per height"
         found.append(CaseProblem(("imperfection", i, "lean"), message))
@@ -233,7 +233,7 @@ def _laid(site: Site, corners: np.ndarray, tables: Sequence[Errors]) -> np.ndarr
     free = ~site.model.fixed & site.level
     sides = _boxes(site, site.corners)[1][~site.model.fixed]
     largest = max(float(np.abs(field).max(initial=0.0)) for t in tables for field in (t.height, t.length, t.wedge))
-    pairs = neighbours(site.model, max(REACH * float(sides.min(initial=1e300)), 4.0 * largest))
+    pairs = neighbours(site.model, max(LAYING_REACH * float(sides.min(initial=1e300)), 4.0 * largest))
     for turn in np.unique(site.turns[free]):
         order = order_of(site.model, turned(site.corners, -turn), pairs)
         try:

@@ -99,4 +99,4 @@ def _moves(model: Model, corners: np.ndarray, pairs: np.ndarray, movable: np.nda
 def _small(model: Model, later: np.ndarray, earlier: np.ndarray) -> np.ndarray:
     """What counts as nothing between two parts [m], (n,)."""
     sizes = model.parts.sizes
-    return polygon.TOLERANCE * np.minimum(sizes[later], sizes[earlier])
+    return polygon.ROUND_OFF * np.minimum(sizes[later], sizes[earlier])

@@ -19,14 +19,14 @@ from dem_cli.model.places import block_at, undeformed
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-OVERLAP = 1e-6  # of the smaller block: deeper is a mistake
-TOUCH = 1e-3  # of the smaller block: a wider gap is no support
-SLIVER = 1e-3  # width over length of a block
+DEEPEST_OVERLAP = 1e-6  # of the smaller block: deeper is a mistake
+SUPPORT_GAP = 1e-3  # of the smaller block: a wider gap is no support
+SLIVER_WIDTH = 1e-3  # width over length of a block
 SIZE_RATIO = 1e3  # largest over smallest free block
 MASS_RATIO = 1e6  # heaviest over lightest free block
-STEEPEST = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
-REMOTE = 1e8  # distance from the origin over the size of a typical free part
-SHOWN = 5  # mistakes of one sort that are reported one by one
+STEEPEST_SIDE = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
+REMOTE_STRUCTURE = 1e8  # distance from the origin over the size of a typical free part
+SHOWN_MISTAKES = 5  # mistakes of one sort that are reported one by one
 
 
 class Neighbours(NamedTuple):
@@ -93,7 +93,7 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
 
     corners = undeformed(model)
-    faces = find_joints(model, corners, TOUCH * float(model.parts.sizes.min()))
+    faces = find_joints(model, corners, SUPPORT_GAP * float(model.parts.sizes.min()))
     edges = edges_of(model, faces)
     along = corners[edges[:, 1]] - corners[edges[:, 0]]
     beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
@@ -109,10 +109,12 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
         if has_it.any():
             k = np.flatnonzero(has_it)[lengths[has_it].argmin()]
             slope = steepest(PointLayout(seed=case.seed, **table.ranges), float(lengths[k]))
-            if slope > STEEPEST:
+            if slope > STEEPEST_SIDE:
                 a, b = (model.block_ids[i] for i in blocks[k])
                 message = f"too large for the joint of '{a}' and '{b}', {lengths[k]:.3g} m long: "
-                message += f"a side of the profile has a slope of {slope:.2g} there, at most {STEEPEST:g} is allowed"
+                message += (
+                    f"a side of the profile has a slope of {slope:.2g} there, at most {STEEPEST_SIDE:g} is allowed"
+                )
                 found.append(CaseProblem(("joints", name, "profile", "aperture"), message))
     return found
 
@@ -141,7 +143,7 @@ def _remote(model: Model, size: float) -> list[str]:
     """
     low, high = model.centroids.min(axis=0), model.centroids.max(axis=0)
     away = float(np.hypot(*np.maximum(np.maximum(low, -high), 0.0)))
-    if away <= REMOTE * size:
+    if away <= REMOTE_STRUCTURE * size:
         return []
     return [
         f"the blocks lie {away:.3g} m from [0, 0], {away / size:.1e} times the size of one: too few digits are left to "
@@ -151,7 +153,7 @@ def _remote(model: Model, size: float) -> list[str]:
 
 def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
     """`slim`: area over the square of the diagonal, about width over length."""
-    wrong = np.nonzero(slim < SLIVER)[0]
+    wrong = np.nonzero(slim < SLIVER_WIDTH)[0]
     if not wrong.size:
         return []
     worst = int(np.argmin(slim))
@@ -169,7 +171,7 @@ def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """Parts without area or not convex."""
-    least = polygon.TOLERANCE * model.parts.sizes**2
+    least = polygon.ROUND_OFF * model.parts.sizes**2
     flat = model.parts.volumes <= least
     bent = ~polygon.are_convex(model.vertices, model.part_starts) & ~flat
     found = []
@@ -182,7 +184,7 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
 def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, note: str = "") -> list[CaseProblem]:
     """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
     a, b = near.blocks.T
-    wrong = (near.separation < -OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
+    wrong = (near.separation < -DEEPEST_OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
     found, seen = [], set()
     for k in np.nonzero(wrong)[0][np.argsort(near.separation[wrong], kind="stable")]:
         pair = tuple(sorted(near.blocks[k].tolist(), key=lambda i: (blocks[i].path[:1] == ("block",), blocks[i].path)))
@@ -200,7 +202,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
     if model.n_parts == model.n_blocks:
         return []
     same = near.blocks[:, 0] == near.blocks[:, 1]
-    deep = same & (near.separation < -OVERLAP * near.scale)
+    deep = same & (near.separation < -DEEPEST_OVERLAP * near.scale)
     first_part = np.searchsorted(model.part_blocks, np.arange(model.n_blocks))
     found = []
     for k in np.nonzero(deep)[0]:
@@ -208,7 +210,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
         p, q = near.parts[k] - first_part[block] + 1
         message = f"parts {p} and {q} of block '{blocks[block].id}' overlap by {depth:.3g} m"
         found.append((blocks[block].path, message))
-    touching = same & (near.separation <= TOUCH * near.scale)
+    touching = same & (near.separation <= SUPPORT_GAP * near.scale)
     group = _components(model.n_parts, near.parts[touching])
     loose = np.unique(model.part_blocks[group != group[first_part[model.part_blocks]]])
     found += [(blocks[i].path, f"the parts of block '{blocks[i].id}' do not touch each other") for i in loose]
@@ -217,7 +219,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
 
 def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
     """Groups of blocks from which no chain of touching blocks leads to a fixed one."""
-    touching = near.separation <= TOUCH * near.scale
+    touching = near.separation <= SUPPORT_GAP * near.scale
     group = _components(model.n_blocks, near.blocks[touching])
     held = np.zeros(model.n_blocks, bool)
     held[group[model.fixed]] = True
@@ -237,7 +239,7 @@ def _neighbours(model: Model) -> Neighbours:
     corners = world_corners(block_shape(model), model.centroids, unturned(model.n_blocks, model.dimension))
     sizes = model.parts.sizes
     free = ~model.fixed[model.part_blocks]
-    reach = TOUCH * float(sizes[free].max() if free.any() else sizes.max())
+    reach = SUPPORT_GAP * float(sizes[free].max() if free.any() else sizes.max())
     faces = find_joints(model.parts_alone(), corners, reach)  # parts of one block and fixed blocks as well
     return Neighbours(faces.parts, model.part_blocks[faces.parts], faces.separation, sizes[faces.parts].min(axis=1))
 
@@ -270,8 +272,8 @@ def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
 
 def _first_few(found: Sequence[tuple[tuple, str]]) -> list[CaseProblem]:
     """The first mistakes of a sort; the last one reported says how many more there are."""
-    shown = [CaseProblem(path, message) for path, message in found[:SHOWN]]
-    rest = len(found) - SHOWN
+    shown = [CaseProblem(path, message) for path, message in found[:SHOWN_MISTAKES]]
+    rest = len(found) - SHOWN_MISTAKES
     if rest > 0:
         last = shown[-1]
         shown[-1] = CaseProblem(last.path, f"{last.message}; and {rest} more of this sort")

@@ -8,12 +8,12 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.edges import edges_of, overlap_ends
-from dem_cli.contact.start import TOUCH
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 from dem_cli.model.scales import smallest_edge
 
-REACH = 0.05  # of the smallest edge: a wider gap is no joint
+WIDEST_JOINT = 0.05  # of the smallest edge: a wider gap is no joint
 
 
 class JointEnds(NamedTuple):
@@ -30,10 +30,10 @@ class StartJoints:
     def __init__(self, model: Model):
         self.model, self.corners = model, undeformed(model)
         edge = smallest_edge(model)
-        faces = find_joints(model, self.corners, REACH * edge)
+        faces = find_joints(model, self.corners, WIDEST_JOINT * edge)
         edges = edges_of(model, faces)
         low, high = overlap_ends(edges, self.corners)
-        keep = high - low > TOUCH * edge
+        keep = high - low > TOUCHING_GAP * edge
         self.edges = edges[keep]
         self.lengths = (high - low)[keep]
         self.blocks = model.part_blocks[faces.parts[keep]]

@@ -12,7 +12,7 @@ from dem_cli.geometry.rotation import unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
-TOUCH = 1e-6  # faces closer than this share of the smallest edge touch
+TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 
 
 def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
@@ -28,7 +28,7 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
 
 def close_touching(contacts: Contacts, smallest: float) -> None:
     """Gaps that are nothing but round-off become none."""
-    contacts.gaps[np.abs(contacts.gaps) <= TOUCH * smallest] = 0.0
+    contacts.gaps[np.abs(contacts.gaps) <= TOUCHING_GAP * smallest] = 0.0
 
 
 def bond_touching(model: Model, joints: Joints, contacts: Contacts, properties: JointProperties) -> None:
@@ -47,7 +47,7 @@ def joints_of_start(
     smallest: shortest edge of a block [m] (model.scales). Faces that meet corner to corner are left out: to
     first order they cannot carry force. All points of a joint share one frame, that of its closer end.
     """
-    narrow, reach = geometry_of(model.dimension), TOUCH * smallest
+    narrow, reach = geometry_of(model.dimension), TOUCHING_GAP * smallest
     faces = narrow.touching(model, narrow.find(model, bodies.corners, reach), bodies.corners, reach)
     built = build_joints(model, faces, bodies, properties, n_memory)
     close_touching(built.contacts, smallest)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.contact.start import TOUCH
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.errors import CaseError, CaseProblem
 
@@ -55,7 +55,7 @@ def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
     """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
     record = measures.contact_record(sim)
     ours = np.isin(record.blocks, chosen)
-    between = (ours.sum(axis=1) == 1) & (record.gap <= TOUCH * sim.smallest)
+    between = (ours.sum(axis=1) == 1) & (record.gap <= TOUCHING_GAP * sim.smallest)
     points = record.points[between] - sim.origin
     if not len(points):  # nothing holds them: about their lowest corner on that side
         mine = np.isin(sim.shape.corner_blocks, chosen)

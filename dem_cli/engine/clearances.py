@@ -9,10 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.edges import edges_of
 from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
+from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import cross
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import Bodies, Joints
 from dem_cli.model.model import Model
 
 
@@ -21,6 +24,23 @@ class Play(NamedTuple):
 
     moved: np.ndarray  # of the centroid [m], (n_blocks,)
     turned: np.ndarray  # [rad], (n_blocks,)
+
+
+def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
+    """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
+    model, smallest = tracking.model, tracking.smallest
+    found = play(model, tracking.joints, tracking.geometry, bodies.positions, clearance)
+    if not tracking.moves:
+        return found
+    faces = tracking.faces_within(bodies, clearance.widest * smallest)
+    gaps = open_gaps(bodies.corners, edges_of(model, faces), clearance)
+    gaps = gaps[(gaps > TOUCHING_GAP * smallest) & (gaps <= clearance.widest * smallest)]
+    if not len(gaps):
+        return found
+    free = np.flatnonzero(~model.fixed)
+    width = float(np.median(model.shapes.widths[free])) if len(free) else smallest
+    more = gap_play(gaps, width, model.n_blocks, clearance)
+    return Play(found.moved + more.moved, found.turned + more.turned)
 
 
 def open_gaps(corners: np.ndarray, edges: np.ndarray, clearance: ClearanceSettings = DEFAULT.clearance) -> np.ndarray:

@@ -9,7 +9,8 @@ import numpy as np
 
 from dem_cli.contact.joints import JointProperties
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Books, Simulation
+from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.state import Books
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.drift import drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.contact.start import TOUCH
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
@@ -49,4 +49,4 @@ def live_scale(model: Model) -> float:
 def open_joints(model: Model, meant_gap: float = DEFAULT.detection.meant_gap) -> int:
     """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
     edge = smallest_edge(model)
-    return int((np.abs(find_joints(model, undeformed(model), meant_gap * edge).separation) > TOUCH * edge).sum())
+    return int((np.abs(find_joints(model, undeformed(model), meant_gap * edge).separation) > TOUCHING_GAP * edge).sum())

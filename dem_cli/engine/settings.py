@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
 from dem_cli.limit.settings import LimitSettings
-from dem_cli.model.scales import CLOSURE, OVERLAP
+from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP
 
 
 @dataclass(frozen=True)
@@ -258,8 +258,8 @@ class DoubtSettings:
     shear_high: float = 10.0
     leans: float = 0.006  # displacement before failure, in widths: loads were more than 0.5 % off beyond
     uneven: float = 1e3  # how much faster than another a block may fall in pseudo-time
-    closure: float = CLOSURE  # energy error over the largest energy
-    overlap: float = OVERLAP  # in smallest edges
+    closure: float = DOUBTFUL_CLOSURE  # energy error over the largest energy
+    overlap: float = DOUBTFUL_OVERLAP  # in smallest edges
     overshoot: float = 0.02  # of the failure load, that the curve of the collapse may peak above it
     above: float = 0.005  # of the associated load, that a failure load may lie above it
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by

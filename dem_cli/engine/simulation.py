@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.edges import edges_of
 from dem_cli.contact.geometry import JointGeometry
 from dem_cli.contact.joints import JointProperties
-from dem_cli.contact.start import TOUCH, bodies_at_rest
-from dem_cli.engine.clearances import Play, gap_play, open_gaps, play
+from dem_cli.contact.start import bodies_at_rest
+from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses
+from dem_cli.engine.loads import loads_of
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
@@ -24,10 +24,10 @@ from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
 from dem_cli.kernels.drift import drift_centroids, drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
-from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
+from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.scales import depth, origin_of, own_weights, smallest_edge
+from dem_cli.model.scales import depth, origin_of, smallest_edge
 
 
 @cache
@@ -38,29 +38,6 @@ def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
         return make_advance(of_bodies(forces), drift_centroids)
     make = make_profiled_forces if profiled else make_planar_forces
     return make_advance(make(law.function, law.bonded), drift_corners)
-
-
-class SavedState(NamedTuple):
-    """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
-
-    bodies: Bodies
-    contacts: Contacts
-    joints: Joints
-    geometry: JointGeometry
-    control: np.ndarray  # as kernels.records
-    ledger: np.ndarray  # as kernels.records
-    inverse_masses: np.ndarray  # as Loads.inverse_masses
-    safety: float  # of the fictitious masses
-
-
-class Books(NamedTuple):
-    """The energy ledger of one instant, and what belongs to it [J]."""
-
-    ledger: np.ndarray  # as kernels.records
-    kinetic: float
-    elastic: float  # in the springs of the joints
-    in_dampers: float = 0.0  # in the springs of Maxwell elements
-    lag: float = 0.0  # how far the positions are ahead of it [s]
 
 
 class Simulation:
@@ -85,31 +62,14 @@ class Simulation:
         self.time = 0.0
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
-        n = model.n_blocks
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
         self.shape = block_shape(model)
         self.origin = origin_of(model)
         self.bodies = bodies_at_rest(model, self.origin)
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
-        dead = model.dead_loads.copy()
-        live = model.live_loads * live_scale
-        dead[model.fixed] = 0.0
-        live[model.fixed] = 0.0
-        force_scales = np.empty((n, d + r))
-        force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
         self.widths = model.shapes.widths
-        arms = np.clip(
-            self.widths, relaxation.narrowest_arm * self.shape.radii, self.shape.radii
-        )  # small moments turn a needle over
-        force_scales[:, d:] /= arms[:, None]
-        self.loads = Loads(
-            dead=np.ascontiguousarray(dead),
-            live=np.ascontiguousarray(live),
-            inverse_masses=np.zeros((n, d + r)),
-            force_scales=force_scales,
-            speed_limits=np.full((n, d + r), np.inf),
-        )
+        self.loads = loads_of(model, live_scale, self.shape.radii, relaxation.narrowest_arm)
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = relaxation.local_damping
@@ -122,7 +82,7 @@ class Simulation:
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
-        self.play = self._play()
+        self.play = play_of_start(self.tracking, self.bodies, settings.clearance)
         self.first_places = self.places()
 
     @property
@@ -163,21 +123,6 @@ class Simulation:
     def detections(self) -> int:
         """How often joints were looked for."""
         return self.tracking.detections
-
-    def _play(self) -> Play:
-        """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
-        clearance = self.settings.clearance
-        found = play(self.model, self.joints, self.geometry, self.bodies.positions, clearance)
-        if self.kinematics == "fixed":
-            return found
-        faces = self.tracking.faces_within(self.bodies, clearance.widest * self.smallest)
-        gaps = open_gaps(self.bodies.corners, edges_of(self.model, faces), clearance)
-        gaps = gaps[(gaps > TOUCH * self.smallest) & (gaps <= clearance.widest * self.smallest)]
-        if not len(gaps):
-            return found
-        width = float(np.median(self.widths[self.free])) if len(self.free) else self.smallest
-        more = gap_play(gaps, width, self.model.n_blocks, clearance)
-        return Play(found.moved + more.moved, found.turned + more.turned)
 
     def detect(self) -> None:
         """New faces after large motion; memory follows the contact points."""

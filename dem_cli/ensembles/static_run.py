@@ -18,7 +18,8 @@ from dem_cli.statics.warm_start import LIMIT, find_start, place
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.engine.simulation import SavedState, Simulation
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
     from dem_cli.model.model import Model
 

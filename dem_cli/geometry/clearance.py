@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-CHUNK = 1 << 20  # numbers held at a time in an array
+CHUNK_OF_PAIRS = 1 << 20  # numbers held at a time in an array
 
 
 def clearances(
@@ -25,7 +25,7 @@ def clearances(
     for kind in np.unique(kinds):
         pairs = np.flatnonzero(kinds == kind)
         p, q = counts[upper[pairs[0]]], counts[lower[pairs[0]]]
-        step = max(1, CHUNK // ((p + q) * max(p, q)))
+        step = max(1, CHUNK_OF_PAIRS // ((p + q) * max(p, q)))
         for first in range(0, len(pairs), step):
             some = pairs[first : first + step]
             above = corners[starts[upper[some], None] + np.arange(p)]

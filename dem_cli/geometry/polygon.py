@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.geometry.rotation import across, cross, turned_as_one
 
-TOLERANCE = 1e-9  # relative to the size of the polygon: what counts as coincident or collinear
+ROUND_OFF = 1e-9  # relative to the size of the polygon: what counts as coincident or collinear
 
 
 class AreaProperties(NamedTuple):
@@ -99,13 +99,13 @@ def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaPr
     return AreaProperties(total, first + shift, polar)
 
 
-def is_convex(vertices: np.ndarray, tolerance: float = TOLERANCE) -> bool:
+def is_convex(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> bool:
     """True if the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
     vertices = np.asarray(vertices, float)
     return bool(are_convex(vertices, np.array([0, len(vertices)]), tolerance)[0])
 
 
-def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
     """`is_convex` of m polygons at once, (m,); polygon p is vertices[starts[p]:starts[p + 1]]."""
     after_each = following(starts)
     edges = vertices[after_each] - vertices
@@ -119,7 +119,7 @@ def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = TOLE
     return once_around & left_turns & has_area & (np.diff(starts) >= 3)
 
 
-def in_order(points: Sequence | np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+def in_order(points: Sequence | np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
     """Corners of a convex polygon, from any order to counter-clockwise from the lowest (then leftmost) one.
 
     Points on an edge between two corners do not change the shape and are left out.
@@ -185,7 +185,7 @@ def _text(point: np.ndarray) -> str:
     return f"[{point[0]:g}, {point[1]:g}]"
 
 
-def simplified(vertices: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+def simplified(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
     """The same polygon without repeated corners and corners on a straight edge, (m, 2); order kept."""
     vertices = np.asarray(vertices, float)
     gap = tolerance * size(vertices)

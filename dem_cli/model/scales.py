@@ -6,8 +6,9 @@ import numpy as np
 
 from dem_cli.model.model import Model
 
-REMOTE = 1e3  # times the extent of the blocks that can move: from there on coordinates are counted from among them
-CLOSURE, OVERLAP = 0.01, 0.01  # energy error, and overlap in smallest edges, above which a run is to be doubted
+REMOTE_BLOCKS = 1e3  # times the extent of the blocks that can move: from there on coordinates count from among them
+DOUBTFUL_CLOSURE = 0.01  # energy error over the largest energy above which a run is to be doubted
+DOUBTFUL_OVERLAP = 0.01  # the same, of the largest overlap in smallest edges
 WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are lost in round-off
 
 
@@ -20,7 +21,7 @@ def origin_of(model: Model) -> np.ndarray:
     middle = free.mean(axis=0) if len(free) else np.zeros(model.dimension)
     low, high = (limit(free, axis=0) if len(free) else middle for limit in (np.min, np.max))
     size = float((high - low).max()) + smallest_edge(model)
-    return middle if np.abs(middle).max() > REMOTE * size else np.zeros(model.dimension)
+    return middle if np.abs(middle).max() > REMOTE_BLOCKS * size else np.zeros(model.dimension)
 
 
 def smallest_edge(model: Model) -> float:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.model.scales import CLOSURE, OVERLAP, smallest_edge
+from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, smallest_edge
 from dem_cli.output.reader import Results
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.output.vertices import rest_vertices
@@ -140,16 +140,19 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
     checks = [SoundnessCheck("status", status, GOOD if status == "ok" else BAD, "“ok”: the analysis reached its end.")]
     closure = summary.get("energy_closure")
     if closure is not None:
-        tone = GOOD if abs(closure) <= CLOSURE else BAD
-        words = f"What the loads put in is stored, moving or lost to friction and damping; good below {CLOSURE:.0%}."
+        tone = GOOD if abs(closure) <= DOUBTFUL_CLOSURE else BAD
+        words = "What the loads put in is stored, moving or lost to friction and damping; "
+        words += f"good below {DOUBTFUL_CLOSURE:.0%}."
         checks.append(SoundnessCheck("energy that is missing", f"{abs(closure):.2g} of the largest entry", tone, words))
     overlap = summary.get("largest_overlap")
     if overlap is not None and results is not None:
         share = overlap / smallest_edge(results.model)
         hit = summary.get("kind") in IN_SECONDS  # blocks that fall sink in for a moment
-        tone = GOOD if share <= OVERLAP else LOOK if hit else BAD
+        tone = GOOD if share <= DOUBTFUL_OVERLAP else LOOK if hit else BAD
         text = f"{_metres(overlap)}, {share:.2g} of the smallest edge"
-        words = f"Stone does not sink into stone; good below {OVERLAP:.0%}{', but for blocks that fall' * hit}."
+        words = (
+            f"Stone does not sink into stone; good below {DOUBTFUL_OVERLAP:.0%}{', but for blocks that fall' * hit}."
+        )
         checks.append(SoundnessCheck("largest overlap", text, tone, words))
     return checks + _balance(summary, results)
 

@@ -28,7 +28,8 @@ from dem_cli.statics.equilibrium import Verdict, check_finite, settle_or_fail
 from dem_cli.statics.warm_start import GRAVITY, place
 
 if TYPE_CHECKING:
-    from dem_cli.engine.simulation import SavedState, Simulation
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.warm_start import WarmStart

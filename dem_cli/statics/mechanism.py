@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.engine.simulation import SavedState, Simulation
+from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.state import SavedState
 from dem_cli.kernels import records as slot
 
 

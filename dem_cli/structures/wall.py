@@ -11,7 +11,7 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Stru
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 
-SLIVER = 1e-6  # parts of a block below this fraction of its length or height are not made
+NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or height are not made
 
 
 class Lintel(CaseModel):
@@ -109,7 +109,7 @@ class Wall(StructureBase):
                 message = f"{self.offset:g} is not allowed; must be less than the block length, {shortest:g}"
                 raise KeyProblem(message, "offset")
         for i, length in enumerate(self.course_lengths):
-            if length > self.length * (1 + SLIVER):
+            if length > self.length * (1 + NARROWEST_PIECE):
                 message = f"{length:g} is not allowed; must be at most {self.length:g}, the length of the wall"
                 raise KeyProblem(message, "course_lengths", i)
         for i, opening in enumerate(self.openings):
@@ -119,7 +119,7 @@ class Wall(StructureBase):
 
 def _check_opening(opening: Opening, i: int, length: float, height: float) -> None:
     """Raises KeyProblem where the opening or its lintel does not lie within the wall."""
-    slack = 1.0 + SLIVER
+    slack = 1.0 + NARROWEST_PIECE
     limits = [
         ("width", opening.x + opening.width, length, "x + width", "length"),
         ("height", opening.y + opening.height, height, "y + height", "height"),
@@ -132,7 +132,7 @@ def _check_opening(opening: Opening, i: int, length: float, height: float) -> No
         return
     bearing, top = opening.lintel.bearing, opening.y + opening.height + opening.lintel.height
     room = min(opening.x, length - opening.x - opening.width)
-    if bearing > room + SLIVER * length:
+    if bearing > room + NARROWEST_PIECE * length:
         message = f"{bearing:g} is not allowed; must be at most {room:g}, what is left beside the opening"
         raise KeyProblem(message, "openings", i, "lintel", "bearing")
     if top > height * slack:
@@ -152,7 +152,7 @@ def build(wall: Wall) -> list[Block]:
         height = wall.base_height or wall.block[1]
         shape = rectangle(left, -height, right - left, height)
         blocks.append(Block("base", (shape,), "", wall.thickness, fixed=True))
-    small = SLIVER * min(wall.block[0], wall.block[1])
+    small = NARROWEST_PIECE * min(wall.block[0], wall.block[1])
     for k, box in enumerate(boxes):
         pieces = box
         for hole in (*holes, *(lintel for lintel in lintels if lintel)):
@@ -179,7 +179,7 @@ def _course(wall: Wall, k: int) -> np.ndarray:
         heads = shift + length * np.arange(max(int(count), 1) + 1)
     else:
         inner = shift + length * np.arange(int(np.ceil(count)) + 1)
-        small = SLIVER * length
+        small = NARROWEST_PIECE * length
         inner = inner[(inner > small) & (inner < wall.length - small)]
         heads = np.concatenate([[0.0], inner, [wall.length]])
     low, high = wall.levels[k : k + 2]

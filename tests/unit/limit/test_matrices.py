@@ -43,9 +43,8 @@ def test_gaps_are_those_of_the_contact_loop():
     sim, s = simulation(ARCH), structure(ARCH)
     before = sim.contacts.gaps.copy()
     sim.advance(40, slot.HOLD_LOAD)
-    moved = (
-        np.column_stack([measures.displacements(sim), sim.bodies.orientations]) - sim.bodies.velocities
-    )  # gaps lag a step
+    moved = np.column_stack([measures.displacements(sim), sim.bodies.orientations])
+    moved -= sim.bodies.velocities  # gaps lag a step
     opened = (s.compatibility @ moved.ravel()[s.free]).reshape(-1, 2)[:, 0]
     np.testing.assert_allclose(opened, sim.contacts.gaps - before, atol=1e-9 * np.abs(opened).max())
 

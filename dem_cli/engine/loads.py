@@ -1,0 +1,33 @@
+"""Loads of a simulation: dead and live loads of the free blocks, and the scales of their unbalanced forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.kernels.records import Loads
+from dem_cli.model.model import Model
+from dem_cli.model.scales import own_weights
+
+
+def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: float) -> Loads:
+    """Loads of the blocks that can move, without masses and limits of speed yet.
+
+    live_scale: factor on the live loads; radii: of the blocks [m], (n_blocks,); narrowest_arm: of its radius, the
+    least width that a block's moments are compared with.
+    """
+    d, r, n = model.dimension, model.inertias.shape[1], model.n_blocks
+    dead = model.dead_loads.copy()
+    live = model.live_loads * live_scale
+    dead[model.fixed] = 0.0
+    live[model.fixed] = 0.0
+    force_scales = np.empty((n, d + r))
+    force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
+    arms = np.clip(model.shapes.widths, narrowest_arm * radii, radii)  # small moments turn a needle over
+    force_scales[:, d:] /= arms[:, None]
+    return Loads(
+        dead=np.ascontiguousarray(dead),
+        live=np.ascontiguousarray(live),
+        inverse_masses=np.zeros((n, d + r)),
+        force_scales=force_scales,
+        speed_limits=np.full((n, d + r), np.inf),
+    )

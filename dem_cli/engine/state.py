@@ -1,0 +1,33 @@
+"""State of a simulation: what is saved and restored, and the energy ledger of one instant."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.geometry import JointGeometry
+from dem_cli.kernels.records import Bodies, Contacts, Joints
+
+
+class SavedState(NamedTuple):
+    """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
+
+    bodies: Bodies
+    contacts: Contacts
+    joints: Joints
+    geometry: JointGeometry
+    control: np.ndarray  # as kernels.records
+    ledger: np.ndarray  # as kernels.records
+    inverse_masses: np.ndarray  # as Loads.inverse_masses
+    safety: float  # of the fictitious masses
+
+
+class Books(NamedTuple):
+    """The energy ledger of one instant, and what belongs to it [J]."""
+
+    ledger: np.ndarray  # as kernels.records
+    kinetic: float
+    elastic: float  # in the springs of the joints
+    in_dampers: float = 0.0  # in the springs of Maxwell elements
+    lag: float = 0.0  # how far the positions are ahead of it [s]
