@@ -48,6 +48,17 @@ class CaseError(DemError):
         self.problems = tuple(problems)
         super().__init__("\n".join((render or plain)(problem) for problem in self.problems))
 
+    def __reduce__(self) -> tuple[Callable[..., CaseError], tuple[str, tuple[CaseProblem, ...]]]:
+        """With its text, so that it may come from another process."""
+        return _case_error, (str(self), self.problems)
+
+
+def _case_error(text: str, problems: tuple[CaseProblem, ...]) -> CaseError:
+    """A CaseError whose text is known."""
+    error = CaseError(problems)
+    error.args = (text,)
+    return error
+
 
 class UsageError(DemError):
     """Wrong arguments or files on the command line."""

@@ -34,6 +34,8 @@ def load(case: CaseSource, set: Mapping[str, Any] | None = None) -> LoadedCase:
 
     Raises CaseError, with every mistake and its line, and UsageError where there is no such file or key path.
     """
+    if not isinstance(set, Mapping | None):
+        raise UsageError(f"set: {set!r} is not allowed; must be a dict, such as {{'joints.dry.friction': 0.5}}")
     changes = [override_of(key, value) for key, value in (set or {}).items()]
     if isinstance(case, LoadedCase):
         return api.load_case(case.path, [*case.overrides, *changes], case.text)
@@ -67,6 +69,8 @@ def run(
     """
     started = time.perf_counter()
     options = BatchOptions(threads, resume)
+    if threads is not None and (not isinstance(threads, int) or threads < 1):
+        raise UsageError(f"threads: {threads!r} is not allowed; must be an integer ≥ 1, or None for all cores")
     if resume and out is None:
         raise UsageError("resume: needs the folder `out` of the run that was interrupted")
     loaded = load(case, set)

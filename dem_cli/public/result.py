@@ -181,7 +181,8 @@ def monitor_history(results: Results, name: str, told: dict[str, Any]) -> Monito
     unit, series = MONITOR_UNITS[quantity], results.series
     if series is not None and name in series.monitors:
         return MonitorHistory(series.monitors[name], unit, quantity, absolute, series.time, None)
-    return MonitorHistory(results.monitors[name], unit, quantity, absolute, None, results.history["load"])
+    load = results.history.get("load", np.zeros(0))  # none yet in a run that was killed at once
+    return MonitorHistory(results.monitors[name], unit, quantity, absolute, None, load)
 
 
 def release(source: ExitStack, folder: Path | None) -> None:

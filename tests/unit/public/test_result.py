@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 
+import h5py
 import numpy as np
 import pytest
 
@@ -154,3 +155,15 @@ def test_results_without_a_summary(wall, tmp_path):
         assert result.failure_load is None
         assert len(result.frames) == len(wall.frames)
         assert "killed" in repr(result)
+
+
+def test_a_run_killed_before_its_first_row(wall, tmp_path):
+    shutil.copytree(wall.path, tmp_path / "killed")
+    (tmp_path / "killed" / "summary.json").unlink()
+    with h5py.File(tmp_path / "killed" / "results.h5", "r+") as file:
+        for name in list(file["dem/history"]):
+            del file["dem/history"][name]
+    with dem_cli.open(tmp_path / "killed") as result:
+        top = result.monitors["top"]
+        assert len(top.values) == len(top.load) == 0
+        assert top.unit == "m"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import pickle
 import signal
 import tempfile
 
@@ -131,6 +132,16 @@ def test_nothing_is_kept_unless_it_is_asked_for(temporary):
     assert list(temporary.iterdir()) == []
 
 
+def test_a_mistake_comes_from_another_process():
+    """A pool of processes breaks where it cannot read what a worker raised."""
+    with pytest.raises(CaseError) as raised:
+        dem_cli.load(COLUMN, {"joints.dry.friction": -1.0})
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert type(again) is CaseError
+    assert str(again) == str(raised.value) != ""
+    assert again.problems == raised.value.problems
+
+
 @pytest.mark.parametrize(
     ("case", "changes", "error", "message"),
     [
@@ -151,6 +162,18 @@ def test_a_mistake_is_one_message(case, changes, error, message, temporary):
     assert message in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
     assert list(temporary.iterdir()) == []
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, "2"])
+def test_threads_are_counted_from_one(threads):
+    with pytest.raises(UsageError, match=r"threads: .* must be an integer ≥ 1"):
+        dem_cli.run(COLUMN, threads=threads)
+
+
+@pytest.mark.parametrize("changes", [["joints.dry.friction=0.5"], "joints.dry.friction=0.5"])
+def test_changes_are_a_dict(changes):
+    with pytest.raises(UsageError, match=r"set: .* must be a dict"):
+        dem_cli.load(COLUMN, changes)
 
 
 def test_folders_of_others_are_left_alone(tmp_path):
