@@ -28,7 +28,7 @@ STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of case
     "safety": (2_000, 60_000),  # each of its runs
     "modes": (200, 10_000),
 }
-IN_SECONDS = ("time-history", "fragility")  # kinds that solve.estimate_shaking knows
+IN_SECONDS = ("time-history", "fragility")  # kinds that analyses/estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
 NANOSECONDS = {"fixed": 10, "large": 20}  # per contact point and step, one core (scripts/benchmark)
@@ -44,13 +44,13 @@ def describe(case: Case, model: Model) -> Rows:
     properties = joint_properties(case, model, _ratio(case, model))
 
     def simulation(kinematics: str) -> Simulation:
-        sim = Simulation(model, law_of(case), properties, kinematics, live_scale=scale, tilting=tilting)
+        sim = Simulation(model, law_of(case), properties, kinematics, scale, tilting, DEFAULT)
         sim.use(1.0)  # masses at the limit of stability
         return sim
 
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
-    moving = why_moving(case, model) if moving is None else moving
+    moving = why_moving(case, model, DEFAULT) if moving is None else moving
     sim = simulation("fixed" if moving is None else "large")
     return [
         *_blocks(model, case.gravity),
@@ -69,7 +69,7 @@ def _shaking(case: Case, model: Model) -> Rows:
     from dem_cli.analyses.estimate_shaking import describe_shaking
     from dem_cli.dynamics.history import damping_of_start, shaken
 
-    sim = shaken(case, model, damping_of_start(case, model))
+    sim = shaken(case, model, damping_of_start(case, model, DEFAULT), settings=DEFAULT)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
@@ -84,7 +84,7 @@ def _ratio(case: Case, model: Model) -> float:
     if case.analysis.kind == "settlement":
         from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
 
-        return of_settlement(model)
+        return of_settlement(model, DEFAULT.stiffness.settlement_overlap)
     return DEFAULT.stiffness.statics
 
 
@@ -168,7 +168,7 @@ def _runs(case: Case) -> Rows:
         return []
     from dem_cli.ensembles.static_values import expected, scale_of
 
-    scale, (fewest, most) = scale_of(case), expected(case)
+    scale, (fewest, most) = scale_of(case, DEFAULT.safety), expected(case)
     named = "F" if case.analysis.of_strength else case.analysis.vary
     return [("runs", f"{fewest} to {most}, {named} between {scale.low:g} and {scale.high:g}")]
 

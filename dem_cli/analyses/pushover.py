@@ -126,7 +126,7 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     from dem_cli.limit.path import OK
 
     case, model = job.case, job.model
-    properties = joint_properties(case, model)
+    properties = joint_properties(case, model, job.settings.stiffness.statics)
     if note := taken_as_plane(properties):
         job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already

@@ -43,7 +43,7 @@ class SafetyStudy:
         self.settings = settings
         self.case, self.model, self.observer = case, model, observer
         self.analysis: SafetyAnalysis = case.analysis
-        self.scale = scale_of(case)
+        self.scale = scale_of(case, settings.safety)
         self.started, self.compiling = time.perf_counter(), 0.0
         self.told: dict[float, StaticRun] = {}  # only of the values next to the answer
         self.runs: list[dict[str, Any]] = []
@@ -60,9 +60,8 @@ class SafetyStudy:
         start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
         status = "ok"
         try:
-            ends = bisection.search(
-                self._stands, self.scale, self.analysis.resolution, guess, self.analysis.scan, start
-            )
+            resolution, scan = self.analysis.resolution, self.analysis.scan
+            ends = bisection.search(self._stands, self.scale, resolution, guess, scan, start, self.settings.safety)
         except KeyboardInterrupt:
             if not self.answers:
                 raise
@@ -132,7 +131,7 @@ class SafetyStudy:
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)
-        return bound(self.variant, self.scale, self.analysis.resolution, self.settings.safety.closer)
+        return bound(self.variant, self.scale, self.analysis.resolution, self.settings)
 
     # -- what they say -----------------------------------------------------------------------------
 

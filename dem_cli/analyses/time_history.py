@@ -64,7 +64,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
     structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
-    batcher = Batcher(structures, lambda _: motions, batch)
+    batcher = Batcher(structures, lambda _: motions, batch, settings.statistics)
 
     def say(done: int) -> None:
         observer.progress(f"repeats {done:,} of {len(trials):,}", math.nan, math.nan, done / max(len(trials), 1))

@@ -72,13 +72,12 @@ def fraction_of(
     restitution = settings.restitution
     reference = reference_block(case, model, joints, table)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
-    if table.restitution == "housner":
+    wanted = table.restitution
+    assert wanted is not None  # as damping_of asks
+    if isinstance(wanted, str):
         return restitution.housner_fraction, f"restitution of Housner, {rigid:.4g} for block '{name}'"
-    wanted = float(table.restitution)  # type: ignore[arg-type]
-    least, most = (
-        rocked(case, model, reference, restitution.most, settings),
-        rocked(case, model, reference, restitution.least, settings),
-    )
+    least = rocked(case, model, reference, restitution.most, settings)
+    most = rocked(case, model, reference, restitution.least, settings)
     if not least < wanted < most:
         message = (
             f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {least:.4f} to {most:.4f} "

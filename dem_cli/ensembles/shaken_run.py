@@ -73,7 +73,7 @@ class RestedStructure:
     def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
         """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
 
-        Raises Cancelled.
+        Raises RunCancelled.
         """
         begun = time.thread_time()
         sim = deepcopy(self.sim)

@@ -150,7 +150,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 
 def dotted(path: Path) -> str:
-    """dem_cli/analyses/gravity.py -> solve.gravity; the package's own __init__ keeps that name."""
+    """dem_cli/analyses/gravity.py -> analyses.gravity; the package's own __init__ keeps that name."""
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
     return name.removesuffix(".__init__")
 
