@@ -8,7 +8,8 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
+from dem_cli.engine.dynamic_settings import StatisticsSettings
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.shaken_run import RestedStructure, ShakenRunResult
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from dem_cli.engine.settings import DEFAULT, SafetySettings
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.static_settings import SafetySettings
 
 
 class Scale(NamedTuple):

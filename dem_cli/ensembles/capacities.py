@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
+from dem_cli.engine.dynamic_settings import StatisticsSettings
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.batch import ShakingTrial
 from dem_cli.ensembles.lognormal import Lognormal, bootstrap, fit
 from dem_cli.ensembles.shaken_run import ShakenRunResult

@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from dem_cli.assembly.assemble import assembly
 from dem_cli.assembly.validate import problems
 from dem_cli.case.variation import impossible, value_at, with_value
-from dem_cli.engine.settings import DEFAULT, SafetySettings
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.static_settings import SafetySettings
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.laws.strength import reduced, strengths
