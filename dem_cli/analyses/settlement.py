@@ -17,6 +17,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.statics.equilibrium import FALLS, check_finite, settle_or_fail, stand
+from dem_cli.statics.post_peak import soften_falls
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -59,16 +60,16 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
 
 def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
-    relaxation, settlement = sim.settings.relaxation, sim.settings.settlement
+    settlement = sim.settings.settlement
     motion = _motions(case, sim)
     reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
     largest = float(np.abs(motion * reach).max())
     elastic = max(measures.largest_displacement(sim), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (settlement.per_step * elastic), settlement.fewest) / settlement.rows)), 1)
     every = max(settlement.rows // max(case.output.frames - 2, 1), 1)
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     sim.set_load(0.0)
-    sim.limit_speed(max(sim.settings.post_peak.fall_speed * sim.smallest, 20.0 * largest / (chunk * settlement.rows)))
+    soften_falls(sim, largest, chunk * settlement.rows)
     sim.move_supports(motion / (chunk * settlement.rows))
     for number in range(1, settlement.rows + 1):
         sim.advance(chunk, slot.HOLD_LOAD)

@@ -188,9 +188,9 @@ class DynamicSimulation(Simulation):
 
     @property
     def noticeable_energy(self) -> float:
-        """What lifts the whole structure by a thousandth of its smallest edge [J]."""
+        """What lifts the whole structure by a small share of its smallest edge [J]."""
         weights = np.abs(self.loads.dead[self.free, : self.model.dimension]).sum()
-        return 1e-3 * self.smallest * float(weights)
+        return self.settings.history.noticeable * self.smallest * float(weights)
 
     def show_base(self, acceleration: float, gravity: float) -> None:
         """The load that records show: acceleration of the base over gravity."""

@@ -43,6 +43,9 @@ class HistorySettings:
     inside: float = 1e-3  # of the smallest edge: blocks moved deeper into others than joints give when they close
     look: float = 0.1  # s of motion between two looks of one of many runs: collapse times are known to this
     energy_every: int = 10  # looks from one look into the books to the next
+    loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
+    loose_share: float = 1e-3  # of the duration: the same
+    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
 
@@ -56,7 +59,9 @@ class RestitutionSettings:
     least: float = 0.1  # with less, landings are many bounces
     tilt: float = 0.3  # of the angle at which the block would fall
     landed: float = 0.05  # of the first tilt: beyond it on the other side the block has landed and chatters no more
-    look: float = 2e-3  # share of the longest possible time between two looks
+    longest: float = 20.0  # √(radius/g): the block lands before
+    look: float = 2e-3  # share of that time between two looks
+    accurate: float = 1e-3  # of the fraction that is found
     most_steps: int = 200_000  # for the block to come to rest
 
 

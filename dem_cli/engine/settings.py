@@ -7,7 +7,7 @@ A case file offers none of them; benchmarks and studies hand in others. Each was
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from dem_cli.engine.dynamic_settings import (
@@ -47,6 +47,7 @@ class DetectionSettings:
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
     same_place: float = 0.01  # of the reach: blocks that moved less have the same faces as before
     meant_gap: float = 1e-3  # of the smallest edge: narrower gaps of the start may close, and geometry has to move
+    shortest_call: int = 100  # steps of one compiled call, at least
     longest_call: int = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 
 
@@ -73,6 +74,8 @@ class RelaxationSettings:
     tolerance: float = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
     gravity_tolerance: float = 1e-5  # the same under dead loads alone
     chunk: int = 100  # steps between two looks
+    looks_at_rest: int = 2  # one after the other, at which forces balance: not only passed by
+    most_steps: int = 40_000  # of the fast way to an equilibrium, before it is sought with combined damping
     local_damping: float = 0.4  # near failure
     combined_damping: float = 0.3  # as much against the velocity as against the change of force
     fire_mix: float = 0.1  # share of velocity that FIRE turns into the direction of force, at first
@@ -90,6 +93,12 @@ class RelaxationSettings:
     # it would not by itself.
     ramp_of_memory: int = 100  # steps per course
     stair_of_memory: int = 5
+
+    def stretched(self, factor: float) -> RelaxationSettings:
+        """Time steps longer by a factor than these, by lighter fictitious masses."""
+        names = ("fire_safety", "creep_safety", "combined_safety")
+        safeties = {name: factor * getattr(self, name) for name in names}
+        return replace(self, **safeties)
 
 
 @dataclass(frozen=True)

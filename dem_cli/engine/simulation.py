@@ -78,7 +78,7 @@ class Simulation:
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
         self.tracking = self._track(law.n_memory(model.dimension) + self.n_damped, self.skin * self.smallest)
-        self.control[slot.TRAVEL_LIMIT] = 0.5 * self.tracking.reach
+        self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
@@ -135,7 +135,8 @@ class Simulation:
 
     def _take_joints(self) -> None:
         """What follows from other joints: masses, and how long a compiled call may be."""
-        self.longest = max(100, self.settings.detection.longest_call // max(1, len(self.joints.kn)))
+        detection = self.settings.detection
+        self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
 
@@ -228,12 +229,17 @@ class Simulation:
         return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:
-        """Local and combined damping, and fictitious masses with another safety."""
+        """Fictitious masses with another safety; damping against the velocity (None: local) and the change of force."""
         damping = self.settings.relaxation.local_damping if damping is None else damping
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = damping, change
         if safety != self.safety:
             self.safety = safety
             self.set_masses()
+
+    def use_combined_damping(self) -> None:
+        """Damping against the velocity and the change of force: what a constant load settles or fails with."""
+        relaxation = self.settings.relaxation
+        self.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
 
     def limit_speed(self, limit: float) -> None:
         """Largest motion of a centroid or of a corner about it in a step [m]: pseudo-time is no time to fall freely."""

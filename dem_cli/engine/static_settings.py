@@ -12,6 +12,7 @@ class ProofSettings:
     Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
     """
 
+    doublings: int = 4  # of time, the last ones, in which motion must go on in the same way
     accelerated: float = 2.5  # growth while time doubles that counts as acceleration
     steady: float = 1.55  # growth while time doubles that counts as steady motion
     far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
@@ -26,6 +27,8 @@ class ProofSettings:
 class LoadSearchSettings:
     """The search of the failure load: probes, creep to an estimate, loads raised, failures tried again."""
 
+    probes: int = 4  # small loads tried for the compliance, each a tenth of the last
+    probe_steps: int = 20_000  # for the equilibrium under one of them
     reach: float = 15.0  # displacement of the creep, in elastic displacements at multiplier 1
     first_phase: int = 1000  # steps of the first phase of the creep
     phases: int = 5  # how often the rate is halved after it
@@ -40,7 +43,8 @@ class LoadSearchSettings:
     shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
     least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
     jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
-    growth: float = 1.5  # of the step from load to load after the first loads
+    first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
+    growth: float = 1.5  # of the next ones
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
@@ -69,13 +73,21 @@ class PostPeakSettings:
     fewest: int = 40_000  # steps of the whole way, about: fewer would throw the blocks about
     most: int = 60_000
     growth: float = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
+    start_up: int = 50  # looks over which it grows
     rows: int = 250  # of the history
+    first_look: int = 50  # steps to it; from one look to the next they at most double, and are
+    shortest_look: int = 20  # at least, and at most
+    longest_look_before_peak: int = 100
+    longest_look: int = 20_000  # steps
     softest: float = 1e3  # kn·h/W
     stiffest: float = 1e7
     fall_speed: float = 1e-3  # of blocks that fall, in smallest edges per step: they land softly
+    fall_pace: float = 20.0  # the same, in mean speeds of the whole way, where that is more
     steps_up: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the load of failure, held before the collapse
     harder: float = 1.005  # growth of a load that holds after all
-    near_peak: float = 0.97  # share of the failure load at which loading counts as over
+    near_peak: float = 0.97  # share of the failure load at which loading counts as over; or of the highest load, ...
+    falls_from: float = 0.8  # ... where that was at least this share of the failure load
+    at_peak: float = 0.99  # of the highest load: the displacement of the peak is where the curve first came to it
 
 
 @dataclass(frozen=True)
@@ -85,6 +97,7 @@ class MechanismSettings:
     rocking: float = 0.02  # share of friction in the released work, below which nothing slides
     turns: float = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
     takes_part: float = 0.1  # of the largest motion
+    slides: float = 1e-6  # of the shear limit: a point that is as near to it slides
     listed: int = 20  # names in a summary
 
 

@@ -71,7 +71,7 @@ class Increment:
             if not self._factorise(at):
                 return None
             means.append(mean)
-            if infeasible < 1e-3:
+            if infeasible < settings.feasible:
                 if self._spread(at, mean) < settings.centred and (kept is None or mean < settings.reversal * kept[0]):
                     kept = (mean, at.copy())
                 if len(means) > settings.patience and mean > settings.stalled * means[-settings.patience]:
@@ -106,7 +106,7 @@ class Increment:
                 return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
             tangent *= -1.0 if last is None else np.sign(tangent @ last)
-            on_path = on_path or (infeasible < 1e-3 and spread < settings.wide)
+            on_path = on_path or (infeasible < settings.feasible and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
                 offset = onto.positive / at.x

@@ -157,20 +157,21 @@ def _advance(
     target: float | None,
     stop: Callable[[], bool],
     ahead: float = 0.0,
-    folds: int = 4,
+    folds: int | None = None,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone."""
+    """The state at a displacement of the live load; without one, under dead loads alone. folds (None: as set)."""
+    path = problem.settings.path
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
-    return Increment(problem, state, target).solve(
-        easier * problem.settings.path.tau * max(largest, 1.0) ** 2, ahead, folds, stop
-    )
+    tau = easier * path.tau * max(largest, 1.0) ** 2
+    return Increment(problem, state, target).solve(tau, ahead, path.folds if folds is None else folds, stop)
 
 
 def _compliance(problem: Elastic, state: State) -> float:
     """Displacement of the live load per unit of multiplier while all loaded joints are closed."""
-    closed = state.normal > 1e-6 * state.normal.max(initial=1.0)
-    share = np.where(closed, 1.0, 1e-6)
+    path = problem.settings.path
+    closed = state.normal > path.loaded * state.normal.max(initial=1.0)
+    share = np.where(closed, 1.0, path.opened)
     lu = problem.factorised(share * problem.kn, share * problem.ks, np.zeros(problem.n_points))
     return float(problem.live @ lu.solve(problem.live))
 

@@ -150,7 +150,7 @@ class LoadSearch:
             sim.restore(answer.standing)
             estimate = min(estimate if estimate > 0.0 else settings.probe, self.limit)
             levels = [share * estimate for share in settings.shares]
-            self._raise_load(0.0, levels, 0.5 * self.resolution * estimate)
+            self._raise_load(0.0, levels, settings.first_step * self.resolution * estimate)
 
     def _holds(self, start: WarmStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
@@ -177,7 +177,7 @@ class LoadSearch:
         sim, answer, relaxation = self.sim, self.answer, self.sim.settings.relaxation
         self.track.observer.progress("failing", load * sim.live_scale, answer.peak_displacement, None)
         before, start, ledger = sim.steps, sim.places(), measures.energy_sums(sim)
-        sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+        sim.use_combined_damping()
         sim.set_load(load)
         moved, released = 0.0, 0.0
         while moved < self.settings.shown * answer.elastic * load or released <= 0.0:
@@ -225,7 +225,7 @@ class LoadSearch:
         for _ in range(self.settings.hold_steps // relaxation.chunk):
             sim.advance(relaxation.chunk, sim.creep_mode)
             calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-            if calm == 2:
+            if calm == relaxation.looks_at_rest:
                 self.answer.crept = sim.load
                 sim.rest()
                 self.answer.crept_state = sim.save()
