@@ -95,7 +95,6 @@ def fraction_of(
 
 def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT) -> float:
     """Ratio of angular velocities when the block lands, from the heights before and after it."""
-    restitution = settings.restitution
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.dynamics.initial_state import tilt
     from dem_cli.dynamics.time_step import time_step
@@ -105,6 +104,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     from dem_cli.engine.viscous import Damping
     from dem_cli.statics.equilibrium import stand
 
+    restitution = settings.restitution
     pair = model.only([reference.support, reference.block], fixed=np.array([True, False]))
     properties = joint_properties(case, model, settings.stiffness.dynamics)
     sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction), settings)

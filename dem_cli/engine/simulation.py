@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from dem_cli.contact.assemble import JointArrays
@@ -14,30 +12,16 @@ from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.loads import loads_of
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.advance import make_advance
-from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
-from dem_cli.kernels.drift import drift_centroids, drift_corners
-from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
-
-
-@cache
-def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
-    """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
-    if kinematics == "fixed":
-        forces = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
-        return make_advance(of_bodies(forces), drift_centroids)
-    make = make_profiled_forces if profiled else make_planar_forces
-    return make_advance(make(law.function, law.bonded), drift_corners)
 
 
 class Simulation:
@@ -159,13 +143,9 @@ class Simulation:
 
     def advance(self, n_steps: int, mode: int) -> None:
         """n_steps steps of one mode (kernels.records), with detection when it is due."""
-        run = compiled_advance(self.kinematics, self.law, self.properties.profiled)
         left, load = n_steps, 0.0
         while left > 0:
-            done = run(
-                min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
-                self.loads, self.control, self.ledger, self.like, self.like_rotation,
-            )  # fmt: skip
+            done = self._step(min(left, self.longest), mode)
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
@@ -176,11 +156,17 @@ class Simulation:
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
         control = self.control.copy()
-        compiled_advance(self.kinematics, self.law, self.properties.profiled)(
-            0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
+        self._step(0, slot.HOLD_LOAD)
+        self.control[:] = control
+
+    def _step(self, n_steps: int, mode: int) -> int:
+        """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled)
+        done: int = loop(
+            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        self.control[:] = control
+        return done
 
     def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
         """Of the last step, per unit of the solver's time, (..., n_dof)."""

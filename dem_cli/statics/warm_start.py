@@ -91,9 +91,9 @@ def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Warm
 
 
 def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[str, Any]) -> WarmStart | None:
-    warm_start = job.settings.warm_start
     from dem_cli.limit.path import OK, trace
 
+    warm_start = job.settings.warm_start
     path = trace(
         structure, friction, warm_start.flat * job.case.analysis.resolution,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),

@@ -9,9 +9,10 @@ import numpy as np
 
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kinematics import live_scale
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation, compiled_advance
+from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.statics.equilibrium import relax

@@ -8,7 +8,7 @@ from engine import block, highest_frequency, real_masses, rectangle, running_wal
 from reference import value
 
 from dem_cli.engine import measures
-from dem_cli.engine.simulation import compiled_advance
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.kernels import records as slot
 
 KN, G = 1.0e9, 9.81
