@@ -1,4 +1,4 @@
-"""What a run would do and cost, for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
+"""Estimate of a run, for `dem check`: joints, stiffness, kinematics, time step, cost; nothing is solved.
 
 Only the kernels of detection run here; the stepping loop is not compiled.
 """

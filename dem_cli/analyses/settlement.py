@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a settlement; status "ok" means that the structure stands afterwards."""
+    """Outcome of a settlement; status "ok" means that the structure stands afterwards. Raises CaseError without any."""
     if not case.settlement:
         raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
     job = Job.start(case, model, observer, settings)

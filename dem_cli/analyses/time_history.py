@@ -1,4 +1,6 @@
-"""analysis.repeats of a time history: the same motion on slightly different structures, and how much peaks differ.
+"""kind = "time-history": the motion of a structure while its supports move, and how far its peaks can be trusted.
+
+analysis.repeats: the same motion on slightly different structures, and how much peaks differ.
 
 One record is one draw: an exact integration of rocking blocks whose records are scaled by 0.1 % has another outcome in
 19 of 240 cases (docs/rocking.md). A peak without its spread says little.

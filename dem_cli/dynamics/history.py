@@ -1,4 +1,4 @@
-"""kind = "time-history": the motion of a structure while its supports move."""
+"""Time history: the motion of a structure while its supports move, from rest under its dead loads to the end."""
 
 from __future__ import annotations
 

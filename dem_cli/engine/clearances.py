@@ -1,4 +1,4 @@
-"""How far blocks can move until gaps of the start have closed: motion that is neither elastic nor failure.
+"""Clearances: how far blocks can move until gaps of the start have closed, which is neither elastic nor failure.
 
 Gaps are those of a profile (microrotations), or of blocks that do not fit.
 """

@@ -1,4 +1,4 @@
-"""A structure in real time: masses of the blocks, ground motion, dampers; after it came to rest in pseudo-time."""
+"""Dynamic simulation: real masses, ground motion, dampers; after the structure came to rest in pseudo-time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Between what stands and what fails: values of one number tried one after the other until the two are close."""
+"""Bisection between what stands and what fails: values of one number, one after the other, until two are close."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What runs at several intensities say about the capacity of a structure under each record, and about all records."""
+"""Collapse capacities: what runs at several intensities say about each record, and about all records."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where failure can be at the earliest, by limit analysis: values at which no forces in the friction cones exist.
+"""Bound by limit analysis: values from which on no forces in the friction cones exist.
 
 That is a bound, as friction is associated in it, and a first guess for the runs that decide.
 """

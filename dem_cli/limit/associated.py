@@ -145,7 +145,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     residual = float(np.abs(imbalance).max(initial=0.0))
     if found.kind == ANSWERED and residual <= program.settings.residual:
         return _refusal(program, OK, residual)
-    return _refusal(program, f"{GIVEN_UP}: cannot tell whether it {FALLS[9:]}", residual)
+    return _refusal(program, f"{GIVEN_UP}: cannot tell whether it stands under its dead loads", residual)
 
 
 def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:

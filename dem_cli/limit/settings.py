@@ -37,6 +37,8 @@ class InteriorPointSettings:
 
     tolerance: float = 1e-7  # infeasibility, in block weights and their displacements
     end: float = 1e-9  # of τ, over the square of the lightest block
+    at_end: float = 3.0  # times it: the mean product of a solution
+    friction_used: float = 0.999  # share of the friction that a start uses at most
     boundary: float = 0.95  # share of the way to the boundary
     # Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
     centring: tuple[tuple[float, float], ...] = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
@@ -47,6 +49,10 @@ class InteriorPointSettings:
     wide: float = 3.0  # the same of an iterate that may be predicted from
     reversal: float = 0.6  # τ of one kept iterate over that of the last
     stride: float = 0.9  # relative change of any product's factor in one prediction
+    growing: float = 0.3  # what the growth of a product counts, over its fall, in the length of a prediction
+    by_tau: float = 3.0  # times as much as the other products, may τ change
+    down: float = 3.0  # largest fall of ln τ in one prediction
+    up: float = 2.0  # and rise
     passed: float = 0.3  # τ over that of the fold, below which it is passed
     on_arc: int = 500  # iterations on one arc
     slow: int = 150  # iterations without a fold

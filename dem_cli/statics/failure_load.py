@@ -52,6 +52,7 @@ class LoadSearch:
         """The bracket; start: a state next to failure, instead of creep and loads raised from gravity.
 
         Where it does not hold, these are the way after all; where joints have a profile, nothing is estimated first.
+        Raises SolverError where the live load moves nothing, or where the budget ends.
         """
         sim, answer, settings = self.sim, self.answer, self.settings
         answer.low, answer.held, answer.settled = 0.0, sim.save(), measures.largest_displacement(sim)

@@ -1,4 +1,4 @@
-"""Motion at a constant load: when it can be nothing but failure, and when coming to rest is no equilibrium.
+"""Failure test: motion at a constant load, when it can be nothing but failure, and when rest is no equilibrium.
 
 A failure is shown by power: the motion accelerates while the loads release more energy than friction and
 joints take, both since the start and in the last doubling of time. The blocks that show it must have been

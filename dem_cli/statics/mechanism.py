@@ -1,4 +1,4 @@
-"""Who takes part in a failure, and how: from the motion between the last equilibrium and proven failure."""
+"""Failure mechanism: who takes part, and how, from the motion between the last equilibrium and proven failure."""
 
 from __future__ import annotations
 

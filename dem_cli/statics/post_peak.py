@@ -1,4 +1,4 @@
-"""After failure: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
+"""Post-peak path: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
 
 Where the live load keeps prescribing the rate of its own displacement, the multiplier is found along the whole
 way, down to nothing where a wall overturns by itself. Where the load stays, blocks that slide leave the others

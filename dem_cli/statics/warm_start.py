@@ -1,4 +1,4 @@
-"""A start next to failure: a state from a static solver, which the explicit solver proves and goes on from.
+"""Warm start: a state next to failure from a static solver, which the explicit solver proves and goes on from.
 
 Raising the load from gravity step by step costs the explicit solver most of its time, and large walls need
 more motion than it can wait for. A static solver knows where failure is: the zero-dilation path of limit.path, a
