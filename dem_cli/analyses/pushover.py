@@ -37,9 +37,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             "the load that the structure reaches from gravity may be some per cent lower"
         )
     elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > settings.warm_start.large:
-        job.warnings.append(
-            f"more than {settings.warm_start.large} blocks raised from gravity: the true failure load may be higher"
-        )
+        large = settings.warm_start.large
+        job.warnings.append(f"more than {large} blocks raised from gravity: the true failure load may be higher")
     if search.crept is not None and search.crept_beyond:
         job.warnings.append(
             f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
@@ -131,9 +130,8 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
         job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already
     try:
-        loads = search.limits or limit_loads(
-            model, properties, law_of(case), associated_only=by_path, settings=job.settings.limit
-        )
+        law, limit = law_of(case), job.settings.limit
+        loads = search.limits or limit_loads(model, properties, law, associated_only=by_path, settings=limit)
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return {}

@@ -94,9 +94,9 @@ class SafetyStudy:
         text = f"{len(self.runs) + 1}. run: {self._named(value)}"
         self.observer.progress(text, math.nan, math.nan, None)
         try:
-            run = decide(
-                *self.variant(value), ProgressOnly(self.observer), value, self._past(value) >= 0.0, self.settings
-            )
+            case, model = self.variant(value)
+            hopeless = self._past(value) >= 0.0
+            run = decide(case, model, ProgressOnly(self.observer), value, hopeless, self.settings)
         except CaseError as error:  # both ends of the range are possible
             self._give_up(value, str(error))
             return

@@ -78,9 +78,8 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
         track.write("settlement")
         if number % every == 0:
             track.frame("settlement")
-        track.observer.progress(
-            "settlement", number / settlement.rows, measures.largest_displacement(sim), 0.95 * number / settlement.rows
-        )
+        share, moved = number / settlement.rows, measures.largest_displacement(sim)
+        track.observer.progress("settlement", share, moved, 0.95 * share)
     sim.move_supports(np.zeros_like(motion))
     verdict = settle_or_fail(sim, 0.0, budget, measures.dead_scale(sim))
     track.write("settlement")

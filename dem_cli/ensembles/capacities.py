@@ -62,13 +62,9 @@ def distribution(
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
     at = _range(found, levels, statistics.points)
-    band = (
-        bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
-        if len(lower) > 1
-        else None
-    )
-    curve = {"intensity": at, "share": found.share(at)}
-    sure = None
+    curve, sure, band = {"intensity": at, "share": found.share(at)}, None, None
+    if len(lower) > 1:
+        band = bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
     if band is not None:
         curve |= {"low": band.low, "high": band.high}
         sure = {"level": confidence, "median": band.median, "dispersion": band.dispersion, "resamples": band.resamples}

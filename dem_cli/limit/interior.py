@@ -134,9 +134,10 @@ class Increment:
         slide = problem.bt @ (at.u - before.displacements)
         self.off_slide = slip_one - slip_two - (at.shear - before.shear) / problem.ks - slide
         self.off_one, self.off_two = mu * normal + at.shear - one, mu * normal - at.shear - two
-        self.off_target = (
-            self.target - at.load if self.displacement is None else self.displacement - problem.live @ at.u
-        )
+        if self.displacement is None:
+            self.off_target = self.target - at.load
+        else:
+            self.off_target = self.displacement - problem.live @ at.u
         rest = (self.unbalanced, self.off_gap, self.off_slide, self.off_one, self.off_two)
         return max(float(np.abs(r).max(initial=0.0)) for r in rest)
 

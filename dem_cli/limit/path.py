@@ -49,6 +49,11 @@ class Path:
             return None
         return self.normal, self.shear, self.gaps, self.displacements
 
+    def begun_again(self) -> Path:
+        """A path of its own that goes on from where this one is."""
+        loads, reached, displacements = [*self.loads], [*self.reached], [*self.live_displacements]
+        return replace(self, loads=loads, reached=reached, live_displacements=displacements)
+
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
         return {
@@ -95,11 +100,9 @@ def trace(
     _keep(path, structure, problem, standing, at_rest, 0.0)
     path.status = UNFINISHED
     best = path
-    for first, growth in settings.path.ways:
-        tried = replace(
-            path, loads=[*path.loads], reached=[*path.reached], live_displacements=[*path.live_displacements]
-        )
-        _follow(tried, structure, problem, standing, (first, growth), growth_of_plateau, spent, progress)
+    for way in settings.path.ways:
+        tried = path.begun_again()
+        _follow(tried, structure, problem, standing, way, growth_of_plateau, spent, progress)
         if tried.status == OK or tried.reached[-1] > best.reached[-1]:
             best = tried
         best.factorisations = problem.factorisations

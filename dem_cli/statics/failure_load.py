@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from dem_cli.statics.warm_start import WarmStart
 
 
+AGAINST = "a small live load moves the structure against its direction: it hardly stands as it is"
+
+
 class LoadSearch:
     """The search of the failure load of a structure that stands under its dead loads (see the module docstring).
 
@@ -59,9 +62,7 @@ class LoadSearch:
         answer.compliance, answer.elastic = compliance(sim)
         if answer.compliance <= 0.0:
             if sim.loads.live[sim.free].any():
-                raise SolverError(
-                    "a small live load moves the structure against its direction: it hardly stands as it is"
-                )
+                raise SolverError(AGAINST)
             raise SolverError("the live load moves nothing: no free block has a live load")
         if start is not None and self._holds(start):
             low = answer.carried / sim.live_scale

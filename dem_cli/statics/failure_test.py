@@ -39,9 +39,8 @@ class FailureTest:
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
         self.far = (proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
-            self.far = min(
-                self.far, max(proof.not_elastic * scale, proof.gross * float(np.median(sim.widths[sim.free])))
-            )
+            width = float(np.median(sim.widths[sim.free]))
+            self.far = min(self.far, max(proof.not_elastic * scale, proof.gross * width))
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
