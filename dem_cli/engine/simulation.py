@@ -57,6 +57,7 @@ class Simulation:
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = relaxation.local_damping
+        self.control[slot.FIRE_START] = relaxation.fire_mix
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
@@ -242,9 +243,9 @@ class Simulation:
         """Rate of the live load's own displacement in a creep [J per step]."""
         self.control[slot.RATE] = rate
 
-    def restart_relaxation(self, mix: float) -> None:
-        """FIRE from its beginning: the share of velocity that turns into the direction of force, no step uphill yet."""
-        self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = mix, 0.0
+    def restart_relaxation(self) -> None:
+        """FIRE from its beginning: the first share of velocity that turns towards the force, no step uphill yet."""
+        self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = self.control[slot.FIRE_START], 0.0
 
     def move_supports(self, velocities: np.ndarray) -> None:
         """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""

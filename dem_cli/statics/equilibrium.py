@@ -65,7 +65,7 @@ def relax(
     sim.use(relaxation.fire_safety, damping=0.0)
     sim.set_load(load)
     _limit_falls(sim)
-    sim.restart_relaxation(relaxation.fire_mix)
+    sim.restart_relaxation()
     max_steps = relaxation.most_steps if max_steps is None else max_steps
     calm = 0
     for _ in range(max(1, max_steps // relaxation.chunk)):

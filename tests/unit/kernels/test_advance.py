@@ -104,6 +104,16 @@ def test_work_is_change_of_kinetic_energy(mode, damping, kinematics):
     assert largest > 0.0
 
 
+def test_relaxation_begins_again_after_a_step_uphill():
+    """With the mixing of the settings, not with one that the kernel knows."""
+    sim = block_on_base("fixed")
+    sim.control[slot.FIRE_START], sim.control[slot.FIRE_MIX] = 0.25, 0.01
+    sim.advance(1, slot.FIRE)
+    sim.bodies.velocities[1, 1] *= -1.0
+    sim.advance(1, slot.FIRE)
+    assert sim.control[slot.FIRE_MIX] == 0.25
+
+
 def test_creep_prescribes_the_rate_of_the_live_displacement():
     """q·v = rate after every step, with any damping."""
     sim = simulation(tables(*running_wall(3, 2)))
