@@ -29,7 +29,7 @@ def quick(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bench")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(joints, "VARIANTS", {name: joints.VARIANTS[name] for name in COMPILED})
-        patch.setattr(sweeps, "FEW", 4)
+        patch.setattr(sweeps, "FEW_RUNS", 4)
         done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
     assert done.exit_code == 0, done.output
     return folder, json.loads((folder / "all.json").read_text("utf-8"))["groups"]
