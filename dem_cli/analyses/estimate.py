@@ -28,7 +28,7 @@ STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of case
     "safety": (2_000, 60_000),  # each of its runs
     "modes": (200, 10_000),
 }
-IN_SECONDS = ("time-history", "fragility")  # kinds that analyses/estimate_shaking.py knows
+IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
 NANOSECONDS = {"fixed": 10, "large": 20}  # per contact point and step, one core (scripts/benchmark)
