@@ -1,5 +1,7 @@
 """Sphinx: the pages of docs/ as a site. `scripts/docs` builds and checks it."""
 
+from pathlib import Path
+
 project = "dem"
 html_title = "dem"
 html_short_title = "dem"
@@ -32,5 +34,18 @@ def _without_contents(app, page, template, context, tree):
         context["furo_hide_toc"] = True
 
 
+ROOT_PAGES = ("contributing", "changelog")  # pages whose text stands at the root, where hosts look for it
+
+
+def _from_the_root(app, name, source):
+    if name in ROOT_PAGES:
+        text = (Path(app.srcdir).parent / f"{name.upper()}.md").read_text(encoding="utf-8")
+        source[0] = text.replace("](docs/", "](")
+    for page in ROOT_PAGES:
+        for link in (f"]({page.upper()}.md", f"](../{page.upper()}.md"):
+            source[0] = source[0].replace(link, f"]({page}.md")
+
+
 def setup(app):
+    app.connect("source-read", _from_the_root)
     app.connect("html-page-context", _without_contents, priority=900)  # after furo's own

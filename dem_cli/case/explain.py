@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
+from dem_cli.case import retired_keys
 from dem_cli.case.keys import NAME_PLACEHOLDER, CaseKey, CaseTable, tables
 from dem_cli.errors import UsageError
 
@@ -131,7 +132,10 @@ def _together(found: Iterator[CaseEntry]) -> list[CaseEntry]:
 
 
 def unknown(model: type[BaseModel], query: str, words: Sequence[str]) -> str:
-    """What to say about a key that does not exist: the nearest ones, best first."""
+    """What to say about a key that does not exist: its name now, or the nearest ones, best first."""
+    old = retired_keys.retired(words)
+    if old is not None:
+        return f"{query}: {retired_keys.message(old)}"
     full: dict[str, str] = {}
     for entry in entries(model):
         steps = [step for step in entry.path.split(".") if step != NAME_PLACEHOLDER]

@@ -15,7 +15,7 @@ from typing import Any
 import tomli
 from pydantic import ValidationError
 
-from dem_cli.case import cross_references
+from dem_cli.case import cross_references, retired_keys
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import Override, apply, parse
 from dem_cli.case.plausibility import doubts
@@ -40,6 +40,7 @@ class CaseSource:
         self.path = path
         self.text = text
         self.overrides = tuple(overrides)
+        self.old_keys: list[CaseProblem] = []  # doubts about keys that are retired and still read
 
     @cached_property
     def places(self) -> KeyPositions:
@@ -92,7 +93,7 @@ class LoadedCase(CaseSource):
     def __init__(self, case: Case, source: CaseSource):
         super().__init__(source.path, source.text, source.overrides)
         self.case = case
-        self.warnings = [self.render(doubt) for doubt in doubts(case)]
+        self.warnings = [self.render(doubt) for doubt in (*source.old_keys, *doubts(case))]
 
     def __repr__(self) -> str:
         return f"<case {self.case.title or self.path.stem!r} of {self.path}>"
@@ -129,6 +130,7 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
     if found:
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
+    source.old_keys, found = retired_keys.rename(data, {override.path for override in source.overrides})
     cross_references.complete(data, source.path.stem)
     case = None
     try:

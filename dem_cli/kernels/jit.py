@@ -1,6 +1,6 @@
 """The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
 
-The cache folder carries the hash of all sources of the package, because numba looks only at the
+The cache folder carries the hash of all sources of kernels and laws, because numba looks only at the
 file of the decorated function: a callee edited elsewhere, or a reordered record, would otherwise
 go on running old machine code.
 """

@@ -17,7 +17,8 @@ Share = Annotated[float, Field(ge=0.0, le=0.2)]
 class Analysis:
     """A registered analysis.
 
-    run(case, model, observer) -> Outcome; imported when called, so that listing kinds loads no solver.
+    run(case, model, observer, settings) -> Outcome, with `batch` besides where it consists of many runs; imported when
+    called, so that listing kinds loads no solver.
     """
 
     kind: str

@@ -13,6 +13,7 @@ from dem_cli.case.base import CaseModel, Positive
 from dem_cli.case.explain import DOC_PAGES, entries, find
 from dem_cli.case.keys import KNOWN_UNITS, CaseTable, tables, toml
 from dem_cli.errors import UsageError
+from dem_cli.structures.registry import GENERATORS
 
 MODEL = make_case_model()
 TABLES = tables(MODEL)
@@ -93,7 +94,7 @@ def test_names_of_the_user_and_lists_are_seen():
         ("structure.arch.thickness", ["structure.thickness"]),
         ("structure.0.openings.1.width", ["structure.openings.width"]),
         ("openings.width", ["structure.openings.width"]),
-        ("[[structure]]", ["structure"] * 3),
+        ("[[structure]]", ["structure"] * len(GENERATORS)),
         ("joints.barton", ["joints.NAME"]),
         ("barton", ["joints.NAME"]),
         ("materials.peperino", ["materials.NAME"]),
