@@ -55,10 +55,8 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     load = 0.0
     for turn, target in enumerate(analysis.path):
         for next_load in loads_between(load, target / sim.live_scale, step):
-            share = turn / len(analysis.path)
-            track.observer.progress(
-                "on the path", next_load * sim.live_scale, measures.largest_displacement(sim), share
-            )
+            share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
+            track.observer.progress("on the path", next_load * sim.live_scale, moved, share)
             verdict = settle_or_fail(sim, next_load, job.budget, elastic * max(abs(next_load), step))
             if verdict.state != "equilibrium":
                 found |= {"status": FAILS, "failure_load": next_load * sim.live_scale}

@@ -1,4 +1,4 @@
-"""What a run would do and cost, for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
+"""Estimate of a run, for `dem check`: joints, stiffness, kinematics, time step, cost; nothing is solved.
 
 Only the kernels of detection run here; the stepping loop is not compiled.
 """
@@ -44,13 +44,13 @@ def describe(case: Case, model: Model) -> Rows:
     properties = joint_properties(case, model, _ratio(case, model))
 
     def simulation(kinematics: str) -> Simulation:
-        sim = Simulation(model, law_of(case), properties, kinematics, live_scale=scale, tilting=tilting)
+        sim = Simulation(model, law_of(case), properties, kinematics, scale, tilting, DEFAULT)
         sim.use(1.0)  # masses at the limit of stability
         return sim
 
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
-    moving = why_moving(case, model) if moving is None else moving
+    moving = why_moving(case, model, DEFAULT) if moving is None else moving
     sim = simulation("fixed" if moving is None else "large")
     return [
         *_blocks(model, case.gravity),
@@ -69,7 +69,7 @@ def _shaking(case: Case, model: Model) -> Rows:
     from dem_cli.analyses.estimate_shaking import describe_shaking
     from dem_cli.dynamics.history import damping_of_start, shaken
 
-    sim = shaken(case, model, damping_of_start(case, model))
+    sim = shaken(case, model, damping_of_start(case, model, DEFAULT), settings=DEFAULT)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
@@ -84,7 +84,7 @@ def _ratio(case: Case, model: Model) -> float:
     if case.analysis.kind == "settlement":
         from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
 
-        return of_settlement(model)
+        return of_settlement(model, DEFAULT.stiffness.settlement_overlap)
     return DEFAULT.stiffness.statics
 
 
@@ -168,7 +168,7 @@ def _runs(case: Case) -> Rows:
         return []
     from dem_cli.ensembles.static_values import expected, scale_of
 
-    scale, (fewest, most) = scale_of(case), expected(case)
+    scale, (fewest, most) = scale_of(case, DEFAULT.safety), expected(case)
     named = "F" if case.analysis.of_strength else case.analysis.vary
     return [("runs", f"{fewest} to {most}, {named} between {scale.low:g} and {scale.high:g}")]
 

@@ -1,4 +1,4 @@
-"""What a time history would do and cost, for `dem check`: frequencies, time step, steps, run time."""
+"""Estimate of a time history, for `dem check`: frequencies, time step, steps, run time."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ import numpy as np
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
-from dem_cli.ensembles.capacities import Bounds, bounds_of, distribution, outcomes, split, survived_above
+from dem_cli.ensembles.capacities import Bounds, Outcomes, bounds_of, distribution, outcomes, split, survived_above
 from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
@@ -57,7 +57,7 @@ class FragilityStudy:
         self.rested = self._rest()
         if not self.rested[0].stands:
             return Outcome(self._facts() | {"status": FALLS, "collapse_intensities": None, "runs": 0})
-        self.batcher = Batcher(self.rested, self._motion, self.batch)
+        self.batcher = Batcher(self.rested, self._motion, self.batch, self.settings.statistics)
         pairs = [(s, r) for r in range(len(self.records)) for s in range(len(self.rested)) if self.rested[s].stands]
         tasks, expected = self._plan(pairs)
 
@@ -221,7 +221,7 @@ def _lower(bounds: Bounds | None) -> float | None:
     return None if bounds is None else bounds.lower
 
 
-def _share(found: Any, level: float) -> float | None:
+def _share(found: Iterable[Outcomes], level: float) -> float | None:
     """Share of all that were tried at a level that fell."""
     tried = [runs[level] for runs in found if level in runs]
     return sum(tried) / len(tried) if tried else None

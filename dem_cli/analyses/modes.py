@@ -126,13 +126,13 @@ def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
 
 def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     """The structure moved along a mode so far that it can be seen; `step` is the number of the mode."""
-    modes = sim.settings.modes
+    settings = sim.settings.modes
     model, d = sim.model, sim.model.dimension
     free = ~model.fixed
     reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, d:]).max(axis=1) * sim.shape.radii
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
     turn = float(np.abs(shape[:, d:]).max())
-    amplitude = min(modes.visible * size / reach.max(), modes.largest_turn / turn if turn > 0.0 else math.inf)
+    amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
     return rest._replace(
         step=number,
@@ -165,13 +165,13 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
     That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
     with the new stiffness, and the factor is corrected until the frequency is met.
     """
-    modes = sim.settings.modes
+    settings = sim.settings.modes
     wanted = job.case.analysis
     tried: list[float] = []
     factor, found, sinks = 1.0, computed, measures.largest_overlap(sim) / sim.smallest
-    while len(tried) < modes.rounds and abs(found / wanted.measured - 1.0) > modes.agrees:
+    while len(tried) < settings.rounds and abs(found / wanted.measured - 1.0) > settings.agrees:
         factor *= (wanted.measured / found) ** 2
-        frequency = _frequency_with(job, sim, factor) if sinks / factor < modes.sinks else None
+        frequency = _frequency_with(job, sim, factor) if sinks / factor < settings.sinks else None
         if frequency is None:
             job.warnings.append(
                 f"joints as soft as {wanted.measured:g} Hz asks for ({factor:.3g} times kn and ks) do not carry the "
@@ -180,8 +180,8 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
             break
         found = frequency
         tried.append(found)
-    met = abs(found / wanted.measured - 1.0) <= modes.agrees
-    if not met and len(tried) == modes.rounds:
+    met = abs(found / wanted.measured - 1.0) <= settings.agrees
+    if not met and len(tried) == settings.rounds:
         job.warnings.append(f"the calibrated frequency is {found:.4g} Hz instead of {wanted.measured:g} Hz")
     return {
         "mode": wanted.mode,

@@ -13,7 +13,8 @@ from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.statics import post_peak
 from dem_cli.statics.equilibrium import FALLS, settle
-from dem_cli.statics.failure_load import FailureLoad, LoadSearch, SearchRange
+from dem_cli.statics.failure_bracket import FailureLoad, SearchRange
+from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.warm_start import GRAVITY, LIMIT, PATH, find_start
 
@@ -25,7 +26,6 @@ INTERRUPTED = "interrupted"
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
-    warm_start = settings.warm_start
     job = Job.start(case, model, observer, settings)
     search, sim = _search(job)
     sims = [sim]
@@ -36,10 +36,9 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             "started from the forces of limit analysis without friction in head joints: "
             "the load that the structure reaches from gravity may be some per cent lower"
         )
-    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > warm_start.large:
-        job.warnings.append(
-            f"more than {warm_start.large} blocks raised from gravity: the true failure load may be higher"
-        )
+    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > settings.warm_start.large:
+        large = settings.warm_start.large
+        job.warnings.append(f"more than {large} blocks raised from gravity: the true failure load may be higher")
     if search.crept is not None and search.crept_beyond:
         job.warnings.append(
             f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
@@ -126,14 +125,13 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     from dem_cli.limit.path import OK
 
     case, model = job.case, job.model
-    properties = joint_properties(case, model)
+    properties = joint_properties(case, model, job.settings.stiffness.statics)
     if note := taken_as_plane(properties):
         job.warnings.append(note)
     by_path = search.start.get("kind") == PATH  # known already
     try:
-        loads = search.limits or limit_loads(
-            model, properties, law_of(case), associated_only=by_path, settings=job.settings.limit
-        )
+        law, limit = law_of(case), job.settings.limit
+        loads = search.limits or limit_loads(model, properties, law, associated_only=by_path, settings=limit)
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return {}

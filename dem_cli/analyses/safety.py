@@ -43,9 +43,9 @@ class SafetyStudy:
         self.settings = settings
         self.case, self.model, self.observer = case, model, observer
         self.analysis: SafetyAnalysis = case.analysis
-        self.scale = scale_of(case)
+        self.scale = scale_of(case, settings.safety)
         self.started, self.compiling = time.perf_counter(), 0.0
-        self.told: dict[float, StaticRun] = {}  # only of the values next to the answer
+        self.nearest_runs: dict[float, StaticRun] = {}  # only of the values next to the answer
         self.runs: list[dict[str, Any]] = []
         self.answers: dict[float, bool] = {}
         self.undecided: set[float] = set()  # values at which neither equilibrium nor failure was proven
@@ -60,9 +60,8 @@ class SafetyStudy:
         start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
         status = "ok"
         try:
-            ends = bisection.search(
-                self._stands, self.scale, self.analysis.resolution, guess, self.analysis.scan, start
-            )
+            resolution, scan = self.analysis.resolution, self.analysis.scan
+            ends = bisection.search(self._stands, self.scale, resolution, guess, scan, start, self.settings.safety)
         except KeyboardInterrupt:
             if not self.answers:
                 raise
@@ -95,25 +94,25 @@ class SafetyStudy:
         text = f"{len(self.runs) + 1}. run: {self._named(value)}"
         self.observer.progress(text, math.nan, math.nan, None)
         try:
-            told = decide(
-                *self.variant(value), ProgressOnly(self.observer), value, self._past(value) >= 0.0, self.settings
-            )
+            case, model = self.variant(value)
+            hopeless = self._past(value) >= 0.0
+            run = decide(case, model, ProgressOnly(self.observer), value, hopeless, self.settings)
         except CaseError as error:  # both ends of the range are possible
             self._give_up(value, str(error))
             return
-        self.steps += told.run.steps
-        self.compiling += told.job.clock.compiling
-        self.runs.append(told.run.summary())
-        self.warnings += [text for text in told.job.warnings if text not in self.warnings]
-        if told.run.stands is None:
-            self._give_up(value, told.run.why)
+        self.steps += run.result.steps
+        self.compiling += run.job.clock.compiling
+        self.runs.append(run.result.summary())
+        self.warnings += [text for text in run.job.warnings if text not in self.warnings]
+        if run.result.stands is None:
+            self._give_up(value, run.result.why)
             return
-        self.answers[value] = told.run.stands
-        if told.run.stands:
-            self.closure = max(self.closure, told.run.closure, key=abs)
-        self.told[value] = told
+        self.answers[value] = run.result.stands
+        if run.result.stands:
+            self.closure = max(self.closure, run.result.closure, key=abs)
+        self.nearest_runs[value] = run
         near = set(self._nearest())
-        self.told = {v: kept for v, kept in self.told.items() if v in near}
+        self.nearest_runs = {v: kept for v, kept in self.nearest_runs.items() if v in near}
 
     def _give_up(self, value: float, why: str) -> None:
         """Nothing was proven at a value: it counts as one that does not stand, and as none that fails."""
@@ -132,7 +131,7 @@ class SafetyStudy:
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)
-        return bound(self.variant, self.scale, self.analysis.resolution, self.settings.safety.closer)
+        return bound(self.variant, self.scale, self.analysis.resolution, self.settings)
 
     # -- what they say -----------------------------------------------------------------------------
 
@@ -184,10 +183,10 @@ class SafetyStudy:
                 answer["strengths_needed"] = {
                     joint: strengths(table) for joint, table in weaker(self.case, found).joints.items()
                 }
-        failing = self.told.get(ends.fails) if ends.fails is not None else None
+        failing = self.nearest_runs.get(ends.fails) if ends.fails is not None else None
         if failing is not None:
-            answer |= failing.run.mechanism
-            answer["proof_of_failure"] = failing.run.proof or {"why": failing.run.why}
+            answer |= failing.result.mechanism
+            answer["proof_of_failure"] = failing.result.proof or {"why": failing.result.why}
         answer["load"] = self.analysis.constant_load
         if self.known is not None:
             answer["limit_analysis"] = self.known.summary() if isinstance(self.known, Bound) else {"note": self.known}
@@ -196,17 +195,17 @@ class SafetyStudy:
 
     def _facts(self, ends: Ends) -> dict[str, Any]:
         """How it was obtained; joints and contacts are those of the structure next to failure."""
-        told = next(iter(self.told.values()), None)
+        run = next(iter(self.nearest_runs.values()), None)
         return {
-            "joints": told.sim.first_joints if told else None,
-            "contacts": told.sim.first_points if told else None,
-            "kinematics": told.sim.kinematics if told else None,
+            "joints": run.sim.first_joints if run else None,
+            "contacts": run.sim.first_points if run else None,
+            "kinematics": run.sim.kinematics if run else None,
             "steps": self.steps,
             "time_step": 1.0,
             "solve_seconds": time.perf_counter() - self.started - self.compiling,
             "compile_seconds": self.compiling,
             "energy_closure": self.closure,
-            "skipped": told.job.skipped if told else [],
+            "skipped": run.job.skipped if run else [],
             "warnings": self.warnings,
         }
 
@@ -214,7 +213,7 @@ class SafetyStudy:
 
     def _show(self, ends: Ends, follow: float) -> None:
         """Rows and frames of the last structure that stands and of the first that fails, and its collapse."""
-        standing, failing = (self.told.get(v) if v is not None else None for v in ends)
+        standing, failing = (self.nearest_runs.get(v) if v is not None else None for v in ends)
         base = failing or standing
         if base is None:
             return
@@ -231,13 +230,13 @@ class SafetyStudy:
         if quiet is not None:
             self.warnings.append(f"the collapse was not followed to its end: {quiet}")
 
-    def _hand_over(self, told: StaticRun, base: StaticRun) -> None:
+    def _hand_over(self, run: StaticRun, base: StaticRun) -> None:
         """Rows, and the frame as a displacement of the structure that is drawn."""
-        for row in told.rows:
+        for row in run.rows:
             self.observer.row(row)
         if self.case.output.frames == 0:
             return
-        frame, shift = told.frame, base.model.centroids - told.model.centroids
+        frame, shift = run.frame, base.model.centroids - run.model.centroids
         contacts = frame.contacts
         moved = contacts._replace(points=contacts.points + shift[contacts.blocks[:, 0]])
         self.observer.frame(frame._replace(positions=frame.positions + shift, contacts=moved))

@@ -17,13 +17,14 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 from dem_cli.statics.equilibrium import FALLS, check_finite, settle_or_fail, stand
+from dem_cli.statics.post_peak import soften_falls
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a settlement; status "ok" means that the structure stands afterwards."""
+    """Outcome of a settlement; status "ok" means that the structure stands afterwards. Raises CaseError without any."""
     if not case.settlement:
         raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
     job = Job.start(case, model, observer, settings)
@@ -59,16 +60,16 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
 
 def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
-    relaxation, settlement = sim.settings.relaxation, sim.settings.settlement
+    settlement = sim.settings.settlement
     motion = _motions(case, sim)
     reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
     largest = float(np.abs(motion * reach).max())
     elastic = max(measures.largest_displacement(sim), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (settlement.per_step * elastic), settlement.fewest) / settlement.rows)), 1)
     every = max(settlement.rows // max(case.output.frames - 2, 1), 1)
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     sim.set_load(0.0)
-    sim.limit_speed(max(sim.settings.post_peak.fall_speed * sim.smallest, 20.0 * largest / (chunk * settlement.rows)))
+    soften_falls(sim, largest, chunk * settlement.rows)
     sim.move_supports(motion / (chunk * settlement.rows))
     for number in range(1, settlement.rows + 1):
         sim.advance(chunk, slot.HOLD_LOAD)
@@ -77,9 +78,8 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
         track.write("settlement")
         if number % every == 0:
             track.frame("settlement")
-        track.observer.progress(
-            "settlement", number / settlement.rows, measures.largest_displacement(sim), 0.95 * number / settlement.rows
-        )
+        share, moved = number / settlement.rows, measures.largest_displacement(sim)
+        track.observer.progress("settlement", share, moved, 0.95 * share)
     sim.move_supports(np.zeros_like(motion))
     verdict = settle_or_fail(sim, 0.0, budget, measures.dead_scale(sim))
     track.write("settlement")

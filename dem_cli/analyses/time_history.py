@@ -1,4 +1,6 @@
-"""analysis.repeats of a time history: the same motion on slightly different structures, and how much peaks differ.
+"""kind = "time-history": the motion of a structure while its supports move, and how far its peaks can be trusted.
+
+analysis.repeats: the same motion on slightly different structures, and how much peaks differ.
 
 One record is one draw: an exact integration of rocking blocks whose records are scaled by 0.1 % has another outcome in
 19 of 240 cases (docs/rocking.md). A peak without its spread says little.
@@ -64,7 +66,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
     structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
-    batcher = Batcher(structures, lambda _: motions, batch)
+    batcher = Batcher(structures, lambda _: motions, batch, settings.statistics)
 
     def say(done: int) -> None:
         observer.progress(f"repeats {done:,} of {len(trials):,}", math.nan, math.nan, done / max(len(trials), 1))

@@ -1,4 +1,4 @@
-"""From a validated case to the arrays that the solvers see."""
+"""Assembly: from a validated case to the arrays that the solvers see."""
 
 from __future__ import annotations
 
@@ -60,7 +60,10 @@ def assembly(case: Case) -> Assembly:
 
 
 def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
-    """All blocks of a case, from the lowest up and from left to right, and the aliases {alias: block id}."""
+    """All blocks of a case, from the lowest up and from left to right, and the aliases {alias: block id}.
+
+    Raises CaseError: impossible shapes, names twice, no blocks.
+    """
     problems: list[CaseProblem] = []
     blocks: list[Block] = []
     local: dict[str, list[Block]] = {}

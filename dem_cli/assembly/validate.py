@@ -1,4 +1,4 @@
-"""Is this a structure at all? Mistakes of geometry that stop a run, and oddities that only deserve a word."""
+"""Validation of the geometry: mistakes that stop a run, and oddities that only deserve a word."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dem_cli.bench.cases import KNOWN_STRUCTURES, SIZES, KnownStructure, solve
 from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
@@ -15,6 +15,11 @@ from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.output.record import Frame, HistoryRow, Observer
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.model.model import Model
 
 PICTURES: dict[str, Any] = {}
 KERNEL, RUN = "kernel", "run"
@@ -32,7 +37,7 @@ class Feature:
 
     name: str
     overrides: tuple[str, ...] = ()
-    observer: Callable[[Any, Any, Path], Any] | None = None  # (case, model, folder) -> an observer that is closed
+    observer: Callable[[Case, Model, Path], Any] | None = None  # (case, model, folder) -> an observer that is closed
     shows: str | None = None  # key of the summary without which it was not done
 
     def available(self) -> bool:
@@ -49,7 +54,7 @@ class Feature:
 class DiskObserver(Observer):
     """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
 
-    def __init__(self, case: Any, model: Any, folder: Path):
+    def __init__(self, case: Case, model: Model, folder: Path):
         from dem_cli.case.writer import case_text
         from dem_cli.output.store import ResultWriter
 
@@ -112,10 +117,10 @@ def _kernels(options: BenchOptions, found: GroupResult) -> None:
         )
 
 
-def loops(sim: Any) -> dict[str, Callable]:
+def loops(sim: Simulation) -> dict[str, Callable]:
     """Stepping loops that do the same motion, by what they have."""
     from dem_cli.bench.bare_loop import make_bare
-    from dem_cli.engine.simulation import compiled_advance
+    from dem_cli.engine.loops import compiled_advance
     from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
     from dem_cli.kernels.drift import drift_centroids, drift_corners
     from dem_cli.kernels.planar_forces import make_planar_forces
@@ -128,7 +133,7 @@ def loops(sim: Any) -> dict[str, Callable]:
     return {BARE: make_bare(*parts, False), LEDGER: make_bare(*parts, True), FULL: full}
 
 
-def _stepping(sim: Any, loop: Callable, steps: int) -> Callable[[], Any]:
+def _stepping(sim: Simulation, loop: Callable, steps: int) -> Callable[[], Any]:
     from dem_cli.kernels import records as slot
 
     return lambda: loop(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dem_cli.bench.cases import SIZES, KnownStructure
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import TimedTask, in_turn
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
 
 PICTURES: dict[str, Any] = {}
 LOAD = 0.3  # multiplier at which the walls stand, with sticking, sliding and open points
@@ -17,7 +20,7 @@ BLOCK_COUNTS = (21, 231, 2275, 20100)
 QUICK_BLOCKS = (21,)
 
 
-def simulation(known: KnownStructure, kinematics: str) -> Any:
+def simulation(known: KnownStructure, kinematics: str) -> Simulation:
     """A compiled simulation of a structure under LOAD, some hundred steps old."""
     from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.engine.simulation import Simulation
@@ -31,7 +34,7 @@ def simulation(known: KnownStructure, kinematics: str) -> Any:
     return sim
 
 
-def stepping(sim: Any) -> tuple[TimedTask, int]:
+def stepping(sim: Simulation) -> tuple[TimedTask, int]:
     """A job that does the same steps each time, and point-steps of one run."""
     from dem_cli.kernels import records as slot
 

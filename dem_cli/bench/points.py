@@ -9,6 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.joints import empty_contacts
 from dem_cli.kernels.records import Contacts, Joints
 
@@ -62,7 +63,8 @@ def points_per_joint(layout: str) -> Iterator[None]:
         def _track(self, n_memory: int, reach: float) -> JointTracking:
             tracking = super()._track(n_memory, reach)
             if layout != "2" and not tracking.moves:
-                tracking.joints, tracking.contacts = refined(tracking.joints, tracking.contacts, places)
+                joints, contacts = refined(tracking.joints, tracking.contacts, places)
+                tracking.take(JointArrays(joints, tracking.geometry, contacts))
             return tracking
 
     # the mechanism is told by the two ends of a joint

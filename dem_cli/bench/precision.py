@@ -61,9 +61,7 @@ def tolerance(value: float) -> Settings:
 
 def time_step(factor: float) -> Settings:
     """Time steps longer by `factor` than usual, by lighter fictitious masses."""
-    usual = DEFAULT.relaxation
-    safeties = {name: factor * getattr(usual, name) for name in ("fire_safety", "creep_safety", "combined_safety")}
-    return replace(DEFAULT, relaxation=replace(usual, **safeties))
+    return replace(DEFAULT, relaxation=DEFAULT.relaxation.stretched(factor))
 
 
 AXES = (

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from dem_cli.bench.cases import KNOWN_STRUCTURES
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 
@@ -53,7 +53,7 @@ def measure(options: BenchOptions) -> GroupResult:
     return found
 
 
-def sweep(place: Path, count: int, jobs: int, known: Any) -> SweepTiming:
+def sweep(place: Path, count: int, jobs: int, known: KnownStructure) -> SweepTiming:
     """One sweep, in a folder of its own."""
     output = place / f"out-{time.monotonic_ns()}"
     words = [sys.executable, "-m", "dem_cli", "sweep", str(place / f"{count}.toml"), "-o", str(output)]
@@ -61,7 +61,8 @@ def sweep(place: Path, count: int, jobs: int, known: Any) -> SweepTiming:
     subprocess.run([*words, "-j", str(jobs), "-q", "--json"], check=True, stdout=subprocess.DEVNULL)
     wall, cpu = time.perf_counter() - begun, cpu_of_children() - spent
     summaries = [json.loads(path.read_text(encoding="utf-8")) for path in output.glob("runs/*/summary.json")]
-    worst = max(abs(known.error(summary["failure_load"])) for summary in summaries)
+    errors = [known.error(summary["failure_load"]) for summary in summaries]
+    worst = max(abs(error) for error in errors if error is not None)
     return SweepTiming(wall, cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
 
 

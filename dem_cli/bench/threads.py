@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from dem_cli.bench.cases import KNOWN_STRUCTURES
+from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
@@ -42,7 +42,7 @@ def measure(options: BenchOptions) -> GroupResult:
     return found
 
 
-def runs(known: Any, folder: Path, threads: int, at_once: int) -> tuple[float, list[float]]:
+def runs(known: KnownStructure, folder: Path, threads: int, at_once: int) -> tuple[float, list[float]]:
     """Wall-clock seconds until `at_once` equal runs ended, and their failure loads."""
     environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads))
     overrides = [word for value in ("analysis.follow=0.0", *known.overrides) for word in ("--set", value)]

@@ -6,7 +6,7 @@ Everything else in the package asks for it by `geometry_of` and does not know ho
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -28,22 +28,26 @@ class JointGeometry(Protocol):
     def features(self) -> np.ndarray:
         """What each point is within its joint, (n_points,)."""
 
-    def kept(self) -> Any:
+    def kept(self) -> Self:
         """The same with a copy of what changes."""
 
 
-class NarrowPhase(Protocol):
-    """The contract of a module like contact/planar.py."""
+Geometry = TypeVar("Geometry", bound=JointGeometry)
+Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing
+
+
+class NarrowPhase(Protocol[Geometry, Returning]):
+    """The contract of a module like contact/planar.py, for its own record of the geometry of joints."""
 
     def find(self, model: Model, corners: np.ndarray, reach: float) -> Faces:
         """All pairs of faces of different blocks that are closer than `reach` [m]."""
 
     def points(
-        self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Any = None
-    ) -> tuple[Joints, Any]:
+        self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Returning | None
+    ) -> tuple[Joints, Geometry]:
         """Joints between faces with their stiffness, and their geometry; not yet placed."""
 
-    def place(self, joints: Joints, geometry: Any, contacts: Contacts, bodies: Bodies) -> None:
+    def place(self, joints: Joints, geometry: Geometry, contacts: Contacts, bodies: Bodies) -> None:
         """Gaps, frames, levers and points where the blocks are now."""
 
     def corners_of(self, shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
@@ -55,26 +59,29 @@ class NarrowPhase(Protocol):
     def level(self, joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
         """Gives all points of each joint one frame."""
 
-    def chains_of(self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Any:
+    def chains_of(
+        self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties
+    ) -> Returning | None:
         """What of the joints of the start comes back wherever the same faces meet again; None: nothing."""
 
-    def take_over(self, old: Any, new: Any, match: np.ndarray) -> None:
+    def take_over(self, old: Geometry, new: Geometry, match: np.ndarray) -> None:
         """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
 
-    def microrotations(self, joints: Joints, geometry: Any) -> np.ndarray:
+    def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""
 
-    def corner_shares(self, joints: Joints, geometry: Any, corners: np.ndarray) -> np.ndarray:
+    def corner_shares(self, joints: Joints, geometry: Geometry, corners: np.ndarray) -> np.ndarray:
         """1: a point is a corner of b on the face of a; 0: the other way round; between: both, (n_points,)."""
 
-    def sink(self, geometry: Any, joint: int, depth: float) -> None:
+    def sink(self, geometry: Geometry, joint: int, depth: float) -> None:
         """A joint that takes over from another one starts from its penetration [m]."""
 
 
-GEOMETRY: dict[int, NarrowPhase] = {2: planar}
+AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
+GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar}
 
 
-def geometry_of(dimension: int) -> NarrowPhase:
+def geometry_of(dimension: int) -> AnyNarrowPhase:
     """The narrow phase for blocks in so many dimensions. Raises UsageError where there is none."""
     if dimension not in GEOMETRY:
         known = " or ".join(map(str, sorted(GEOMETRY)))

@@ -17,6 +17,7 @@ from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, Plana
 from dem_cli.model.model import Model
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
+NARROWEST = 0.1  # of the shorter edge: the overlap that a joint has stiffness for at least
 
 
 def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
@@ -55,7 +56,7 @@ def points(
     n, edges = len(faces.parts), edges_of(model, faces)
     lengths = lengths_of(edges, corners)
     shortest = lengths.min(axis=1, initial=np.inf)
-    overlap = np.clip(overlap_lengths(edges, corners), 0.1 * shortest, shortest)
+    overlap = np.clip(overlap_lengths(edges, corners), NARROWEST * shortest, shortest)
     areas = overlap * model.thickness[model.part_blocks[faces.parts]].min(axis=1, initial=np.inf)
     starts, profile, shares = np.arange(0, 2 * n + 1, 2), np.zeros((0, 2)), np.full(2 * n, 0.5)
     if properties.profiled:

@@ -1,4 +1,4 @@
-"""Whether a structure that is shaken has collapsed, or its motion is none: what time histories look at on the way."""
+"""Collapse criterion: whether a structure that is shaken has collapsed, or its motion is none."""
 
 from __future__ import annotations
 

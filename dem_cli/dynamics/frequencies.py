@@ -14,7 +14,7 @@ import numpy as np
 
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
-from dem_cli.engine.settings import FrequencySettings
+from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.errors import SolverError
 
 if TYPE_CHECKING:

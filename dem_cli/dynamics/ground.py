@@ -1,4 +1,4 @@
-"""How the ground moves under a structure: the base, which carries the frame of coordinates, and single supports."""
+"""Ground motion under a structure: the base, which carries the frame of coordinates, and single supports."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.kernels.records import Ground
 from dem_cli.model.model import Model
+from dem_cli.motion.record import MOTION_QUANTITIES
 
 if TYPE_CHECKING:
     from dem_cli.motion.motion import Motion
@@ -38,7 +39,7 @@ class GroundMotion:
 
     def of_base(self, times: np.ndarray) -> np.ndarray:
         """Acceleration, velocity and displacement of the base [m, s], (n, 3, d)."""
-        return np.stack([self._sum(self.base, name, times) for name in ("acceleration", "velocity", "displacement")], 1)
+        return np.stack([self._sum(self.base, name, times) for name in MOTION_QUANTITIES], 1)
 
     def along(self, time: float) -> float:
         """Acceleration of the base along its first motion [m/s²]."""

@@ -1,4 +1,4 @@
-"""kind = "time-history": the motion of a structure while its supports move."""
+"""Time history: the motion of a structure while its supports move, from rest under its dead loads to the end."""
 
 from __future__ import annotations
 
@@ -69,7 +69,8 @@ class TimeHistory:
         sim = self.job.clock.compiled(lambda: make(math.inf))
         found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
         if not math.isfinite(found.step):
-            found = found._replace(step=min(1e-4, 1e-3 * self.duration))
+            history = self.job.settings.history
+            found = found._replace(step=min(history.loose_step, history.loose_share * self.duration))
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
@@ -135,9 +136,8 @@ class TimeHistory:
                     frames = SnapshotTimes(sim.time, end, max(output.frames // 2, 2))
             if frames.due(sim.time + 0.5 * dt):
                 self.track.frame("collapse" if fallen else "shaking")
-            self.track.observer.progress(
-                "shaking", sim.load, measures.largest_displacement(sim), min(sim.time / end, 1.0)
-            )
+            moved = measures.largest_displacement(sim)
+            self.track.observer.progress("shaking", sim.load, moved, min(sim.time / end, 1.0))
         found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
         found["collapse_time"] = None if fallen is None else fallen.time
         if fallen is not None:
@@ -202,9 +202,8 @@ def shaken(
     case: Case, model: Model, damping: Damping, step: float = math.inf, settings: Settings = DEFAULT
 ) -> DynamicSimulation:
     """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
-    return DynamicSimulation(
-        model, law_of(case), joint_properties(case, model, settings.stiffness.dynamics, step), damping, settings
-    )
+    properties = joint_properties(case, model, settings.stiffness.dynamics, step)
+    return DynamicSimulation(model, law_of(case), properties, damping, settings)
 
 
 def energy_shares(energy: Energy) -> dict[str, float]:

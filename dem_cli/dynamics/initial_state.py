@@ -51,7 +51,7 @@ def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
         raise CaseError([CaseProblem(("initial", tables[-1]), message)])
 
 
-def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
+def _pivot(sim: Simulation, chosen: np.ndarray, angle: float) -> np.ndarray:
     """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
     record = measures.contact_record(sim)
     ours = np.isin(record.blocks, chosen)
@@ -61,4 +61,4 @@ def _pivot(sim: Simulation, chosen: np.ndarray, tilt: float) -> np.ndarray:
         mine = np.isin(sim.shape.corner_blocks, chosen)
         corners = sim.bodies.corners[mine]
         points = corners[corners[:, 1] <= corners[:, 1].min() + 1e-9]
-    return points[(points[:, 0] * np.sign(tilt)).argmin()]
+    return points[(points[:, 0] * np.sign(angle)).argmin()]

@@ -72,30 +72,29 @@ def fraction_of(
     restitution = settings.restitution
     reference = reference_block(case, model, joints, table)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
-    if table.restitution == "housner":
+    wanted = table.restitution
+    assert wanted is not None  # as damping_of asks
+    if isinstance(wanted, str):
         return restitution.housner_fraction, f"restitution of Housner, {rigid:.4g} for block '{name}'"
-    wanted = float(table.restitution)  # type: ignore[arg-type]
-    least, most = (
-        rocked(case, model, reference, restitution.most, settings),
-        rocked(case, model, reference, restitution.least, settings),
-    )
-    if not least < wanted < most:
+    lowest = rocked(case, model, reference, restitution.most, settings)
+    highest = rocked(case, model, reference, restitution.least, settings)
+    if not lowest < wanted < highest:
         message = (
-            f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {least:.4f} to {most:.4f} "
-            f"(Housner: {rigid:.4f}); or name another block (damping.block)"
+            f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {lowest:.4f} to "
+            f"{highest:.4f} (Housner: {rigid:.4f}); or name another block (damping.block)"
         )
         raise CaseError([CaseProblem(("damping", "restitution"), message)])
 
     def error(logarithm: float) -> float:
         return rocked(case, model, reference, float(np.exp(logarithm)), settings) - wanted
 
-    found = float(np.exp(brentq(error, np.log(restitution.least), np.log(restitution.most), xtol=1e-3, rtol=1e-6)))
+    least, most = np.log(restitution.least), np.log(restitution.most)
+    found = float(np.exp(brentq(error, least, most, xtol=restitution.accurate, rtol=1e-6)))
     return found, f"restitution {wanted:g} of block '{name}', {found:.3g} of critical"
 
 
 def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT) -> float:
     """Ratio of angular velocities when the block lands, from the heights before and after it."""
-    restitution = settings.restitution
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.dynamics.initial_state import tilt
     from dem_cli.dynamics.time_step import time_step
@@ -105,6 +104,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     from dem_cli.engine.viscous import Damping
     from dem_cli.statics.equilibrium import stand
 
+    restitution = settings.restitution
     pair = model.only([reference.support, reference.block], fixed=np.array([True, False]))
     properties = joint_properties(case, model, settings.stiffness.dynamics)
     sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction), settings)
@@ -119,7 +119,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
     ground = GroundMotion([], pair)
     radius = float(np.sqrt((reference.ends**2).sum(axis=1)).max())
-    longest = 20.0 * np.sqrt(radius / max(case.gravity, 1e-9))
+    longest = restitution.longest * np.sqrt(radius / max(case.gravity, 1e-9))
     n, highest = max(1, int(restitution.look * longest / dt)), 0.0
     watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
     while sim.time < longest:

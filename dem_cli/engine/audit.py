@@ -1,4 +1,4 @@
-"""What a run says about itself: books that do not balance, blocks too light or joints too uneven, and what to do."""
+"""Audit of a run: energy that does not close, blocks too light or joints too uneven, and what to do about it."""
 
 from __future__ import annotations
 

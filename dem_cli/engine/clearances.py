@@ -1,4 +1,4 @@
-"""How far blocks can move until gaps of the start have closed: motion that is neither elastic nor failure.
+"""Clearances: how far blocks can move until gaps of the start have closed, which is neither elastic nor failure.
 
 Gaps are those of a profile (microrotations), or of blocks that do not fit.
 """
@@ -70,9 +70,8 @@ def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: Clearance
     """
     widest = float(gaps.max(initial=0.0))
     moved = min(clearance.amplified * widest, clearance.farthest * width)
-    return Play(
-        np.full(n_blocks, moved), np.full(n_blocks, min(clearance.amplified * widest / width, clearance.steepest))
-    )
+    turned = min(clearance.amplified * widest / width, clearance.steepest)
+    return Play(np.full(n_blocks, moved), np.full(n_blocks, turned))
 
 
 def play(
@@ -115,10 +114,11 @@ def play(
     return found
 
 
-def beyond(play: np.ndarray, since: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
+def beyond(free: np.ndarray, since: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
     """How much of the motion of each block microrotations cannot explain [m], (n_blocks,).
 
-    since: motion since a moment; before, now: distance from the place of the start, then and now. Where a block was
-    further away than microrotations take it, it had slid, and may rock from one extreme to the other.
+    free: what they can move it, Play.moved or Play.turned times its radius; since: motion since a moment; before, now:
+    distance from the place of the start, then and now. Where a block was further away than microrotations take it, it
+    had slid, and may rock from one extreme to the other.
     """
-    return np.where(before > play, since - 2.0 * play, np.minimum(since, now - play))
+    return np.where(before > free, since - 2.0 * free, np.minimum(since, now - free))

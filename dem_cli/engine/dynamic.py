@@ -1,34 +1,23 @@
-"""A structure in real time: masses of the blocks, ground motion, dampers; after it came to rest in pseudo-time."""
+"""Dynamic simulation: real masses, ground motion, dampers; after the structure came to rest in pseudo-time."""
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dem_cli.contact.joints import JointProperties
+from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.drift import drift_corners
-from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Dampers, Ground, Watch
-from dem_cli.kernels.shake import make_shake
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 
 if TYPE_CHECKING:
     from dem_cli.engine.viscous import Damping
-
-
-@cache
-def compiled_shake(law: Law, profiled: bool, damped: bool):
-    """The stepping loop of time histories for one law and one kind of joints; compiled at its first call."""
-    make = make_profiled_forces if profiled else make_planar_forces
-    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), drift_corners, damped)
 
 
 class DynamicSimulation(Simulation):
@@ -188,9 +177,9 @@ class DynamicSimulation(Simulation):
 
     @property
     def noticeable_energy(self) -> float:
-        """What lifts the whole structure by a thousandth of its smallest edge [J]."""
+        """What lifts the whole structure by a small share of its smallest edge [J]."""
         weights = np.abs(self.loads.dead[self.free, : self.model.dimension]).sum()
-        return 1e-3 * self.smallest * float(weights)
+        return self.settings.history.noticeable * self.smallest * float(weights)
 
     def show_base(self, acceleration: float, gravity: float) -> None:
         """The load that records show: acceleration of the base over gravity."""

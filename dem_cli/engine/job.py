@@ -1,4 +1,4 @@
-"""From a case and its model to an outcome: what every analysis shares."""
+"""Job: one run of a case, from its model to an outcome; what every analysis shares."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Job:
 
     @classmethod
     def start(cls, case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:
-        """A job that reports to `observer`. Raises CaseError where a monitor has no block."""
+        """A job that reports to `observer`."""
         return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
 
     def simulation(self, kinematics: str, ratio: float | None = None) -> Simulation:

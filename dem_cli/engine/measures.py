@@ -103,7 +103,8 @@ def contact_record(sim: Simulation) -> ContactRecord:
     owner = joints.owners
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
-    state = np.where(contacts.normal == 0.0, 0, np.where(friction >= limit * (1 - 1e-6), 2, 1))
+    slides = friction >= limit * (1 - sim.settings.mechanism.slides)
+    state = np.where(contacts.normal == 0.0, 0, np.where(slides, 2, 1))
     return ContactRecord(
         joint=owner,
         blocks=joints.blocks[owner],

@@ -166,7 +166,7 @@ class Monitors:
                 found.append(tuple(names[name] for name in monitor.between or (monitor.block,) if name is not None))
             else:
                 block = block_at(self.model, np.array(monitor.point))
-                assert block is not None  # model.validate
+                assert block is not None  # assembly/validate.py
                 found.append((block,))
         return found
 
@@ -186,7 +186,7 @@ class Monitors:
 
         self._joints = self._joints or StartJoints(self.model)
         ends = self._joints.ends(first, second)
-        assert ends is not None  # model.validate
+        assert ends is not None  # assembly/validate.py
         places, axis = list(zip(ends.on_first, ends.on_second, strict=True)), ends.normal
         if quantity == "slip":
             places, axis = [(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))], across(ends.normal)

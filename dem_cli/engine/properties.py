@@ -1,4 +1,4 @@
-"""From the [joints] of a case to numbers for every pair of materials."""
+"""Joint properties: from the [joints] of a case to stiffness and law of every pair of materials."""
 
 from __future__ import annotations
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from dem_cli.contact.assemble import JointArrays
@@ -14,30 +12,16 @@ from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.loads import loads_of
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.advance import make_advance
-from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
-from dem_cli.kernels.drift import drift_centroids, drift_corners
-from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
-
-
-@cache
-def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
-    """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
-    if kinematics == "fixed":
-        forces = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
-        return make_advance(of_bodies(forces), drift_centroids)
-    make = make_profiled_forces if profiled else make_planar_forces
-    return make_advance(make(law.function, law.bonded), drift_corners)
 
 
 class Simulation:
@@ -73,12 +57,13 @@ class Simulation:
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = relaxation.local_damping
+        self.control[slot.FIRE_START] = relaxation.fire_mix
         self.ledger = np.zeros(slot.N_LEDGER)
         self.steps = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
         self.tracking = self._track(law.n_memory(model.dimension) + self.n_damped, self.skin * self.smallest)
-        self.control[slot.TRAVEL_LIMIT] = 0.5 * self.tracking.reach
+        self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
         self.depth = depth(self.joints.blocks, model.fixed)
@@ -135,7 +120,8 @@ class Simulation:
 
     def _take_joints(self) -> None:
         """What follows from other joints: masses, and how long a compiled call may be."""
-        self.longest = max(100, self.settings.detection.longest_call // max(1, len(self.joints.kn)))
+        detection = self.settings.detection
+        self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
 
@@ -158,13 +144,9 @@ class Simulation:
 
     def advance(self, n_steps: int, mode: int) -> None:
         """n_steps steps of one mode (kernels.records), with detection when it is due."""
-        run = compiled_advance(self.kinematics, self.law, self.properties.profiled)
         left, load = n_steps, 0.0
         while left > 0:
-            done = run(
-                min(left, self.longest), mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
-                self.loads, self.control, self.ledger, self.like, self.like_rotation,
-            )  # fmt: skip
+            done = self._step(min(left, self.longest), mode)
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
@@ -175,11 +157,17 @@ class Simulation:
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
         control = self.control.copy()
-        compiled_advance(self.kinematics, self.law, self.properties.profiled)(
-            0, slot.HOLD_LOAD, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
+        self._step(0, slot.HOLD_LOAD)
+        self.control[:] = control
+
+    def _step(self, n_steps: int, mode: int) -> int:
+        """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled)
+        done: int = loop(
+            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        self.control[:] = control
+        return done
 
     def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
         """Of the last step, per unit of the solver's time, (..., n_dof)."""
@@ -228,12 +216,17 @@ class Simulation:
         return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:
-        """Local and combined damping, and fictitious masses with another safety."""
+        """Fictitious masses with another safety; damping against the velocity (None: local) and the change of force."""
         damping = self.settings.relaxation.local_damping if damping is None else damping
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = damping, change
         if safety != self.safety:
             self.safety = safety
             self.set_masses()
+
+    def use_combined_damping(self) -> None:
+        """Damping against the velocity and the change of force: what a constant load settles or fails with."""
+        relaxation = self.settings.relaxation
+        self.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
 
     def limit_speed(self, limit: float) -> None:
         """Largest motion of a centroid or of a corner about it in a step [m]: pseudo-time is no time to fall freely."""
@@ -250,9 +243,9 @@ class Simulation:
         """Rate of the live load's own displacement in a creep [J per step]."""
         self.control[slot.RATE] = rate
 
-    def restart_relaxation(self, mix: float) -> None:
-        """FIRE from its beginning: the share of velocity that turns into the direction of force, no step uphill yet."""
-        self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = mix, 0.0
+    def restart_relaxation(self) -> None:
+        """FIRE from its beginning: the first share of velocity that turns towards the force, no step uphill yet."""
+        self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = self.control[slot.FIRE_START], 0.0
 
     def move_supports(self, velocities: np.ndarray) -> None:
         """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""

@@ -1,4 +1,4 @@
-"""What a run hands to its observer: rows and frames, now or after a pass proved worth keeping."""
+"""Track of a simulation: rows and frames for the observer, now or after a pass proved worth keeping."""
 
 from __future__ import annotations
 

@@ -63,9 +63,14 @@ class JointTracking:
         """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
         return self.narrow.find(self.model, bodies.corners, distance)
 
+    @property
+    def farthest(self) -> float:
+        """How far a block may move until faces are found anew [m]: two may come towards each other."""
+        return 0.5 * self.reach
+
     def due(self, bodies: Bodies) -> bool:
         """Whether a block has moved so far, or a corner so passed an edge, that there may be other faces."""
-        return bool(bodies.travel.max(initial=0.0) > 0.5 * self.reach or self.contacts.stale[-1])
+        return bool(bodies.travel.max(initial=0.0) > self.farthest or self.contacts.stale[-1])
 
     def detect(self, bodies: Bodies) -> None:
         """New faces after large motion; memory follows the contact points."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from dem_cli.engine.dynamic_settings import StatisticsSettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.shaken_run import RestedStructure, ShakenRunResult
 
@@ -26,7 +28,7 @@ class RunStore(Protocol):
     """Who keeps finished runs; what it has is not done again."""
 
     def known(self) -> Mapping[tuple, tuple]:
-        """Runs that were finished before: Trial and Run as plain tuples."""
+        """Runs that were finished before: ShakingTrial and ShakenRunResult as plain tuples."""
 
     def add(self, key: tuple, values: tuple) -> None:
         """Keep a run; a kill does not lose it."""
@@ -37,7 +39,6 @@ class Batch(NamedTuple):
 
     threads: int = 1
     journal: RunStore | None = None
-    ask: float = DEFAULT.statistics.ask  # s between two looks at an interrupt and at the progress
 
 
 Answer = Callable[[ShakingTrial], ShakenRunResult]  # does a run, or looks it up
@@ -53,9 +54,13 @@ class Batcher:
     """
 
     def __init__(
-        self, structures: Sequence[RestedStructure], motions: Callable[[ShakingTrial], Sequence[Motion]], batch: Batch
+        self,
+        structures: Sequence[RestedStructure],
+        motions: Callable[[ShakingTrial], Sequence[Motion]],
+        batch: Batch,
+        settings: StatisticsSettings = DEFAULT.statistics,
     ):
-        self.structures, self.motions, self.batch = structures, motions, batch
+        self.structures, self.motions, self.batch, self.settings = structures, motions, batch, settings
         known = batch.journal.known() if batch.journal else {}
         self.done: dict[ShakingTrial, ShakenRunResult] = {
             ShakingTrial(*key): ShakenRunResult(*values) for key, values in known.items()
@@ -82,7 +87,7 @@ class Batcher:
             try:
                 pending = {pool.submit(task, self.answer) for task in tasks}
                 while pending:
-                    finished, pending = wait(pending, self.batch.ask, FIRST_COMPLETED)
+                    finished, pending = wait(pending, self.settings.ask, FIRST_COMPLETED)
                     say(len(self.done))
                     for future in finished:
                         future.result()
@@ -94,5 +99,8 @@ class Batcher:
 
 def each(trials: Sequence[ShakingTrial]) -> Iterator[Task]:
     """A task per run."""
-    for trial in trials:
-        yield lambda answer, trial=trial: answer(trial) and None  # type: ignore[misc]
+    return (partial(_ask, trial) for trial in trials)
+
+
+def _ask(trial: ShakingTrial, answer: Answer) -> None:
+    answer(trial)

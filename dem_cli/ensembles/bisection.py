@@ -1,4 +1,4 @@
-"""Between what stands and what fails: values of one number tried one after the other until the two are close."""
+"""Bisection between what stands and what fails: values of one number, one after the other, until two are close."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from dem_cli.engine.settings import DEFAULT, SafetySettings
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.static_settings import SafetySettings
 
 
 class Scale(NamedTuple):

@@ -1,4 +1,4 @@
-"""What runs at several intensities say about the capacity of a structure under each record, and about all records."""
+"""Collapse capacities: what runs at several intensities say about each record, and about all records."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.engine.settings import DEFAULT, StatisticsSettings
+from dem_cli.engine.dynamic_settings import StatisticsSettings
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.batch import ShakingTrial
 from dem_cli.ensembles.lognormal import Lognormal, bootstrap, fit
 from dem_cli.ensembles.shaken_run import ShakenRunResult
@@ -61,13 +62,9 @@ def distribution(
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
     at = _range(found, levels, statistics.points)
-    band = (
-        bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
-        if len(lower) > 1
-        else None
-    )
-    curve = {"intensity": at, "share": found.share(at)}
-    sure = None
+    curve, sure, band = {"intensity": at, "share": found.share(at)}, None, None
+    if len(lower) > 1:
+        band = bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
     if band is not None:
         curve |= {"low": band.low, "high": band.high}
         sure = {"level": confidence, "median": band.median, "dispersion": band.dispersion, "resamples": band.resamples}

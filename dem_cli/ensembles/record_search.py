@@ -1,4 +1,4 @@
-"""Which runs a fragility study asks for: its records, how strong they are, and where a bisection looks next."""
+"""Search of collapse intensities: the records, how strong they are, and where a bisection looks next."""
 
 from __future__ import annotations
 

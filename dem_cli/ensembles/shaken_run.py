@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
+from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -73,7 +73,7 @@ class RestedStructure:
     def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
         """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
 
-        Raises Cancelled.
+        Raises RunCancelled.
         """
         begun = time.thread_time()
         sim = deepcopy(self.sim)
@@ -90,7 +90,9 @@ class RestedStructure:
         steps, balance = sim.steps - self.sim.steps, None if collapsed is None else closure(sim)
         return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, time.thread_time() - begun)
 
-    def _shake(self, sim: DynamicSimulation, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]):
+    def _shake(
+        self, sim: DynamicSimulation, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]
+    ) -> CollapsedBlock | None:
         """The first block that collapsed; None where all come through the motion, and the time after it."""
         analysis, dt = self.case.analysis, self.step.step
         total = math.ceil((analysis.duration or ground.duration) / dt)

@@ -1,4 +1,4 @@
-"""Where failure can be at the earliest, by limit analysis: values at which no forces in the friction cones exist.
+"""Bound by limit analysis: values from which on no forces in the friction cones exist.
 
 That is a bound, as friction is associated in it, and a first guess for the runs that decide.
 """
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, UsageError
 
@@ -43,26 +43,26 @@ class Bound(NamedTuple):
         }
 
 
-def bound(variant: Variant, scale: Scale, resolution: float, closer: float = DEFAULT.safety.closer) -> Bound | str:
+def bound(variant: Variant, scale: Scale, resolution: float, settings: Settings = DEFAULT) -> Bound | str:
     """The change between the ends of `scale`, by bisection; or why there is none to tell."""
     begun, programs = time.perf_counter(), 0
 
-    def carried(value: float) -> bool | None:
+    def carries(value: float) -> bool | None:
         nonlocal programs
         programs += 1
-        return stands(*variant(value))
+        return stands(*variant(value), settings)
 
     try:
         low, high = scale.low, scale.high
-        at_low, at_high = carried(low), carried(high)
+        at_low, at_high = carries(low), carries(high)
         if None in (at_low, at_high):
             return "limit analysis did not converge"
         if at_low == at_high:
             what = "finds forces in equilibrium" if at_low else "proves equilibrium impossible"
             return f"limit analysis {what} at both {low:g} and {high:g}"
-        while not scale.close(low, high, closer * resolution):
+        while not scale.close(low, high, settings.safety.closer * resolution):
             middle = scale.middle(low, high)
-            found = carried(middle)
+            found = carries(middle)
             if found is None:
                 return "limit analysis did not converge"
             low, high = (middle, high) if found == at_low else (low, middle)
@@ -72,7 +72,7 @@ def bound(variant: Variant, scale: Scale, resolution: float, closer: float = DEF
     return Bound(*ends, programs, time.perf_counter() - begun)
 
 
-def stands(case: Case, model: Model) -> bool | None:
+def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | None:
     """Whether limit analysis finds forces that carry dead loads and the constant load of the case; None: not known.
 
     Raises UsageError where the law has no cone |T| ≤ μ N.
@@ -81,11 +81,11 @@ def stands(case: Case, model: Model) -> bool | None:
     from dem_cli.limit.associated import carried
     from dem_cli.limit.cone import friction_of
 
-    structure = start_structure(model, joint_properties(case, model))
+    structure = start_structure(model, joint_properties(case, model, settings.stiffness.statics))
     if not structure.dead.any():
         return True  # nothing to carry
     friction = friction_of(structure.joints, law_of(case))
-    return carried(_under_load(structure, case), friction)[0]
+    return carried(_under_load(structure, case), friction, settings.limit.associated)[0]
 
 
 def _under_load(structure: Structure, case: Case) -> Structure:

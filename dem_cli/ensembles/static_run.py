@@ -55,7 +55,7 @@ class StaticRunResult(NamedTuple):
 class StaticRun(NamedTuple):
     """A run with what it would show."""
 
-    run: StaticRunResult
+    result: StaticRunResult
     case: Case
     model: Model
     job: Job
@@ -77,12 +77,12 @@ def decide(
     hopeless: known to have no equilibrium, so that the first failure will do.
     """
     job = Job.start(case, model, observer, settings)
-    told = _decided(job, job.first_simulation(), value, hopeless)
+    run = _decided(job, job.first_simulation(), value, hopeless)
     given = any(joint.kn != "auto" for joint in case.joints.values())
-    soft = told.run.displacement > settings.safety.soft * case.analysis.resolution * told.sim.smallest
-    if told.run.stands and soft and given and told.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
-        told = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was
-    return told
+    soft = run.result.displacement > settings.safety.soft * case.analysis.resolution * run.sim.smallest
+    if run.result.stands and soft and given and run.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
+        run = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was
+    return run
 
 
 def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticRun:
@@ -94,7 +94,7 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
     else:
         why = _proof(verdict, share, job.case.analysis.constant_load)
     failed = verdict.state == "failure"
-    run = StaticRunResult(
+    result = StaticRunResult(
         value,
         {"equilibrium": True, "failure": False}.get(verdict.state),
         why,
@@ -111,7 +111,7 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
     )
     track.keep("collapse" if failed else "loading")
     frame = measures.frame(sim, "collapse" if failed else "loading")
-    return StaticRun(run, job.case, job.model, job, sim, frame, track.kept)
+    return StaticRun(result, job.case, job.model, job, sim, frame, track.kept)
 
 
 def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
@@ -178,16 +178,16 @@ def _proof(verdict: Verdict, share: float, load: float) -> str:
     return f"moves on and releases energy{under}: {100.0 * verdict.released:.2g} % of the work of the loads"
 
 
-def fall(told: StaticRun, observer: Observer, until: float, frames: int) -> str | None:
+def fall(run: StaticRun, observer: Observer, until: float, frames: int) -> str | None:
     """Follows the collapse of a structure that failed, with geometry that moves, until a block moved by `until` [m].
 
     Frames and rows go to the observer; returns why it did not go that far, if so.
     """
-    job = Job.start(told.case, told.model, observer, told.job.settings)
+    job = Job.start(run.case, run.model, observer, run.job.settings)
     sim = job.simulation("large")
-    sim.count_from(told.sim.steps)
+    sim.count_from(run.sim.steps)
     soften_falls(sim, until)
-    load = told.case.analysis.constant_load / sim.live_scale
+    load = run.case.analysis.constant_load / sim.live_scale
     try:
         if not fall_under(sim, job.track(sim), load, until, frames, job.budget):
             return "with geometry that moves it comes to rest"

@@ -10,6 +10,8 @@ from pydantic import ValidationError
 from dem_cli.assembly.assemble import assembly
 from dem_cli.assembly.validate import problems
 from dem_cli.case.variation import impossible, value_at, with_value
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.static_settings import SafetySettings
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.laws.strength import reduced, strengths
@@ -22,13 +24,13 @@ if TYPE_CHECKING:
 UNLIMITED = ("elastic",)  # laws without any strength
 
 
-def scale_of(case: Case) -> Scale:
+def scale_of(case: Case, settings: SafetySettings = DEFAULT.safety) -> Scale:
     """The values that a case asks for. Raises CaseError where they are impossible."""
     analysis: SafetyAnalysis = case.analysis
     low, high = analysis.ends
     if analysis.of_strength:
         _check_strengths(case)
-        return Scale(low, high, ratio=True)
+        return Scale(low, high, ratio=True, nothing=settings.nothing)
     now = value_at(case, analysis.vary)
     whole = isinstance(now, int)
     if whole and not (low.is_integer() and high.is_integer()):
@@ -36,12 +38,12 @@ def scale_of(case: Case) -> Scale:
         raise CaseError([CaseProblem(("analysis", "between"), message)])
     for end in (low, high):
         checked_model(changed(case, analysis.vary, end), end)
-    return Scale(low, high, ratio=False, whole=whole)
+    return Scale(low, high, ratio=False, whole=whole, nothing=settings.nothing)
 
 
 def expected(case: Case) -> tuple[int, int]:
     """Fewest and most runs that are likely: two next to the guess of limit analysis, or a bisection of the range."""
-    analysis, scale = case.analysis, scale_of(case)
+    analysis, scale = case.analysis, scale_of(case, DEFAULT.safety)
     largest = max(abs(scale.low), abs(scale.high))
     width = math.log(scale.high / scale.low) if scale.ratio else (scale.high - scale.low) / largest
     finest = 1.0 / largest if scale.whole else analysis.resolution

@@ -1,4 +1,4 @@
-"""Slightly different structures: how much of an answer is chance? Small errors, drawn from the seed of the case.
+"""Perturbed structures: how much of an answer is chance? Small errors, drawn from the seed of the case.
 
 Joints stay closed as drawn: gaps would change the structure, not perturb it ([[imperfection]] makes those). An error of
 size ε of a block changes its mass, and moves its centre of mass against its joints, by that share; both are done to

@@ -21,6 +21,7 @@ from dem_cli.kernels.records import (
     EXTERNAL,
     FIRE,
     FIRE_MIX,
+    FIRE_START,
     FRICTION,
     LIVE_FACTOR,
     MEAN_LOAD,
@@ -86,7 +87,7 @@ def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, 
             force2 += force * force * inverse
     if power <= 0.0 or force2 == 0.0:
         control[SINCE_UPHILL] = 0.0
-        control[FIRE_MIX] = 0.1
+        control[FIRE_MIX] = control[FIRE_START]
         return 0.0, 0.0
     mix = control[FIRE_MIX]
     control[SINCE_UPHILL] += 1.0

@@ -141,7 +141,8 @@ FIRE_MIX = 7  # state of FIRE: current mixing
 SINCE_UPHILL = 8  # state of FIRE: steps since the power was negative
 DAMP_CHANGE = 9  # combined damping: share of |F| against its own change
 MASS_RATE = 10  # damping force over mass and velocity of a block [1/s]
-N_CONTROL = 11
+FIRE_START = 11  # mixing with which FIRE begins, and begins again after a step uphill
+N_CONTROL = 12
 
 # What the step is driven by.
 HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3

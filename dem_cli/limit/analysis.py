@@ -52,11 +52,8 @@ class LimitLoads(NamedTuple):
         said["non_associated"] = load if path.status == OK else None
         if path.status != OK and load is not None:
             said["non_associated_at_least"] = load  # every state of the path is in equilibrium
-        return (
-            said
-            | {f"non_associated_{key}": value for key, value in of_path.items()}
-            | {"non_associated_seconds": self.path_seconds}
-        )
+        said |= {f"non_associated_{key}": value for key, value in of_path.items()}
+        return said | {"non_associated_seconds": self.path_seconds}
 
 
 def limit_loads(

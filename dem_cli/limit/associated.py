@@ -82,13 +82,15 @@ def limit_load(
     return found if stands.status == OK else stands._replace(iterations=found.iterations)
 
 
-def carried(structure: Structure, friction: np.ndarray) -> tuple[bool | None, float]:
+def carried(
+    structure: Structure, friction: np.ndarray, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+) -> tuple[bool | None, float]:
     """Whether any forces inside the friction cones carry the dead loads, and the error of the proof; None: not known.
 
     friction: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
     that do not dilate may fail all the same.
     """
-    answer = _first_good(program_of(structure, cone_of(friction)), standing, _judge_standing)
+    answer = _first_good(program_of(structure, cone_of(friction), settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
 
 
@@ -125,10 +127,10 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     residual = float(np.abs(imbalance).max())
     lower = found.multiplier - float((np.abs(imbalance) * s.scales) @ np.abs(velocities))
     upper = float(amounts @ np.maximum(-(program.motion @ velocities), 0.0)) - float(s.dead @ velocities)
-    gap = (upper - lower) / max(abs(found.multiplier), program.settings.nothing * program.load)
+    settings = program.settings
+    gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
     made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
-    accepted = program.settings
-    if residual <= accepted.residual and -accepted.residual <= gap <= accepted.gap:
+    if residual <= settings.residual and -settings.residual <= gap <= settings.gap:
         return made
     reason = f"{GIVEN_UP}: residual {residual:.1e} of own weights, bounds {gap:.1e} apart ({found.said})"
     return made._replace(status=reason)
@@ -143,7 +145,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     residual = float(np.abs(imbalance).max(initial=0.0))
     if found.kind == ANSWERED and residual <= program.settings.residual:
         return _refusal(program, OK, residual)
-    return _refusal(program, f"{GIVEN_UP}: cannot tell whether it {FALLS[9:]}", residual)
+    return _refusal(program, f"{GIVEN_UP}: cannot tell whether it stands under its dead loads", residual)
 
 
 def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:

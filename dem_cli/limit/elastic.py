@@ -131,10 +131,11 @@ class Elastic:
         p, (nn, tt, tn) = self.point, self.outer
         values = stiff_n[p] * nn + stiff_t[p] * tt - coupling[p] * tn
         data = np.bincount(self.place, values, len(self.indices))
-        data[self.diagonal] += self.settings.path.singular * np.abs(data[self.diagonal]).mean()
+        path = self.settings.path
+        data[self.diagonal] += path.singular * np.abs(data[self.diagonal]).mean()
         n = len(self.columns)
         matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
-        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
+        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=path.pivot, options={"SymmetricMode": True})
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
         """Unbalanced forces, (n_free,)."""

@@ -47,12 +47,13 @@ class Increment:
         one, slip_one = _apart(one - ahead * before.slips[0], tau)
         two, slip_two = _apart(two - ahead * before.slips[1], tau)
         normal = np.maximum(normal, 0.5 * (one + two) / mu)
-        shear = np.clip(0.5 * (one - two), -0.999 * mu * normal, 0.999 * mu * normal)
+        used = self.settings.friction_used * mu * normal
+        shear = np.clip(0.5 * (one - two), -used, used)
         x = np.concatenate([normal, mu * normal + shear, mu * normal - shear, opening, slip_one, slip_two])
         return Iterate(before.displacements.copy(), before.load, shear, x)
 
     def solve(
-        self, tau: float, ahead: float = 0.0, folds: int = 6, stop: Callable[[], bool] = lambda: False
+        self, tau: float, ahead: float = 0.0, folds: int = 0, stop: Callable[[], bool] = lambda: False
     ) -> State | None:
         """The state after the increment, or None where the iteration got stuck.
 
@@ -66,12 +67,12 @@ class Increment:
         while len(means) < settings.slow and not stop():
             mean = float((at.x[: len(at.x) // 2] * at.x[len(at.x) // 2 :]).mean())
             infeasible = self._residuals(at)
-            if infeasible < settings.tolerance and mean <= 3.0 * self.end:
+            if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
                 return self._state(at)
             if not self._factorise(at):
                 return None
             means.append(mean)
-            if infeasible < 1e-3:
+            if infeasible < settings.feasible:
                 if self._spread(at, mean) < settings.centred and (kept is None or mean < settings.reversal * kept[0]):
                     kept = (mean, at.copy())
                 if len(means) > settings.patience and mean > settings.stalled * means[-settings.patience]:
@@ -106,16 +107,16 @@ class Increment:
                 return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
             tangent *= -1.0 if last is None else np.sign(tangent @ last)
-            on_path = on_path or (infeasible < 1e-3 and spread < settings.wide)
+            on_path = on_path or (infeasible < settings.feasible and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
                 offset = onto.positive / at.x
                 change = -(offset @ tangent[:-1]) / (relative @ tangent[:-1] + tangent[-1])
                 if spread < settings.wide:
-                    change += tangent[-1] * settings.stride / max(-tangent[:-1].min(), 0.3 * tangent[:-1].max(),
-                                                         abs(tangent[-1]) / 3.0)  # fmt: skip
+                    fastest = max(-tangent[:-1].min(), settings.growing * tangent[:-1].max())
+                    change += tangent[-1] * settings.stride / max(fastest, abs(tangent[-1]) / settings.by_tau)
                     last = tangent
-                change = float(np.clip(change, max(np.log(self.end / tau), -3.0), 2.0))
+                change = float(np.clip(change, max(np.log(self.end / tau), -settings.down), settings.up))
             step = onto.and_on(along, tau * change)
             length = _to_boundary(at.x, step.positive, settings.boundary)
             _move(at, step, length)
@@ -133,9 +134,10 @@ class Increment:
         slide = problem.bt @ (at.u - before.displacements)
         self.off_slide = slip_one - slip_two - (at.shear - before.shear) / problem.ks - slide
         self.off_one, self.off_two = mu * normal + at.shear - one, mu * normal - at.shear - two
-        self.off_target = (
-            self.target - at.load if self.displacement is None else self.displacement - problem.live @ at.u
-        )
+        if self.displacement is None:
+            self.off_target = self.target - at.load
+        else:
+            self.off_target = self.displacement - problem.live @ at.u
         rest = (self.unbalanced, self.off_gap, self.off_slide, self.off_one, self.off_two)
         return max(float(np.abs(r).max(initial=0.0)) for r in rest)
 

@@ -49,6 +49,11 @@ class Path:
             return None
         return self.normal, self.shear, self.gaps, self.displacements
 
+    def begun_again(self) -> Path:
+        """A path of its own that goes on from where this one is."""
+        loads, reached, displacements = [*self.loads], [*self.reached], [*self.live_displacements]
+        return replace(self, loads=loads, reached=reached, live_displacements=displacements)
+
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
         return {
@@ -95,11 +100,9 @@ def trace(
     _keep(path, structure, problem, standing, at_rest, 0.0)
     path.status = UNFINISHED
     best = path
-    for first, growth in settings.path.ways:
-        tried = replace(
-            path, loads=[*path.loads], reached=[*path.reached], live_displacements=[*path.live_displacements]
-        )
-        _follow(tried, structure, problem, standing, (first, growth), growth_of_plateau, spent, progress)
+    for way in settings.path.ways:
+        tried = path.begun_again()
+        _follow(tried, structure, problem, standing, way, growth_of_plateau, spent, progress)
         if tried.status == OK or tried.reached[-1] > best.reached[-1]:
             best = tried
         best.factorisations = problem.factorisations
@@ -157,20 +160,21 @@ def _advance(
     target: float | None,
     stop: Callable[[], bool],
     ahead: float = 0.0,
-    folds: int = 4,
+    folds: int | None = None,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone."""
+    """The state at a displacement of the live load; without one, under dead loads alone. folds (None: as set)."""
+    path = problem.settings.path
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
-    return Increment(problem, state, target).solve(
-        easier * problem.settings.path.tau * max(largest, 1.0) ** 2, ahead, folds, stop
-    )
+    tau = easier * path.tau * max(largest, 1.0) ** 2
+    return Increment(problem, state, target).solve(tau, ahead, path.folds if folds is None else folds, stop)
 
 
 def _compliance(problem: Elastic, state: State) -> float:
     """Displacement of the live load per unit of multiplier while all loaded joints are closed."""
-    closed = state.normal > 1e-6 * state.normal.max(initial=1.0)
-    share = np.where(closed, 1.0, 1e-6)
+    path = problem.settings.path
+    closed = state.normal > path.loaded * state.normal.max(initial=1.0)
+    share = np.where(closed, 1.0, path.opened)
     lu = problem.factorised(share * problem.kn, share * problem.ks, np.zeros(problem.n_points))
     return float(problem.live @ lu.solve(problem.live))
 

@@ -18,12 +18,16 @@ class PathSettings:
     attempts: tuple[tuple[float, int], ...] = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
     easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
+    folds: int = 4  # to go round under dead loads
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
     plateau: float = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
     calm: float = 0.5  # share of the plateau's growth that is calm enough at once
     tau: float = 0.1  # of the first products, over the square of the largest normal force
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
+    loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
+    opened: float = 1e-6  # ... and has this share of its stiffness, for the compliance of the start
+    pivot: float = 1e-3  # of the largest in its column, below which a diagonal entry is no pivot
     singular: float = 1e-13  # added to the diagonal, over its mean
 
 
@@ -33,15 +37,22 @@ class InteriorPointSettings:
 
     tolerance: float = 1e-7  # infeasibility, in block weights and their displacements
     end: float = 1e-9  # of τ, over the square of the lightest block
+    at_end: float = 3.0  # times it: the mean product of a solution
+    friction_used: float = 0.999  # share of the friction that a start uses at most
     boundary: float = 0.95  # share of the way to the boundary
     # Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
     centring: tuple[tuple[float, float], ...] = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
     stalled: float = 0.8  # fold: the mean product fell by less than this
     patience: int = 12  # within so many iterations
+    feasible: float = 1e-3  # infeasibility of iterates that may be kept or predicted from
     centred: float = 4.0  # largest ratio of a product to the mean, of a kept iterate
     wide: float = 3.0  # the same of an iterate that may be predicted from
     reversal: float = 0.6  # τ of one kept iterate over that of the last
     stride: float = 0.9  # relative change of any product's factor in one prediction
+    growing: float = 0.3  # what the growth of a product counts, over its fall, in the length of a prediction
+    by_tau: float = 3.0  # times as much as the other products, may τ change
+    down: float = 3.0  # largest fall of ln τ in one prediction
+    up: float = 2.0  # and rise
     passed: float = 0.3  # τ over that of the fold, below which it is passed
     on_arc: int = 500  # iterations on one arc
     slow: int = 150  # iterations without a fold

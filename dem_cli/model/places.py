@@ -1,4 +1,4 @@
-"""Which block is where."""
+"""Places of blocks in the undeformed structure: corners, and which block contains a point."""
 
 from __future__ import annotations
 

@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
-BASELINE = 1  # order for baseline = true
 
 
 class Accelerogram:

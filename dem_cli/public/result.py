@@ -175,9 +175,9 @@ def unit_of(column: str) -> str:
     return KNOWN_QUANTITIES[column].unit if column in KNOWN_QUANTITIES else ""
 
 
-def monitor_history(results: Results, name: str, told: dict[str, Any]) -> MonitorHistory:
-    """One monitor. told: its table in the case."""
-    quantity, absolute = str(told.get("quantity", "displacement")), bool(told.get("absolute", False))
+def monitor_history(results: Results, name: str, table: dict[str, Any]) -> MonitorHistory:
+    """One monitor. table: its own in the case."""
+    quantity, absolute = str(table.get("quantity", "displacement")), bool(table.get("absolute", False))
     unit, series = MONITOR_UNITS[quantity], results.series
     if series is not None and name in series.monitors:
         return MonitorHistory(series.monitors[name], unit, quantity, absolute, series.time, None)

@@ -16,7 +16,6 @@ from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style
 from dem_cli.render.sheet import ColourBar
 
-COLOUR_QUANTITIES = ("stone", "displacement", "rotation", "velocity")
 _MAP, _FROM, _TO = "YlGnBu", 0.03, 0.8  # light where nothing happens; not so dark that edges get lost
 
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 
-MOVIE_FORMATS = ("gif", "mp4")
 FPS = 12.5
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
 _COLOURS, _PAPER = 256, 242

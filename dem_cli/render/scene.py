@@ -16,7 +16,6 @@ _TINT = 0.045  # by which stones differ
 _EDGE, _EDGE_WIDTH, _THINNEST_EDGE = "#57503f", 0.55, 0.75  # colour; points; pixels
 _FINER = 2  # pixels are means of so many by so many
 _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # from the structure to the eye
-VIEWS = tuple(_DIRECTIONS)
 _LIGHT = (-5.0, 8.0, 9.0)  # where it comes from
 _AROUND = 1.02  # of the window is in the picture
 _WIDEST_STRIPE, _THINNEST_STRIPE = 3.4, 1.1  # points

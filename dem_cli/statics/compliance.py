@@ -18,11 +18,11 @@ def compliance(sim: Simulation) -> tuple[float, float]:
 
     Where the structure has no equilibrium even at the smallest probe, that of the last probe is returned.
     """
-    load_search = sim.settings.load_search
+    load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
     load, value, largest = load_search.probe_in_play if sim.play.moved.any() else load_search.probe, 0.0, 0.0
-    for _ in range(4):
-        verdict = relax(sim, load, sim.settings.relaxation.tolerance, 20_000)
+    for _ in range(load_search.probes):
+        verdict = relax(sim, load, relaxation.tolerance, load_search.probe_steps)
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load
         sim.restore(saved)
@@ -37,10 +37,10 @@ def _compliance_in_play(sim: Simulation, first: tuple[float, float]) -> tuple[fl
     load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     saved, found, load = sim.save(), first, load_search.probe_in_play
     for _ in range(load_search.doublings):
-        if relax(sim, load, relaxation.tolerance, 20_000).state != "equilibrium":
+        if relax(sim, load, relaxation.tolerance, load_search.probe_steps).state != "equilibrium":
             break
         before, places = measures.live_displacement(sim), sim.places()
-        if relax(sim, 2.0 * load, relaxation.tolerance, 20_000).state != "equilibrium":
+        if relax(sim, 2.0 * load, relaxation.tolerance, load_search.probe_steps).state != "equilibrium":
             break
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load

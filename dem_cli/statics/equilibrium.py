@@ -51,33 +51,34 @@ def relax(
     sim: Simulation,
     load: float,
     tolerance: float,
-    max_steps: int = 40_000,
+    max_steps: int | None = None,
     scale: float = 0.0,
     since: np.ndarray | None = None,
 ) -> Verdict:
     """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
 
     "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where
-    they are now); scale: displacement that is elastic [m].
+    they are now); scale: displacement that is elastic [m]; max_steps: None: that of the settings.
     """
     relaxation = sim.settings.relaxation
     since = sim.places() if since is None else since
     sim.use(relaxation.fire_safety, damping=0.0)
     sim.set_load(load)
     _limit_falls(sim)
-    sim.restart_relaxation(relaxation.fire_mix)
+    sim.restart_relaxation()
+    max_steps = relaxation.most_steps if max_steps is None else max_steps
     calm = 0
     for _ in range(max(1, max_steps // relaxation.chunk)):
         sim.advance(relaxation.chunk, slot.FIRE)
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < tolerance else 0
-        if calm == 2:
+        if calm == relaxation.looks_at_rest:
             if _rests(sim, tolerance, slot.FIRE):
                 break
             calm = 0
     sim.rest()
     sim.use(relaxation.creep_safety)
-    if calm < 2:
+    if calm < relaxation.looks_at_rest:
         return Verdict("unknown", sim.unbalanced)
     return _at_rest(sim, since, scale)
 
@@ -111,7 +112,7 @@ def settle_or_fail(
     relaxation = sim.settings.relaxation
     tolerance = relaxation.tolerance if tolerance is None else tolerance
     since = sim.places() if since is None else since
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     _limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
     motion = FailureTest(sim, scale, plateau)
@@ -123,9 +124,9 @@ def settle_or_fail(
             budget.spend(relaxation.chunk, doing)
             done += relaxation.chunk
             calm = calm + 1 if sim.unbalanced < tolerance else 0
-            if calm == 2 and not _rests(sim, tolerance, slot.HOLD_LOAD):
+            if calm == relaxation.looks_at_rest and not _rests(sim, tolerance, slot.HOLD_LOAD):
                 calm = 0
-            if calm == 2:
+            if calm == relaxation.looks_at_rest:
                 return _at_rest(sim, since, scale)
         check_finite(sim)
         failing = motion.look()
@@ -167,12 +168,10 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
     """Dead loads little by little, where joints remember."""
-    relaxation = sim.settings.relaxation
     steps = _steps_of_memory(sim)
     if not steps:
         return
-
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     sim.set_load(0.0)
     _limit_falls(sim)
     _climb(sim, sim.set_dead_share, steps)
@@ -182,12 +181,10 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
 
 def _steps_of_memory(sim: Simulation) -> int:
     """Length of the ramp of a load on joints that remember; 0 for others."""
+    if not sim.law.n_memory(sim.model.dimension):
+        return 0
     relaxation = sim.settings.relaxation
-    return (
-        max(relaxation.shortest_ramp, relaxation.ramp_of_memory * sim.depth)
-        if sim.law.n_memory(sim.model.dimension)
-        else 0
-    )
+    return max(relaxation.shortest_ramp, relaxation.ramp_of_memory * sim.depth)
 
 
 def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:

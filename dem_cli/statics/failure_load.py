@@ -14,8 +14,7 @@ creep ended in an equilibrium inside that bracket, that one is the highest.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,82 +24,16 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import Verdict, check_finite, settle_or_fail
+from dem_cli.statics.failure_bracket import FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.warm_start import GRAVITY, place
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
-    from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
-    from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.warm_start import WarmStart
 
 
-@dataclass(frozen=True)
-class LoadPass:
-    """One creep or one constant load; multipliers as users know them."""
-
-    kind: str  # "creep" | "start" | "load" | "impossible"
-    steps: int
-    load: float  # estimate of the creep, or the constant load
-    state: str  # "estimate" | "equilibrium" | "failure"
-
-
-@dataclass
-class FailureLoad:
-    """The failure load between two proofs, and the way to it; multipliers as users know them unless said otherwise."""
-
-    low: float | None = None  # highest proven equilibrium
-    high: float | None = None  # lowest proven failure
-    scale: float = 1.0  # of users' multipliers over internal ones (Simulation.live_scale)
-    status: str = "not converged"  # "ok" | "not converged" | "no failure" | "does not stand"
-    compliance: float = 0.0  # q·u per unit of internal multiplier while elastic [J]
-    elastic: float = 0.0  # largest displacement per unit of internal multiplier while elastic [m]
-    settled: float = 0.0  # largest displacement of a block under the dead loads alone [m]
-    onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
-    peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
-    held: SavedState | None = None  # state of the highest equilibrium
-    found: bool = False  # the bracket is as narrow as it was asked for
-    failing: Verdict | None = None
-    crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
-    crept_state: SavedState | None = None
-    limit: float = 0.0  # multiplier above which nothing was tried
-    passes: list[LoadPass] = field(default_factory=list)
-    start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
-    limits: LimitLoads | None = None  # limit analysis that the start needed
-
-    @property
-    def carried(self) -> float:
-        """The highest proven equilibrium, where there is one."""
-        assert self.low is not None
-        return self.low
-
-    @property
-    def failed(self) -> float:
-        """The lowest proven failure, where there is one."""
-        assert self.high is not None
-        return self.high
-
-    @property
-    def standing(self) -> SavedState:
-        """State of the highest equilibrium, where there is one."""
-        assert self.held is not None
-        return self.held
-
-    @property
-    def crept_beyond(self) -> bool:
-        """Whether the creep came to rest above the proven failure: what is carried depends on the way of loading."""
-        if not self.found or self.crept is None or self.high is None:
-            return False
-        return self.crept * self.scale > self.high
-
-
-@dataclass(frozen=True)
-class SearchRange:
-    """How closely and how far a failure load is sought; multipliers as users know them."""
-
-    resolution: float  # width of the bracket, relative
-    max_load: float | None = None  # above it the structure counts as self-locking; None: a hundred times the dead loads
-    longest: float | None = None  # step of the load that is never exceeded; then nothing is estimated first
+AGAINST = "a small live load moves the structure against its direction: it hardly stands as it is"
 
 
 class LoadSearch:
@@ -122,15 +55,14 @@ class LoadSearch:
         """The bracket; start: a state next to failure, instead of creep and loads raised from gravity.
 
         Where it does not hold, these are the way after all; where joints have a profile, nothing is estimated first.
+        Raises SolverError where the live load moves nothing, or where the budget ends.
         """
         sim, answer, settings = self.sim, self.answer, self.settings
         answer.low, answer.held, answer.settled = 0.0, sim.save(), measures.largest_displacement(sim)
         answer.compliance, answer.elastic = compliance(sim)
         if answer.compliance <= 0.0:
             if sim.loads.live[sim.free].any():
-                raise SolverError(
-                    "a small live load moves the structure against its direction: it hardly stands as it is"
-                )
+                raise SolverError(AGAINST)
             raise SolverError("the live load moves nothing: no free block has a live load")
         if start is not None and self._holds(start):
             low = answer.carried / sim.live_scale
@@ -150,7 +82,7 @@ class LoadSearch:
             sim.restore(answer.standing)
             estimate = min(estimate if estimate > 0.0 else settings.probe, self.limit)
             levels = [share * estimate for share in settings.shares]
-            self._raise_load(0.0, levels, 0.5 * self.resolution * estimate)
+            self._raise_load(0.0, levels, settings.first_step * self.resolution * estimate)
 
     def _holds(self, start: WarmStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
@@ -177,7 +109,7 @@ class LoadSearch:
         sim, answer, relaxation = self.sim, self.answer, self.sim.settings.relaxation
         self.track.observer.progress("failing", load * sim.live_scale, answer.peak_displacement, None)
         before, start, ledger = sim.steps, sim.places(), measures.energy_sums(sim)
-        sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+        sim.use_combined_damping()
         sim.set_load(load)
         moved, released = 0.0, 0.0
         while moved < self.settings.shown * answer.elastic * load or released <= 0.0:
@@ -225,7 +157,7 @@ class LoadSearch:
         for _ in range(self.settings.hold_steps // relaxation.chunk):
             sim.advance(relaxation.chunk, sim.creep_mode)
             calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-            if calm == 2:
+            if calm == relaxation.looks_at_rest:
                 self.answer.crept = sim.load
                 sim.rest()
                 self.answer.crept_state = sim.save()

@@ -1,4 +1,4 @@
-"""Motion at a constant load: when it can be nothing but failure, and when coming to rest is no equilibrium.
+"""Failure test: motion at a constant load, when it can be nothing but failure, and when rest is no equilibrium.
 
 A failure is shown by power: the motion accelerates while the loads release more energy than friction and
 joints take, both since the start and in the last doubling of time. The blocks that show it must have been
@@ -39,9 +39,8 @@ class FailureTest:
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
         self.far = (proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2)) * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
-            self.far = min(
-                self.far, max(proof.not_elastic * scale, proof.gross * float(np.median(sim.widths[sim.free])))
-            )
+            width = float(np.median(sim.widths[sim.free]))
+            self.far = min(self.far, max(proof.not_elastic * scale, proof.gross * width))
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]
@@ -53,7 +52,8 @@ class FailureTest:
         moved = np.abs(self.sim.places() - self.start).max(axis=1)
         self.moved.append(moved)
         self.energies.append(measures.energy_sums(self.sim))
-        if len(self.moved) < 9:
+        looks = 2 * proof.doublings + 1  # two for each doubling of time
+        if len(self.moved) < looks:
             return None
         own = moved <= 0.5 * free_falls(self.sim) * (self.sim.steps - self.begun) ** 2
         unexplained = moved
@@ -61,11 +61,11 @@ class FailureTest:
             away = np.abs(self.sim.places() - self.sim.first_places).max(axis=1)
             unexplained = beyond(self.play, moved, self.away, away)
         block = int(np.where(own, unexplained, -np.inf).argmax())
-        last = [float(looked[block]) for looked in self.moved[-9::2]]  # four doublings
+        last = [float(looked[block]) for looked in self.moved[-looks::2]]
         if unexplained[block] <= self.far or not own[block] or min(last) <= 0.0:
             return None
         accelerated = min(after / before for before, after in zip(last[1:], last[2:])) > proof.accelerated
-        steady = last[-1] > proof.steady**4 * last[0] and unexplained[block] > proof.steadily * self.far
+        steady = last[-1] > proof.steady**proof.doublings * last[0] and unexplained[block] > proof.steadily * self.far
         if not (accelerated or steady):
             return None
         for since in (self.energies[-3], self.energies[0]):

@@ -1,4 +1,4 @@
-"""Who takes part in a failure, and how: from the motion between the last equilibrium and proven failure."""
+"""Failure mechanism: who takes part, and how, from the motion between the last equilibrium and proven failure."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
 
     sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
     """
-    mechanism = sim.settings.mechanism
+    settings = sim.settings.mechanism
     bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
@@ -35,15 +35,15 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     # Whether anything turns, not the share: friction takes nearly all that hinges and one slipping joint release, and
     # little of what lifts blocks up a slope.
     turned = float(angle.max(initial=0.0)) * _size(sim)
-    translates = turned < mechanism.turns * motion.max(initial=0.0)
-    mode = "sliding" if translates else "rocking" if share < mechanism.rocking else "mixed"
-    moving = np.flatnonzero(motion > mechanism.takes_part * motion.max(initial=0.0))
+    translates = turned < settings.turns * motion.max(initial=0.0)
+    mode = "sliding" if translates else "rocking" if share < settings.rocking else "mixed"
+    moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": _names(sim, moving)}
     if same and len(joints.blocks):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
-            parts[key] = _pairs(sim, np.flatnonzero(values > mechanism.takes_part * motion.max(initial=0.0)))
+            parts[key] = _pairs(sim, np.flatnonzero(values > settings.takes_part * motion.max(initial=0.0)))
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
 
 

@@ -1,4 +1,4 @@
-"""After failure: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
+"""Post-peak path: the collapse at a prescribed rate or under the load of failure, with geometry that moves.
 
 Where the live load keeps prescribing the rate of its own displacement, the multiplier is found along the whole
 way, down to nothing where a wall overturns by itself. Where the load stays, blocks that slide leave the others
@@ -14,11 +14,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
 from dem_cli.kernels import records as slot
-from dem_cli.statics.equilibrium import (
-    check_finite,
-    relax,
-    settle_or_fail,
-)
+from dem_cli.statics.equilibrium import check_finite, relax, settle_or_fail
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -50,15 +46,15 @@ def follow(
     """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
 
     failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is
-    {"load": the highest multiplier, "displacement": where the curve first came within 1 % of it}.
+    {"load": the highest multiplier, "displacement": where the curve first came close to it}.
     """
     relaxation, post_peak = sim.settings.relaxation, sim.settings.post_peak
     relax(sim, 0.0, relaxation.gravity_tolerance)
     track.write("gravity")
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     soften_falls(sim, until)
-    sim.prescribe_rate(rate / post_peak.growth**50)
-    stage, next_frame, chunk = "loading", 0.0, 50
+    sim.prescribe_rate(rate / post_peak.growth**post_peak.start_up)
+    stage, next_frame, chunk = "loading", 0.0, post_peak.first_look
     curve: list[tuple[float, float]] = []
     highest = 0.0
     while True:
@@ -71,7 +67,8 @@ def follow(
         curve.append((load, moved))
         done = moved >= until
         highest = max(highest, load)
-        if load >= post_peak.near_peak * failure or (highest > 0.8 * failure and load < post_peak.near_peak * highest):
+        falls = highest > post_peak.falls_from * failure and load < post_peak.near_peak * highest
+        if falls or load >= post_peak.near_peak * failure:
             stage = "collapse"
         track.write(stage)
         if done or (stage == "collapse" and moved >= next_frame):
@@ -79,18 +76,20 @@ def follow(
             next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            reached = next((moved for load, moved in curve if load >= 0.99 * highest), moved)
+            reached = next((moved for load, moved in curve if load >= post_peak.at_peak * highest), moved)
             return {"load": highest, "displacement": reached}
         sim.prescribe_rate(min(post_peak.growth * sim.rate, rate))
         pace = abs(moved - before) / chunk
-        longest = 100 if stage == "loading" else 20_000
-        chunk = int(min(max(until / post_peak.rows / pace if pace > 0.0 else 2 * chunk, 20), 2 * chunk, longest))
+        wanted = until / post_peak.rows / pace if pace > 0.0 else 2 * chunk
+        longest = post_peak.longest_look_before_peak if stage == "loading" else post_peak.longest_look
+        chunk = int(min(max(wanted, post_peak.shortest_look), 2 * chunk, longest))
 
 
-def soften_falls(sim: Simulation, until: float) -> None:
-    """Limits the speed of blocks that fall, over a way of `until` [m]."""
+def soften_falls(sim: Simulation, until: float, steps: int | None = None) -> None:
+    """Limits the speed of blocks that fall while others go a way of `until` [m] in so many steps (None: a collapse)."""
     post_peak = sim.settings.post_peak
-    sim.limit_speed(max(post_peak.fall_speed * sim.smallest, 20.0 * until / post_peak.fewest))
+    steps = post_peak.fewest if steps is None else steps
+    sim.limit_speed(max(post_peak.fall_speed * sim.smallest, post_peak.fall_pace * until / steps))
 
 
 def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
@@ -115,7 +114,7 @@ def fall_under(
     load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
     """
     relaxation = sim.settings.relaxation
-    sim.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
+    sim.use_combined_damping()
     calm, next_row, next_frame = 0, 0.0, 0.0
     sim.set_load(load)
     while measures.largest_displacement(sim) < until:
@@ -123,7 +122,7 @@ def fall_under(
         budget.spend(relaxation.chunk, "following the collapse")
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-        if calm == 2:
+        if calm == relaxation.looks_at_rest:
             if harder is None:
                 return False
             load, calm = harder * load, 0

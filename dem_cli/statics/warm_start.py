@@ -1,4 +1,4 @@
-"""A start next to failure: a state from a static solver, which the explicit solver proves and goes on from.
+"""Warm start: a state next to failure from a static solver, which the explicit solver proves and goes on from.
 
 Raising the load from gravity step by step costs the explicit solver most of its time, and large walls need
 more motion than it can wait for. A static solver knows where failure is: the zero-dilation path of limit.path, a
@@ -91,9 +91,9 @@ def _found(job: Job, sim: Simulation, kind: str, report: dict[str, Any]) -> Warm
 
 
 def _by_path(job: Job, structure: Structure, friction: np.ndarray, report: dict[str, Any]) -> WarmStart | None:
-    warm_start = job.settings.warm_start
     from dem_cli.limit.path import OK, trace
 
+    warm_start = job.settings.warm_start
     path = trace(
         structure, friction, warm_start.flat * job.case.analysis.resolution,
         progress=lambda load, _: job.clock.progress("following the path to failure", load, 0.0, None),

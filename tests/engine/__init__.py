@@ -15,9 +15,10 @@ from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
 from dem_cli.case.schema import Case
 from dem_cli.engine.kinematics import live_scale
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation, compiled_advance
+from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame, HistoryRow, Observer, Samples

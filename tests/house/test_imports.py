@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -147,6 +148,7 @@ ONLY_HERE = {  # third parties that stay in the packages named
 }
 
 MODULES = sorted(PACKAGE.rglob("*.py"))
+MODULE_NAME = re.compile(r"dem_cli(\.[a-z_]+)+")
 
 
 def dotted(path: Path) -> str:
@@ -156,7 +158,7 @@ def dotted(path: Path) -> str:
 
 
 def imported(path: Path) -> set[str]:
-    """Every module that a file imports, at any depth, `from x import y` as x.y."""
+    """Every module that a file imports or names in a string, at any depth, `from x import y` as x.y."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -164,6 +166,8 @@ def imported(path: Path) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and MODULE_NAME.fullmatch(node.value):
+            names.add(node.value)  # for import_module
     return names
 
 
@@ -230,6 +234,12 @@ def test_the_table_names_no_arrow_that_is_gone():
         if (gone := {a for a in allowed or () if not any(within(name, {a}) for name in used[package])})
     }
     assert not dead
+
+
+def test_packages_import_nothing():
+    """Every import of a file runs the __init__.py of its package: what that imports would be on a circle unseen."""
+    inits = [path for path in MODULES if path.name == "__init__.py" and path.parent != PACKAGE]
+    assert not [dotted(path) for path in inits if imported(path)]
 
 
 def test_no_room_is_crowded():

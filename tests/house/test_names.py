@@ -25,5 +25,20 @@ def test_no_class_name_twice():
     assert not {name: files for name, files in classes().items() if len(files) > 1}
 
 
+def test_no_dead_constant():
+    """Every constant of a module is read somewhere in the package."""
+    read, constants = set(), []
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Assign):  # those that are told apart by numbers, A, B = 0, 1, go together
+                names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+                constants += [(name, path) for name in names if name.isupper()]
+            elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+                read.add(node.id)
+            elif isinstance(node, ast.Attribute):
+                read.add(node.attr)
+    assert not [f"{path.relative_to(ROOT)}: {name}" for name, path in constants if name not in read]
+
+
 def test_no_file_that_could_hold_anything():
     assert not [str(path) for path in MODULES if path.stem in SAY_NOTHING]

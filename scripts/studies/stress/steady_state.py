@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
-from unittest.mock import patch
+from dataclasses import replace
 
 import numpy as np
 
-from dem_cli.engine import simulation as engine
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kinematics import live_scale
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation, compiled_advance
+from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.statics.equilibrium import relax
@@ -21,14 +21,13 @@ from studies.stress.structures import StressScene, block, drawn, ground, named
 from studies.stress.verdicts import HELD, REFUSED, WRONG, StressRecord, figure, load_record
 
 AXIS_REST, AXIS_RELAX = "a million steps at rest", "time step of a relaxation"
-COMBINED_SAFETY, COMBINED = 0.75, 0.3
 
 
-def simulation(scene: StressScene, kinematics: str, **options: Any) -> Any:
+def simulation(scene: StressScene, kinematics: str, settings: Settings = DEFAULT) -> Simulation:
     """As an analysis makes it."""
     case, model, _ = scene.build()
     properties = joint_properties(case, model)
-    return Simulation(model, law_of(case), properties, kinematics, live_scale=live_scale(model), **options)
+    return Simulation(model, law_of(case), properties, kinematics, live_scale(model), settings=settings)
 
 
 def crate() -> StressScene:
@@ -65,9 +64,9 @@ def rest(short: bool) -> Iterator[StressRecord]:
             yield figure(AXIS_REST, structure, "friction work over elastic energy", slipped, 1e-12)
 
 
-def settle(sim: Any, load: float) -> bool:
+def settle(sim: Simulation, load: float) -> bool:
     """Equilibrium at a constant load, raised in one step from gravity, with the damping of the solver."""
-    sim.use(COMBINED_SAFETY, COMBINED, COMBINED)
+    sim.use_combined_damping()
     for multiplier in (0.0, load):
         sim.set_load(multiplier)
         for _ in range(200):
@@ -80,14 +79,9 @@ def settle(sim: Any, load: float) -> bool:
 # -- time step ---------------------------------------------------------------------------------------
 
 
-def stretched(factor: float) -> Any:
-    """All fictitious masses as for a time step `factor` times as long."""
-    real = engine.fictitious_masses
-
-    def lighter(model: Any, joints: Any, bodies: Any, shape: Any, safety: float, *rest: Any) -> None:
-        real(model, joints, bodies, shape, factor * safety, *rest)
-
-    return patch.object(engine, "fictitious_masses", lighter)
+def stretched(factor: float) -> Settings:
+    """Time steps `factor` times as long as those of the solver."""
+    return replace(DEFAULT, relaxation=DEFAULT.relaxation.stretched(factor))
 
 
 def time_step(short: bool) -> Iterator[StressRecord]:
@@ -96,13 +90,11 @@ def time_step(short: bool) -> Iterator[StressRecord]:
     for name in ("column",) if short else ("slide", "column", "wall 0.6", "wall 0.75", "trilith"):
         scene = scenes[name].having("analysis.kinematics", "fixed").having("analysis.max_steps", 200_000)
         for factor in (0.8, 2.0) if short else (0.6, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4, 1.6, 2.0):
-            with stretched(factor):
-                yield load_record("time step", scene, f"{factor:g}", variant="fixed")
+            yield load_record("time step", scene, f"{factor:g}", variant="fixed", settings=stretched(factor))
     for name in () if short else ("slide", "wall 0.6", "trilith"):  # where they fly apart every step is a detection
         scene = scenes[name].having("analysis.kinematics", "large").having("analysis.max_steps", 50_000)
         for factor in (0.8, 1.1, 1.2, 1.3, 1.4, 1.6):
-            with stretched(factor):
-                yield load_record("time step", scene, f"{factor:g}", variant="large")
+            yield load_record("time step", scene, f"{factor:g}", variant="large", settings=stretched(factor))
 
 
 def past_the_limit(short: bool) -> Iterator[StressRecord]:
@@ -111,13 +103,12 @@ def past_the_limit(short: bool) -> Iterator[StressRecord]:
         for kinematics in ("fixed", "large"):
             for factor in (1.0, 2.0) if short else (0.83, 1.0, 1.2, 1.4, 1.6, 2.0, 2.67):
                 structure, value = f"{scene.name}, {kinematics}", f"{factor:g}"
-                with stretched(factor):
-                    sim = simulation(scene, kinematics)
-                    try:
-                        state = relax(sim, load, 1e-5).state
-                    except SolverError as error:
-                        yield StressRecord(AXIS_RELAX, structure, value, REFUSED, "–", message=str(error))
-                        continue
+                sim = simulation(scene, kinematics, stretched(factor))
+                try:
+                    state = relax(sim, load, 1e-5).state
+                except SolverError as error:
+                    yield StressRecord(AXIS_RELAX, structure, value, REFUSED, "–", message=str(error))
+                    continue
                 if state != "equilibrium":
                     yield StressRecord(AXIS_RELAX, structure, value, REFUSED, "–", message="no equilibrium claimed")
                     continue
@@ -126,7 +117,7 @@ def past_the_limit(short: bool) -> Iterator[StressRecord]:
                 yield StressRecord(AXIS_RELAX, structure, value, verdict, f"{wrong:.1e}", wrong, f"{wrong:.1e}")
 
 
-def residual(sim: Any) -> float:
+def residual(sim: Simulation) -> float:
     """Largest unbalanced force of a state held without motion, in weights of each block."""
     sim.rest()
     sim.advance(1, slot.HOLD_LOAD)
@@ -146,14 +137,14 @@ def work_identity(short: bool) -> Iterator[StressRecord]:
                 sim = simulation(scenes[name], kinematics)
                 sim.use(0.6, 0.3, 0.3)
                 sim.set_load(scenes[name].exact[1] * 1.05)
-                sim.control[slot.RATE] = 1e-6
+                sim.prescribe_rate(1e-6)
                 sim.ledger[:] = 0.0
                 error = worst_identity(sim, mode, 20 if short else 200)
                 structure = f"{scenes[name].name}, {kinematics}"
                 yield figure("work identity", structure, what, error, 1e-10)
 
 
-def worst_identity(sim: Any, mode: int, looks: int) -> float:
+def worst_identity(sim: Simulation, mode: int, looks: int) -> float:
     """Largest error over the largest sum so far; the run leaves the structure failing."""
     error, largest, before = 0.0, 0.0, sim.kinetic_energy()
     for _ in range(looks):

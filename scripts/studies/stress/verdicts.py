@@ -8,6 +8,7 @@ from typing import Any
 
 from dem_cli.analyses.solve import solve
 from dem_cli.assembly.validate import warnings as oddities
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, DemError
 from studies.observer import RunKeeper
 from studies.stress.structures import StressScene
@@ -50,14 +51,14 @@ class PushoverAnswer:
         return 0.0 if not low or high is None else (high - low) / low
 
 
-def push(scene: StressScene) -> PushoverAnswer:
+def push(scene: StressScene, settings: Settings = DEFAULT) -> PushoverAnswer:
     """Solve a scene; nothing is raised, everything is kept."""
     keeper = RunKeeper()
     with warnings.catch_warnings(record=True) as spoken:
         warnings.simplefilter("always")
         try:
             case, model, said = scene.build()
-            summary = solve(case, model, keeper).summary
+            summary = solve(case, model, keeper, settings=settings).summary
         except CaseError as error:
             return PushoverAnswer("refused", refusal=error.problems[0].message)
         except DemError as error:
@@ -100,9 +101,10 @@ def load_record(
     variant: str = "",
     base: PushoverAnswer | None = None,
     within: float = WITHIN,
+    settings: Settings = DEFAULT,
 ) -> StressRecord:
     """A stressed pushover against the exact load and, where `base` is given, against the unstressed answer."""
-    answer = push(scene)
+    answer = push(scene, settings)
     verdict, error = judge(answer, scene.exact, within)
     how = "" if error is None else "exact" if error == 0.0 else f"{abs(error):.1e}"
     if verdict == HELD and base is not None and base.load is not None:

@@ -8,7 +8,7 @@ import pytest
 
 from dem_cli import api
 from dem_cli.analyses.estimate import describe
-from dem_cli.engine import simulation
+from dem_cli.engine import loops
 from dem_cli.errors import CaseError
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
@@ -20,8 +20,8 @@ def rows(name: str, *overrides: str) -> dict[str, str]:
 
 
 def test_wall_of_21_blocks(monkeypatch):
-    monkeypatch.setattr(simulation, "make_advance", None)  # the stepping loop is not even made
-    simulation.compiled_advance.cache_clear()
+    monkeypatch.setattr(loops, "make_advance", None)  # the stepping loop is not even made
+    loops.compiled_advance.cache_clear()
     found = rows("wall_21")
     # 3 + 4 blocks in turn: 4 bed joints below, 5 × 6 between courses; 3 + 2 head joints three times.
     assert found["joints"] == "49, 98 contact points"
@@ -97,8 +97,8 @@ def shaken(tmp_path, *overrides: str) -> dict[str, str]:
 
 
 def test_time_history(tmp_path, monkeypatch):
-    monkeypatch.setattr(simulation, "make_advance", None)
-    simulation.compiled_advance.cache_clear()
+    monkeypatch.setattr(loops, "make_advance", None)
+    loops.compiled_advance.cache_clear()
     found = shaken(tmp_path, "analysis.margin=0.5")
     # Sliding and rocking of one block (numerics.md): ω² of K/M are 2 ± √3.4, K/M = 1e9/4000.
     highest, lowest = ((1e9 / 4000 * (2 + sign * 3.4**0.5)) ** 0.5 for sign in (1, -1))

@@ -8,7 +8,7 @@ from engine import block, highest_frequency, real_masses, rectangle, running_wal
 from reference import value
 
 from dem_cli.engine import measures
-from dem_cli.engine.simulation import compiled_advance
+from dem_cli.engine.loops import compiled_advance
 from dem_cli.kernels import records as slot
 
 KN, G = 1.0e9, 9.81
@@ -102,6 +102,16 @@ def test_work_is_change_of_kinetic_energy(mode, damping, kinematics):
         largest = max(largest, sim.kinetic_energy(), *np.abs(sums))
         assert sim.kinetic_energy() - before == pytest.approx(change, abs=1e-10 * largest)
     assert largest > 0.0
+
+
+def test_relaxation_begins_again_after_a_step_uphill():
+    """With the mixing of the settings, not with one that the kernel knows."""
+    sim = block_on_base("fixed")
+    sim.control[slot.FIRE_START], sim.control[slot.FIRE_MIX] = 0.25, 0.01
+    sim.advance(1, slot.FIRE)
+    sim.bodies.velocities[1, 1] *= -1.0
+    sim.advance(1, slot.FIRE)
+    assert sim.control[slot.FIRE_MIX] == 0.25
 
 
 def test_creep_prescribes_the_rate_of_the_live_displacement():

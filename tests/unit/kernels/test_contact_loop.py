@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
-from dem_cli.engine.simulation import Simulation, compiled_advance
+from dem_cli.engine.loops import compiled_advance
+from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.jit import kernel

@@ -1,0 +1,77 @@
+"""Settings of dynamic analyses: frequencies, modes, time histories, restitution, statistics of many runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FrequencySettings:
+    """Natural frequencies: dense or sparse eigenvalues, and how exact."""
+
+    dense: int = 30  # degrees of freedom up to which a full matrix is used; beyond, threads of BLAS may cost more
+    dense_share: float = 0.5  # of all modes: from there on as well
+    accurate: float = 1e-6  # residual over the highest eigenvalue, whose error is of its square
+    zero: float = 1e-12  # of the highest eigenvalue: no vibration below it
+    shift: float = 1e-10  # of the highest eigenvalue: where the lowest ones are looked for
+    equal: float = 1e-6  # shares of energy no further apart are the same: the first block or joint is named
+
+
+@dataclass(frozen=True)
+class ModesSettings:
+    """Modes under gravity: which contact points are springs, pictures, calibration from a measured frequency."""
+
+    pressed: float = 1e-4  # of the mean weight of a block: a point with less than that may be round-off
+    closes: float = 1e-6  # of the smallest edge: a gap below that is closed, but for what gravity opened
+    pull: float = 1e-6  # of the elastic displacement of a weight on a point, to see whether it carries tension
+    visible: float = 0.06  # of the size of the structure: how far the picture of a mode moves
+    largest_turn: float = 0.2  # rad
+    agrees: float = 1e-4  # of a frequency: how near a calibrated structure comes to the measured one
+    rounds: int = 8  # of the calibration, at most
+    sinks: float = 0.05  # overlap of an attempt, in smallest edges
+    most_steps: int = 200_000  # for an attempt to stand
+
+
+@dataclass(frozen=True)
+class HistorySettings:
+    """Time histories: looks along the way, time step, and when one of many runs has ended."""
+
+    longest_look: float = 0.1  # s from one look to the next, at most
+    rows: int = 200  # looks along the way: energies, collapse, whether all is well
+    settling: int = 4_000_000  # steps to come to rest, at most
+    blow_up: float = 0.2  # energy error over the largest energy from which a run is stopped
+    inside: float = 1e-3  # of the smallest edge: blocks moved deeper into others than joints give when they close
+    look: float = 0.1  # s of motion between two looks of one of many runs: collapse times are known to this
+    energy_every: int = 10  # looks from one look into the books to the next
+    loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
+    loose_share: float = 1e-3  # of the duration: the same
+    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it
+    still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
+    quiet: float = 1e-3  # ... with so much of the noticeable energy at most
+
+
+@dataclass(frozen=True)
+class RestitutionSettings:
+    """The dashpot that gives a wanted ratio of angular velocities, found by rocking a block."""
+
+    housner_fraction: float = 2.0  # of critical: within 3e-4 of Housner's ratio for h/b from 2 to 5 (docs/rocking.md)
+    most: float = 4.0  # fractions of critical between which a ratio is sought
+    least: float = 0.1  # with less, landings are many bounces
+    tilt: float = 0.3  # of the angle at which the block would fall
+    landed: float = 0.05  # of the first tilt: beyond it on the other side the block has landed and chatters no more
+    longest: float = 20.0  # √(radius/g): the block lands before
+    look: float = 2e-3  # share of that time between two looks
+    accurate: float = 1e-3  # of the fraction that is found
+    most_steps: int = 200_000  # for the block to come to rest
+
+
+@dataclass(frozen=True)
+class StatisticsSettings:
+    """Many runs: draws of slightly different structures, and the distribution of what they carry."""
+
+    largest_draw: float = 3.0  # standard deviations that a draw is limited to
+    resamples: int = 400  # of the bootstrap
+    points: int = 101  # of the curve in summary.json
+    narrowest: float = 1e-4  # least dispersion: all bounds overlap
+    few: int = 2  # intervals between levels that any narrow distribution fits
+    ask: float = 0.2  # s between two looks at an interrupt and at the progress

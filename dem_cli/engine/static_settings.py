@@ -1,0 +1,125 @@
+"""Settings of static analyses: proof of failure, search of the failure load, collapse, settlement, safety."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ProofSettings:
+    """Proof of failure by power, and motion that no elastic structure makes.
+
+    Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
+    """
+
+    doublings: int = 4  # of time, the last ones, in which motion must go on in the same way
+    accelerated: float = 2.5  # growth while time doubles that counts as acceleration
+    steady: float = 1.55  # growth while time doubles that counts as steady motion
+    far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
+    far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
+    steadily: float = 3.3  # times as far, where the motion does not accelerate
+    gross: float = 0.1  # of the width of a block: no elastic motion
+    turned: float = 0.05  # rad: no elastic rotation
+    not_elastic: float = 10.0  # elastic displacements that gross motion is beyond, where joints are soft
+
+
+@dataclass(frozen=True)
+class LoadSearchSettings:
+    """The search of the failure load: probes, creep to an estimate, loads raised, failures tried again."""
+
+    probes: int = 4  # small loads tried for the compliance, each a tenth of the last
+    probe_steps: int = 20_000  # for the equilibrium under one of them
+    reach: float = 15.0  # displacement of the creep, in elastic displacements at multiplier 1
+    first_phase: int = 1000  # steps of the first phase of the creep
+    phases: int = 5  # how often the rate is halved after it
+    looks: int = 20  # how often the load is looked at in the first phase
+    hold_steps: int = 3000  # of the creep at rate zero
+    softened: float = 0.95  # of the highest load: a creep past its peak
+    probe: float = 0.02  # internal multiplier of the first load
+    probe_in_play: float = 2e-4  # the same where microrotations may begin early
+    first_in_play: float = 2e-3  # the first step there
+    doublings: int = 4  # of that load
+    locked: float = 100.0  # internal multiplier at which a structure counts as self-locking
+    shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
+    least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
+    jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
+    first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
+    growth: float = 1.5  # of the next ones
+    below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
+    one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
+    beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
+    coarse: float = 0.01  # bracket, over its load, narrow enough between a held load and one proved impossible
+    shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
+    soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
+
+
+@dataclass(frozen=True)
+class WarmStartSettings:
+    """A start next to failure from a static solver: for which sizes, and when its path has come to failure."""
+
+    small: int = 100  # blocks, up to which raising the load from gravity is as fast
+    large: int = 1000  # blocks, beyond which the path takes too many factorisations
+    flat: float = 0.5  # of the resolution: growth of the load along the path that counts as none
+    drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure
+    at_the_end: int = 4  # last increments, among which the highest load is a plateau and not a peak
+
+
+@dataclass(frozen=True)
+class PostPeakSettings:
+    """The collapse at a prescribed rate, or under the load of failure."""
+
+    elastic: float = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
+    steps: int = 200  # in which the rate passes the elastic displacement of a multiplier of one, at least
+    fewest: int = 40_000  # steps of the whole way, about: fewer would throw the blocks about
+    most: int = 60_000
+    growth: float = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
+    start_up: int = 50  # looks over which it grows
+    rows: int = 250  # of the history
+    first_look: int = 50  # steps to it; from one look to the next they at most double, and are
+    shortest_look: int = 20  # at least, and at most
+    longest_look_before_peak: int = 100
+    longest_look: int = 20_000  # steps
+    softest: float = 1e3  # kn·h/W
+    stiffest: float = 1e7
+    fall_speed: float = 1e-3  # of blocks that fall, in smallest edges per step: they land softly
+    fall_pace: float = 20.0  # the same, in mean speeds of the whole way, where that is more
+    steps_up: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the load of failure, held before the collapse
+    harder: float = 1.005  # growth of a load that holds after all
+    near_peak: float = 0.97  # share of the failure load at which loading counts as over; or of the highest load, ...
+    falls_from: float = 0.8  # ... where that was at least this share of the failure load
+    at_peak: float = 0.99  # of the highest load: the displacement of the peak is where the curve first came to it
+
+
+@dataclass(frozen=True)
+class MechanismSettings:
+    """Who takes part in a failure, and how it is called."""
+
+    rocking: float = 0.02  # share of friction in the released work, below which nothing slides
+    turns: float = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
+    takes_part: float = 0.1  # of the largest motion
+    slides: float = 1e-6  # of the shear limit: a point that is as near to it slides
+    listed: int = 20  # names in a summary
+
+
+@dataclass(frozen=True)
+class SettlementSettings:
+    """How slowly supports move."""
+
+    rows: int = 200  # looks along the way
+    per_step: float = 0.05  # movement of a support in a step, in elastic displacements under the dead loads
+    fewest: int = 20_000  # steps of the whole movement, at least
+
+
+@dataclass(frozen=True)
+class SafetySettings:
+    """Safety analyses: loads of each run, and the bisection of the value."""
+
+    shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 1.0)  # of the load, held one after the other
+    near: float = 0.9  # a failure that near the whole load is tried again by halves of its step, down to
+    gentle: float = 0.005  # this: a larger step may have shaken down what a smaller one does not
+    soft: float = 0.5  # displacement in smallest edges, over the resolution: geometry must move beyond
+    closer: float = 0.1  # width of the bracket of limit analysis over that of the runs
+    first: float = 0.4  # resolutions from a guess to the first value on either side of it
+    growth: float = 4.0  # of the next steps
+    stride: float = 1.5  # from factor to factor where there is no guess; the next steps grow
+    nothing: float = 1e-3  # of the range, below which a resolution relative to a value makes no sense
