@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
 os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell starts what runs behind it so: tests press Ctrl-C
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 FOLDERS = [str(ROOT), str(ROOT / "tests"), str(ROOT / "scripts")]  # of what tests and their processes import
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (*FOLDERS, os.environ.get("PYTHONPATH"))))
 # As `dem bench` has it: threads of libraries beside two workers of the tests gain nothing.

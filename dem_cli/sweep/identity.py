@@ -13,15 +13,23 @@ from dem_cli.output.provenance import provenance
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
+PACKAGE = Path(__file__).resolve().parent.parent
 NAME_DIGITS = 12  # of a name: two of a million runs meet with a chance of one in 500
 
 
 @cache
 def program() -> str:
-    """Versions of everything that computes, and the sources of the kernels."""
-    from dem_cli.kernels.jit import cache_folder
+    """Versions of everything that computes, and the sources of this package: an edited solver is another program."""
+    return " ".join([*(f"{name} {version}" for name, version in provenance().items()), hash_of_sources(PACKAGE)])
 
-    return " ".join([*(f"{name} {version}" for name, version in provenance().items()), cache_folder().name])
+
+def hash_of_sources(package: Path) -> str:
+    """A short hash of all Python files below a folder, by their names and what they hold."""
+    digest = hashlib.sha256()
+    for source in sorted(package.rglob("*.py")):
+        digest.update(f"{source.relative_to(package).as_posix()}\n".encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def facts(case: Case, text: str) -> dict[str, str]:

@@ -48,7 +48,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "sweep.run",
     },
     "verify": {"case", "output.reference", "output.scalars"},
-    "sweep": {"api", "case", "kernels.jit", "output"},
+    "sweep": {"api", "case", "output"},
     "report": {"geometry", "model", "output", "post", "render.marks", "render.solids"},
     "render": {"geometry", "model", "output", "post"},
     "post": {"geometry", "model", "motion", "output"},
