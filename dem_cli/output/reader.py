@@ -78,6 +78,9 @@ class Frames(Sequence[Frame]):
     def __iter__(self) -> Iterator[Frame]:
         return (self[i] for i in range(len(self)))
 
+    def __repr__(self) -> str:
+        return f"<{len(self)} frames>"
+
 
 def read(folder: Path | str, *, lazy: bool = False) -> Results:
     """The results in `folder`; UsageError where there are none.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from difflib import get_close_matches
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+
+Record = TypeVar("Record")  # what stands under a name
 
 
 class ArrayTable(Mapping[str, np.ndarray]):
@@ -29,6 +31,13 @@ class ArrayTable(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         return f"<{', '.join(f'{name} [{unit}]' if unit else name for name, unit in self.units.items())}>"
+
+
+class NamedRecords(dict[str, Record]):
+    """Monitors or tables by name; a name that is not there is answered with those that are."""
+
+    def __missing__(self, name: str) -> Record:
+        raise KeyError(unknown(name, list(self)))
 
 
 class MonitorHistory(NamedTuple):

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType, TracebackType
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from dem_cli.output.store import contact_forces
 from dem_cli.output.vertices import placed_vertices
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
-from dem_cli.public.arrays import ArrayTable, MonitorHistory, unknown
+from dem_cli.public.arrays import ArrayTable, MonitorHistory, NamedRecords
 
 
 class Result:
@@ -93,7 +93,7 @@ class Result:
     @cached_property
     def tables(self) -> Mapping[str, ArrayTable]:
         """The tables that `dem plot` draws from, by title: "history", "time history", "response spectra", ..."""
-        return MappingProxyType({
+        return NamedRecords({
             table.title: ArrayTable({name: q.unit for name, q in table.quantities.items()}, table.values)
             for table in columns_of(self._results)
         })  # fmt: skip
@@ -103,7 +103,7 @@ class Result:
         """What each [[monitor]] of the case saw, by its name."""
         names, asked = list(self._results.monitors), parse_toml(self._path, self.case).get("monitor", ())
         tables = asked if len(asked) == len(names) else [{}] * len(names)
-        return MonitorTable({name: monitor_history(self._results, name, t) for name, t in zip(names, tables)})
+        return NamedRecords({name: monitor_history(self._results, name, t) for name, t in zip(names, tables)})
 
     @property
     def frames(self) -> Frames:
@@ -161,13 +161,6 @@ class Result:
     def __repr__(self) -> str:
         load = "" if self.failure_load is None else f", failure load {self.failure_load:.6g}"
         return f"<Result of {self.summary.get('title') or self._path.name!r}: {self.kind}, {self.status}{load}>"
-
-
-class MonitorTable(dict[str, MonitorHistory]):
-    """Monitors by name; a name that is not there is answered with those that are."""
-
-    def __missing__(self, name: str) -> MonitorHistory:
-        raise KeyError(unknown(name, list(self)))
 
 
 def unit_of(column: str) -> str:

@@ -77,6 +77,8 @@ def test_monitors(wall):
     assert repr(top) == f"<{len(top.values)} values of displacement [m]>"
     with pytest.raises(KeyError, match="no 'tpo', did you mean 'top'"):
         wall.monitors["tpo"]
+    with pytest.raises(KeyError, match="no 'histor', did you mean 'history'"):
+        wall.tables["histor"]
 
 
 def test_monitors_of_a_time_history(shaken):
@@ -96,6 +98,7 @@ def test_monitors_of_a_time_history(shaken):
 def test_frames(wall):
     frames = wall.frames
     assert isinstance(frames[0], Frame)
+    assert repr(frames) == f"<{len(frames)} frames>"
     assert frames[-1].positions.shape == (wall.model.n_blocks, 2)
     assert [frame.load for frame in frames[1:3]] == [frames[1].load, frames[2].load]
     assert {"positions", "displacement", "time"} <= set(frames.units)
