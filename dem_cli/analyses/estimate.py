@@ -24,6 +24,7 @@ Rows = list[tuple[str, str]]
 STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of cases/verification
     "gravity": (500, 10_000),
     "pushover": (10_000, 200_000),
+    "cycle": (10_000, 200_000),
     "settlement": (20_000, 100_000),
     "safety": (2_000, 60_000),  # each of its runs
     "modes": (200, 10_000),
@@ -176,7 +177,7 @@ def _runs(case: Case) -> Rows:
 def _cost(case: Case, sim: Simulation) -> str:
     """Seconds of one core, from the steps that such an analysis took elsewhere."""
     kind, points = case.analysis.kind, len(sim.joints.kn)
-    few, many = STEPS.get(kind, STEPS["pushover"])
+    few, many = STEPS[kind]
     few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
     if kind == "safety":
         from dem_cli.ensembles.static_values import expected
