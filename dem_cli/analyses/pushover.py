@@ -10,10 +10,10 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import post_peak
 from dem_cli.statics.agreement import doubts, histories, load_range, unique
-from dem_cli.statics.equilibrium import FALLS, settle
+from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe

@@ -24,7 +24,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
-from dem_cli.output.record import Observer, RunRow
+from dem_cli.output.record import FALLS, Observer, RunRow
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -45,7 +45,7 @@ def run(
     for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
         job.clock.imported(module)
     outcome = TimeHistory(job, GroundMotion(motions_of(case), model)).run()
-    if doubtful(case):
+    if doubtful(case) and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
         found = repeated(case, model, observer, settings, batch or Batch())

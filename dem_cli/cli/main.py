@@ -81,6 +81,10 @@ class LazyGroup(click.Group):
         except DemError as error:
             click.echo("\n".join(f"error: {line}" for line in str(error).splitlines()), err=True)
             code = error.exit_code
+        except Exception as error:  # a fault of the program
+            from dem_cli.cli import internal_error
+
+            code = internal_error.report(error, internal_error.command_line(args[0] if args else options.get("args")))
         sys.exit(code or 0)
 
 

@@ -65,7 +65,8 @@ def command(
     """Solve CASE once for every combination of values in its [sweep].
 
     Every run gets a folder in DIR/runs; DIR/sweep.csv and DIR/sweep.sqlite have a row for each. The same command goes
-    on where an interrupted or killed one stopped. Exit code: 0 all solved, 1 some failed.
+    on where an interrupted or killed one stopped. Exit code: 0 all solved, 1 some failed; a run that does not stand is
+    solved, and counted.
     """
     from dem_cli import api
     from dem_cli.sweep.folder import opened
@@ -205,6 +206,7 @@ class SweepProgress:
 
     def write(self) -> dict[str, Any]:
         """The tables and sweep.json; the outcome."""
+        from dem_cli.output.record import FALLS
         from dem_cli.sweep.run import FAILED, WAITING
         from dem_cli.sweep.table import rows, write
 
@@ -218,6 +220,7 @@ class SweepProgress:
             "runs": len(table),
             "different": self.count,
             "solved": len(table) - len(failed) - states[WAITING],
+            "do not stand": states[FALLS],
             "failed": len(failed),
             "waiting": states[WAITING],
         }
@@ -253,7 +256,8 @@ def told(found: dict[str, Any], folder: Path) -> str:
     from dem_cli.cli.run import shown
 
     lines = [found["title"] or "sweep"]
-    lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved, {found['failed']:,} failed"
+    fallen = f" ({found['do not stand']:,} of them do not stand)" if found["do not stand"] else ""
+    lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved{fallen}, {found['failed']:,} failed"
                  + (f", {found['waiting']:,} not done yet" if found["waiting"] else ""))  # fmt: skip
     for row in found["failures"][:MOST_FAILURES]:
         values = ", ".join(f"{key} = {brief(row[key])}" for key in found["keys"])

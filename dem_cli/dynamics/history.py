@@ -25,8 +25,8 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import Energy, Samples
-from dem_cli.statics.equilibrium import FALLS, stand
+from dem_cli.output.record import FALLS, Energy, Samples
+from dem_cli.statics.equilibrium import stand
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -171,7 +171,8 @@ class TimeHistory:
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """The summary, audited."""
         sim = self.sim
-        shares = energy_shares(measures.energy(sim))
+        fell = found["status"] == FALLS  # in pseudo-time, damped so that it may come to rest: nothing of the case
+        shares = {} if fell else energy_shares(measures.energy(sim))
         if shares.get("local", 0.0) > self.job.settings.doubts.governs:
             self.job.warnings.append(
                 f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "

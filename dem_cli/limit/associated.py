@@ -28,9 +28,9 @@ from dem_cli.limit.program import (
     standing,
 )
 from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
+from dem_cli.output.record import FALLS
 
 OK = "ok"
-FALLS = "does not stand under its dead loads"
 LOCKED = "no load of this direction makes it fail"
 GIVEN_UP = "not converged"
 

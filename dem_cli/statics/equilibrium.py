@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
 
-FALLS = "does not stand under its dead loads"
-
 
 @dataclass(frozen=True)
 class Verdict:

@@ -52,9 +52,11 @@ def test_doubts(case_file):
     text = WALL.replace("2000.0", "2.0").replace("0.6", "31.0")
     loaded = load_case(case_file("gravity = 981.0\n" + text))
     assert list(loaded.warnings) == [
-        "case.toml:3:11: materials.stone.density: 2 kg/m3 is unusual for a building material, did you mean 2000?",
-        "case.toml:5:12: joints.dry.friction: 31 is unusual for tan(phi); an angle is given as friction_angle_deg",
-        "case.toml:1:11: gravity: 981 m/s2 is unusual; on Earth it is 9.81",
+        "case.toml:3:11: materials.stone.density: 2 kg/m3 is unusual for a building material, "
+        "did you mean 2000 (2 g/cm3)?",
+        "case.toml:5:12: joints.dry.friction: 31 is unusual for tan(phi), phi = 88.2 deg; "
+        "an angle is given as friction_angle_deg",
+        "case.toml:1:11: gravity: 981 m/s2 is unusual for gravity (9.81 on Earth), did you mean 9.81 (981 cm/s2)?",
     ]
 
 
