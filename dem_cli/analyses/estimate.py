@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.engine.clock import duration_words
-from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
@@ -51,13 +51,13 @@ def describe(case: Case, model: Model) -> Rows:
 
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
-    moving = why_moving(case, model, DEFAULT) if moving is None else moving
+    moving = why_moving(case, model) if moving is None else moving
     sim = simulation("fixed" if moving is None else "large")
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        ("kinematics", _kinematics(wanted, moving)),
+        *_kinematics(wanted, moving, model),
         ("time step", _time_step(sim)),
         *_runs(case),
         ("cost", _cost(case, sim)),
@@ -134,12 +134,18 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
     return rows
 
 
-def _kinematics(wanted: str, moving: str | None) -> str:
+def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:
+    """Whether geometry moves, and which gaps stay open where it does not."""
+    doubt = open_gaps_doubt(model) if moving is None else None
+    gaps = [] if doubt is None else [("gaps", doubt)]
     if moving:
-        return f"large: {moving}"
-    if wanted != "auto":
-        return f"{wanted} (as the case says)"
-    return "fixed (auto): all joints are closed, and the geometry of the start is exact for a failure load"
+        text = f"large: {moving}"
+    elif wanted != "auto":
+        text = f"{wanted} (as the case says)"
+    else:
+        closed = "no gap may close" if gaps else "all joints are closed"
+        text = f"fixed (auto): {closed}, and the geometry of the start is exact for a failure load"
+    return [("kinematics", text), *gaps]
 
 
 def _time_step(sim: Simulation) -> str:

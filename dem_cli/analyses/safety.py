@@ -127,7 +127,7 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(self.case, self.model, self.settings)
+        moving = why_moving(self.case, self.model)
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)

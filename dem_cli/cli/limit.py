@@ -50,7 +50,7 @@ def command(
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
     from dem_cli import api
     from dem_cli.engine.properties import joint_properties, law_of
-    from dem_cli.limit.analysis import limit_loads, taken_as_plane
+    from dem_cli.limit.analysis import gaps_left_open, limit_loads, taken_as_plane
     from dem_cli.output.summary import exit_code, to_json
 
     started = time.perf_counter()
@@ -59,6 +59,8 @@ def command(
     model = api.build_model(loaded)
     properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
     if note := taken_as_plane(properties):
+        loaded.warnings.append(note)
+    if note := gaps_left_open(model):
         loaded.warnings.append(note)
     with console.Progress(quiet) as bar:
         found = limit_loads(

@@ -9,7 +9,7 @@ from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
-from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import closure
 from dem_cli.engine.monitors import Monitors
 from dem_cli.engine.properties import joint_properties, law_of
@@ -71,10 +71,12 @@ class Job:
 
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
-        moving = why_moving(self.case, self.model, self.settings)
+        moving = why_moving(self.case, self.model)
         if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
+            if doubt := open_gaps_doubt(self.model):
+                self.warnings.append(doubt)
         elif moving:
             self.skipped.append(f"fixed geometry: {moving}")
         return self.simulation("fixed" if moving is None else "large")

@@ -47,7 +47,6 @@ class DetectionSettings:
     skin: float = 0.05  # reach, as a share of the smallest edge
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
     same_place: float = 0.01  # of the reach: blocks that moved less have the same faces as before
-    meant_gap: float = 1e-3  # of the smallest edge: narrower gaps of the start may close, and geometry has to move
     shortest_call: int = 100  # steps of one compiled call, at least
     longest_call: int = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 

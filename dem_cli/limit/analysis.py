@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.gaps import gap_words, gaps_of_start
 from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.laws.law import Law
@@ -92,6 +93,12 @@ def taken_as_plane(properties: JointProperties) -> str | None:
         if layout is not None and layout.sides is not None
     ]
     return f"limit analysis takes joint {', '.join(rough)} as plane: it knows no profile" if rough else None
+
+
+def gaps_left_open(model: Model) -> str | None:
+    """What is to be said of gaps of the start, which rigid blocks at rest do not close; None: there are none."""
+    gaps = gaps_of_start(model)
+    return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
 
 
 def start_structure(model: Model, properties: JointProperties) -> Structure:
