@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from dem_cli.errors import DemError
+from dem_cli.interrupts import Interrupts, asked
 from dem_cli.version import __version__
 
 COMMANDS = {  # name -> the line that `dem --help` shows
@@ -67,6 +68,11 @@ class LazyGroup(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
         options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
+        with Interrupts(at_once=True):  # until a command has something to keep
+            code = self._exit_code(args, options)
+        sys.exit(code or 0)
+
+    def _exit_code(self, args: tuple[Any, ...], options: dict[str, Any]) -> int | None:
         try:
             code = super().main(*args, **options)
             sys.stdout.flush()
@@ -74,14 +80,23 @@ class LazyGroup(click.Group):
             error.show()
             code = error.exit_code
         except (click.Abort, KeyboardInterrupt):
-            click.echo("interrupted", err=True)
-            code = INTERRUPTED_CODE
+            code = interrupted()
         except BrokenPipeError:
             code = quiet_pipe()
         except DemError as error:
             click.echo("\n".join(f"error: {line}" for line in str(error).splitlines()), err=True)
             code = error.exit_code
-        sys.exit(code or 0)
+        except Exception:
+            if not asked():
+                raise
+            code = interrupted()  # what a library made of it while it was imported
+        return code
+
+
+def interrupted() -> int:
+    """The end after Ctrl-C."""
+    click.echo("interrupted", err=True)
+    return INTERRUPTED_CODE
 
 
 def unknown_command(name: str) -> str:
