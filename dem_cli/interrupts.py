@@ -48,7 +48,7 @@ class Interrupts:
     def __init__(self, signals: Sequence[str] = SIGNALS, *, ends_program: bool = True, at_once: bool = False) -> None:
         self.signals, self.ends_program, self.at_once = tuple(signals), ends_program, at_once
         self._previous: dict[int, Any] = {}
-        self._hears = False
+        self._hears = self._over = False
 
     def __enter__(self) -> Interrupts:
         if not _in_main_thread():
@@ -71,9 +71,14 @@ class Interrupts:
             return
         _noted.depth, _noted.at_once = _noted.depth - 1, self._mode
         for number, handler in self._previous.items():
-            signal.signal(number, signal.SIG_IGN if _noted.asked and self.ends_program else handler)
+            ignored = self._over or (_noted.asked and self.ends_program)
+            signal.signal(number, signal.SIG_IGN if ignored else handler)
         if kind is None and not self.ends_program:
             look()
+
+    def over(self) -> None:
+        """The exit code is known: what comes now is too late."""
+        _noted.answered = self._over = True
 
 
 def asked() -> bool:

@@ -68,8 +68,11 @@ class LazyGroup(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
         options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
-        with Interrupts(at_once=True):  # until a command has something to keep
+        is_program = not args and options.get("args") is None
+        with Interrupts(at_once=True, ends_program=is_program) as interrupts:  # until a command has something to keep
             code = self._exit_code(args, options)
+            if is_program:
+                interrupts.over()
         sys.exit(code or 0)
 
     def _exit_code(self, args: tuple[Any, ...], options: dict[str, Any]) -> int | None:

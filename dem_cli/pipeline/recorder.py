@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.interrupts import look
 from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
@@ -41,5 +42,6 @@ class Recorder(Observer):
         self.writer.runs(rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """To the listener."""
+        """To the listener. Raises KeyboardInterrupt where one came."""
         self.listener.progress(stage, load, displacement, fraction)
+        look()
