@@ -50,7 +50,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
-    if search.limits is not None and (case.analysis.limit or search.bound is not None):
+    if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
         found["limit_analysis"] = _limit_analysis(job, search)
     return job.outcome(sims, _answer(search, sim, resolution) | found)
 
@@ -92,7 +92,8 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
         moved = search.peak_displacement / sim.smallest
         given = any(joint.kn != "auto" for joint in job.case.joints.values())
         soft = given and moved > job.settings.load_search.soft * analysis.resolution
-        if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
+        again = soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"
+        if not again or search.status == INTERRUPTED:
             if rigid and search.found:
                 job.warnings += _changed(search.carried, rigid, job.settings.doubts.lowered)
             if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):

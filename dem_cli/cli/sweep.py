@@ -7,7 +7,6 @@ import re
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,7 @@ from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
-from dem_cli.pipeline.interrupts import Interrupts
+from dem_cli.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -169,15 +168,15 @@ class SweepProgress:
         there = len(wanted & self.known.keys())
         rest = "; the others are done now" if there < len(wanted) else ""
         console.note(f"{there:,} of {len(wanted):,} runs are there already{rest}", self.quiet or not there)
-        with ExitStack() as stack:
-            interrupts = stack.enter_context(Interrupts())
+        with Interrupts():
             try:
                 self.work(mine, do, wanted)
             except KeyboardInterrupt:
+                tidy(self.folder)
                 console.note(f"{len(self.known):,} runs are kept; the same command goes on from there", self.quiet)
                 raise
             finally:
-                with interrupts.shielded(), tables_alone(self.folder):
+                with tables_alone(self.folder):
                     if len(self.known) < self.count:  # others' runs, as far as they are
                         self.known = finished(self.sweep) | self.known
                     found = self.write()

@@ -11,6 +11,7 @@ from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
+from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Dampers, Ground, Watch
 from dem_cli.laws.law import Law
@@ -117,10 +118,12 @@ class DynamicSimulation(Simulation):
     def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0) -> None:
         """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
-        The books are closed in the middle of the last step, where places, velocities and forces are of one time.
+        The books are closed in the middle of the last step, where places, velocities and forces are of one time. Raises
+        KeyboardInterrupt.
         """
         step, end = first, first + n_steps
         while step < end:
+            look()
             last = step == end - 1
             if last:
                 before = self.ledger.copy()

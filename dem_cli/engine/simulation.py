@@ -17,6 +17,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
+from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
@@ -144,9 +145,10 @@ class Simulation:
     # -- stepping ----------------------------------------------------------------------------------
 
     def advance(self, n_steps: int, mode: int) -> None:
-        """n_steps steps of one mode (kernels.records), with detection when it is due."""
+        """n_steps steps of one mode (kernels.records), with detection when it is due. Raises KeyboardInterrupt."""
         left, load = n_steps, 0.0
         while left > 0:
+            look()
             done = self._step(min(left, self.longest), mode)
             left -= done
             self.steps += done

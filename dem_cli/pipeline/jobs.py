@@ -52,12 +52,13 @@ def _solved(
 def do_job(job: SweepJob) -> Summary:
     """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run.
 
-    Raises OutputError: a full disk is no fault of the run, which is done when there is room again.
+    Raises OutputError: a full disk is no fault of the run, which is done when there is room again. Raises
+    KeyboardInterrupt where it was stopped.
     """
     from dem_cli.sweep.run import failure
 
     try:
-        return _solved(job.path, job.overrides, job.folder, job.text)
+        summary = _solved(job.path, job.overrides, job.folder, job.text)
     except OutputError:
         raise
     except DemError as error:
@@ -66,3 +67,6 @@ def do_job(job: SweepJob) -> Summary:
         import traceback
 
         return failure(job, f"internal error: {type(error).__name__}: {error}", traceback.format_exc())
+    if summary["status"] == "interrupted":
+        raise KeyboardInterrupt
+    return summary

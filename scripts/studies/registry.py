@@ -9,6 +9,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "church": ("studies.church.study", "thesis Appendix A: the slice of a church"),
     "gallery": ("studies.gallery", "the pictures of docs/gallery.md"),
     "imperfections": ("studies.imperfections.study", "the 21-block wall with one block too low (thesis 5.4)"),
+    "interrupts": ("studies.interrupts.study", "Ctrl-C and SIGTERM at random moments of every command"),
     "laws": ("studies.laws.study", "a page and a picture of every joint law"),
     "loads": ("studies.loads.study", "failure loads by limit analysis and by DEM"),
     "motions": ("studies.motions", "artificial accelerograms and response spectra"),
