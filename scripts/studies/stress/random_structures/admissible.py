@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from casefiles import blocks_of
-from oracle.limit_lp import Interface, bodies_area_and_centroid, interfaces, limit_load
+from oracle.limit_lp import Interface, bodies_area_and_centroid, edges_outward, interfaces
 from scipy.optimize import linprog
 from scipy.sparse import csr_matrix, vstack
 from scipy.sparse.csgraph import connected_components
@@ -84,11 +84,36 @@ class LoadedBodies:
 
 def associated_load(bodies: LoadedBodies) -> float:
     """Upper bound of every failure load; nan: does not stand, inf: no load makes it fail."""
-    found = limit_load(
-        bodies.polygons, bodies.fixed, bodies.friction, weights=bodies.weights, live=bodies.live, dead=bodies.dead,
-        bodies=bodies.bodies,
-    )  # fmt: skip
-    return found.multiplier
+    return AdmissibleLoads(bodies, joints_of(bodies)).largest()
+
+
+def joints_of(bodies: LoadedBodies) -> list[Interface]:
+    """Faces that touch along a length, and corners that touch a face at a point: both ends are there."""
+    found = interfaces(bodies.polygons, bodies.bodies)
+    reach = 1e-6 * float(np.ptp(np.vstack(bodies.polygons), axis=0).max())
+    boxes = np.array([[*p.min(axis=0), *(-p.max(axis=0))] for p in bodies.polygons])
+    for i, polygon in enumerate(bodies.polygons):
+        near = (boxes[:, :2] <= -boxes[i, 2:] + reach).all(axis=1) & (boxes[:, 2:] <= -boxes[i, :2] + reach).all(axis=1)
+        for j in np.flatnonzero(near & (bodies.bodies != bodies.bodies[i])):
+            a, b = int(bodies.bodies[i]), int(bodies.bodies[j])
+            for start, end, normal in edges_outward(polygon):
+                spot = corner_on(start, end, normal, bodies.polygons[j], reach)
+                if spot is not None:
+                    found.append(Interface(a, b, np.array([spot, spot]), normal))
+    return [one for one in found if not (bodies.fixed[one.a] and bodies.fixed[one.b])]
+
+
+def corner_on(
+    start: np.ndarray, end: np.ndarray, normal: np.ndarray, other: np.ndarray, reach: float
+) -> np.ndarray | None:
+    """The corner at which another polygon stands on an edge, away from the ends of it; None: there is no such one."""
+    heights = (other - start) @ normal
+    lowest = int(heights.argmin())
+    if abs(heights[lowest]) > reach or (heights <= reach).sum() != 1:
+        return None
+    place, length = (other[lowest] - start) @ (end - start), (end - start) @ (end - start)
+    slack = reach * np.sqrt(length)
+    return other[lowest] if slack < place < length - slack else None
 
 
 def lowest_load(bodies: LoadedBodies, associated: float) -> float | None:
@@ -104,7 +129,7 @@ def lowest_load(bodies: LoadedBodies, associated: float) -> float | None:
 
 def connected(bodies: LoadedBodies) -> list[tuple[LoadedBodies, list[Interface]]]:
     """Structures that share nothing but fixed blocks: each as the same bodies with all others fixed, and its joints."""
-    joints = interfaces(bodies.polygons, bodies.bodies)
+    joints = joints_of(bodies)
     free = [[one.a, one.b] for one in joints if not bodies.fixed[[one.a, one.b]].any()]
     ends = np.array(free, dtype=int).reshape(-1, 2)
     n = len(bodies.names)
@@ -130,6 +155,16 @@ class AdmissibleLoads:
         shear = csr_matrix((np.ones(n), (rows, 3 * rows + 2)), shape=(n, 3 * n + 1))
         self.cones = vstack([shear - slope, -shear - slope]).tocsr()  # ± T − μ N ≤ 0
         self.programs = 0
+
+    def largest(self) -> float:
+        """The largest load inside the friction cones; nan: none at load zero, inf: any load."""
+        free = np.full(len(self.joints), np.inf)
+        if self.solve(np.zeros(3 * len(free) + 1), self.bounds(free, 0.0, 0.0), cones=True).status != 0:
+            return float("nan")
+        cost = np.zeros(3 * len(free) + 1)
+        cost[-1] = -1.0
+        found = self.solve(cost, self.bounds(free, 0.0, np.inf), cones=True)
+        return float(found.x[-1]) if found.status == 0 else float("inf")
 
     def lowest(self, associated: float, accuracy: float = 1e-3) -> float | None:
         """A load below which nothing collapses, None: none was proved; sought to `accuracy` of the associated one."""

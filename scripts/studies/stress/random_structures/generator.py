@@ -18,9 +18,10 @@ from studies.stress.random_structures.walls import Blocks, Rng
 Tables = dict[str, Any]
 
 KINDS: dict[str, tuple[float, Callable[[Rng], Any]]] = {  # how often, how
-    "coursed wall": (0.18, walls.coursed),
+    "coursed wall": (0.15, walls.coursed),
     "bonded wall": (0.08, walls.bonded),
-    "stepped wall": (0.12, walls.stepped),
+    "stepped wall": (0.09, walls.stepped),
+    "propped wall": (0.06, walls.propped),
     "wall and buttress": (0.12, walls.side_by_side),
     "rubble wall": (0.12, walls.rubble),
     "arch": (0.14, frames.arch),

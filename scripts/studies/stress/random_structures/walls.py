@@ -57,8 +57,8 @@ def coursed(rng: Rng) -> Blocks:
     """A wall with a random bond and up to two openings, most of them with lintels."""
     block, height, count = rng.uniform(0.3, 0.7), rng.uniform(0.15, 0.35), int(rng.integers(3, 11))
     if rng.random() < 0.15:
-        count += int(rng.integers(4, 9))
-    length, levels = block * rng.uniform(2.5, 7.5), levels_of(rng, count, height)
+        count += int(rng.integers(4, 10))
+    length, levels = block * (0.6 * count if count > 11 else rng.uniform(2.5, 7.5)), levels_of(rng, count, height)
     spans: list[list[Any]] = [[(0.0, length)] for _ in range(count)]
     openings = int(rng.choice([0, 1, 2], p=[0.45, 0.4, 0.15])) if length > 3.6 * block and count >= 4 else 0
     for i in range(openings):
@@ -152,6 +152,25 @@ def rubble(rng: Rng) -> Blocks:
             corners = [on(foot, low[n]), on(foot, low[n + 1]), on(head, high[n + 1]), on(head, high[n])]
             blocks.append(free(f"r-{k + 1}-{n + 1}", corners))
     return blocks
+
+
+def propped(rng: Rng) -> Blocks:
+    """A thin wall with a slab that leans against it, on one side or on both: corners on faces."""
+    width, height, count = rng.uniform(0.3, 0.6), rng.uniform(0.2, 0.4), int(rng.integers(4, 12))
+    levels = levels_of(rng, count, height)
+    blocks = courses(rng, [[(0.0, width)]] * count, levels, width * rng.uniform(0.6, 1.2))
+    reach = 0.0
+    for face, sign in ((0.0, -1.0), (width, 1.0))[: 1 + int(rng.random() < 0.4)]:
+        k, angle = int(rng.integers(count // 2, count)), np.radians(rng.uniform(55.0, 80.0))
+        top = levels[k] + rng.uniform(0.2, 0.8) * (levels[k + 1] - levels[k])
+        foot, thick = top / np.tan(angle), rng.uniform(0.12, 0.3)
+        up, back = thick * np.cos(angle), -thick * np.sin(angle)
+        corners = [[-foot, 0.0], [0.0, top], [back, top + up], [back - foot, up]]
+        turned = [[face - sign * x, y] for x, y in corners]
+        blocks.append(free(f"prop{len(blocks)}", turned if sign < 0.0 else turned[::-1]))
+        reach = max(reach, foot - back)
+    blocks = [ground(-reach - 0.5, width + reach + 0.5), *blocks]
+    return mirrored(blocks) if rng.random() < 0.5 else blocks
 
 
 def on(ends: Sequence[np.ndarray], share: float) -> np.ndarray:
