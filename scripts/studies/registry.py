@@ -15,6 +15,10 @@ STUDIES = {  # module with STUDY, sentence of the list
     "motions": ("studies.motions", "artificial accelerograms and response spectra"),
     "profile": ("studies.profile", "the moment that a joint with a profile carries"),
     "pulses": ("studies.pulses.study", "published pulse tests of a column and two arches"),
+    "random_structures": (
+        "studies.stress.random_structures.study",
+        "random structures: every method between rigorous bounds",
+    ),
     "rocking": ("studies.rocking.study", "blocks that rock, slide and bounce, against exact motions"),
     "stress": ("studies.stress.study", "the stability stress test: try to break the program"),
     "thesis_joint": ("studies.thesis_joint", "one structure on the thesis's own joint"),
