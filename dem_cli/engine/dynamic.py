@@ -83,7 +83,7 @@ class DynamicSimulation(Simulation):
             self._new_dampers()
 
     def _new_dampers(self, closed: int = STICKS) -> None:
-        """Dampers of the present joints; what they remember is with the points. closed: state of those that are closed."""
+        """Dampers of the present joints; what they remember is with the points. closed: state of those closed."""
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn)
         self.dampers = Dampers(
