@@ -122,7 +122,7 @@ class FragilityStudy:
             "records": self.names,
             "collapse_intensities": [_upper(bounds[0, r]) for r in range(len(self.records))],
             "stood_up_to": [_lower(bounds[0, r]) for r in range(len(self.records))],
-            **distribution(table, levels, self.analysis.confidence, self.case.seed, self.settings.statistics),
+            **distribution(table, levels, self.analysis.confidence, self.settings.statistics),
             "never_collapsed": int(np.isinf(table[:, :, 1]).sum()),
             "collapsed_at_lowest": int((table[:, :, 0] == 0.0).sum()),
             "unit_acceleration": self.analysis.unit_acceleration,
@@ -158,6 +158,11 @@ class FragilityStudy:
             self.warnings.append(
                 f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
                 "resolved, closer levels are needed"
+            )
+        if answer["median"] is not None and answer["confidence"] is None:
+            self.warnings.append(
+                "fewer than 2 records both stood and fell: median and dispersion have no confidence band, take "
+                "more records or other intensities"
             )
         if self.analysis.bisects:
             self.warnings.append(

@@ -70,7 +70,8 @@ class StatisticsSettings:
     """Many runs: draws of slightly different structures, and the distribution of what they carry."""
 
     largest_draw: float = 3.0  # standard deviations that a draw is limited to
-    resamples: int = 400  # of the bootstrap
+    grid: int = 100  # medians and dispersions, each, that the confidence of a fit is found from
+    fewest_known: int = 2  # records that both stood and fell, without which there is no confidence
     points: int = 101  # of the curve in summary.json
     narrowest: float = 1e-4  # least dispersion: all bounds overlap
     few: int = 2  # intervals between levels that any narrow distribution fits

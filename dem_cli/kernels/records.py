@@ -112,7 +112,7 @@ class Dampers(NamedTuple):
     gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
-    states: np.ndarray  # 0: open, 1: sticking, 2: slipping, (n_points,) int8
+    states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8
     masses: np.ndarray  # and moments of inertia; 0 of supports, (n_blocks, n_dof)
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 
