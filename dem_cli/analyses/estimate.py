@@ -67,10 +67,11 @@ def describe(case: Case, model: Model) -> Rows:
 
 
 def _shaking(case: Case, model: Model) -> Rows:
-    from dem_cli.analyses.estimate_shaking import describe_shaking
+    from dem_cli.analyses.estimate_shaking import describe_shaking, settings_of
     from dem_cli.dynamics.history import damping_of_start, shaken
 
-    sim = shaken(case, model, damping_of_start(case, model, DEFAULT), settings=DEFAULT)
+    settings = settings_of(case, model)
+    sim = shaken(case, model, damping_of_start(case, model, settings), settings=settings)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),

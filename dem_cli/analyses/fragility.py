@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.history import duration_of
+from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
@@ -43,13 +46,15 @@ class FragilityStudy:
     """All records at all intensities, on the structure of the case and on slightly different ones."""
 
     def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch):
-        self.settings = settings
         self.case, self.model, self.observer, self.batch = case, model, observer, batch
         self.analysis: FragilityAnalysis = case.analysis
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
-        self.warnings: list[str] = []
+        duration = duration_of(case, GroundMotion(self.records, model))
+        self.stiffness = rocking_stiffness(case, model, duration, many=True, settings=settings)
+        self.settings = self.stiffness.applied(settings)
+        self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
 
     def run(self) -> Outcome:
         """Rest, all runs, and what they say."""

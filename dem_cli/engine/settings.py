@@ -15,6 +15,7 @@ from dem_cli.engine.dynamic_settings import (
     HistorySettings,
     ModesSettings,
     RestitutionSettings,
+    RockingSettings,
     StatisticsSettings,
 )
 from dem_cli.engine.static_settings import (
@@ -36,7 +37,7 @@ class AutomaticStiffness:
 
     fixed: float = 1e10  # where geometry is that of the start: the stiffness drops out
     statics: float = 1e6  # where geometry moves
-    dynamics: float = 1e5  # in time histories: the deeper joints give, the longer the step
+    dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
 
 
@@ -135,6 +136,7 @@ class Settings:
     frequency: FrequencySettings = field(default_factory=FrequencySettings)
     modes: ModesSettings = field(default_factory=ModesSettings)
     history: HistorySettings = field(default_factory=HistorySettings)
+    rocking: RockingSettings = field(default_factory=RockingSettings)
     restitution: RestitutionSettings = field(default_factory=RestitutionSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)
     statistics: StatisticsSettings = field(default_factory=StatisticsSettings)
