@@ -1,7 +1,7 @@
 """What a failure load is: reached from gravity, whatever stands beside, with what other histories and methods say.
 
-The four walls are those of reference/histories: loads reached from gravity by explicit relaxation in small steps on stiff
-joints, by a program of its own, and their associated loads. Started otherwise, +46 % or −34 % were called proved.
+The four walls are those of reference/histories: loads reached from gravity by explicit relaxation in small steps on
+stiff joints, by a program of its own, and their associated loads. Started otherwise, +46 % or −34 % were called proved.
 """
 
 from __future__ import annotations
