@@ -11,7 +11,7 @@ import tomli
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 
-LARGEST, SMALLEST = 1e30, 1e-50  # what lies beyond overflows in products (masses, inertias), or is a slip
+LARGEST = 1e30  # what is larger overflows in products (masses, inertias); nothing in a case is
 DEEPEST = 20  # levels of lists and tables; the format has 6
 
 
@@ -33,9 +33,9 @@ def impossible_values(value: Any, path: KeyPath = ()) -> Iterator[CaseProblem]:
         yield CaseProblem(path, f"{value} is a date; no key takes one")
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         size = abs(value)
-        if LARGEST < size < float("inf") or 0.0 < size < SMALLEST:
+        if LARGEST < size < float("inf"):
             said = show(value) if isinstance(value, float) or size < 10**50 else "a number of so many digits"
-            message = f"{said} is not allowed; numbers are 0 or between {SMALLEST:g} and {LARGEST:g} in size"
+            message = f"{said} is not allowed; numbers are at most {LARGEST:g} in size"
             yield CaseProblem(path, message)
     elif isinstance(value, (dict, list)):
         if len(path) >= DEEPEST:
