@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -29,6 +31,7 @@ class InterruptTrial:
 
     code: int | None  # exit code; None: it hung
     seconds: float  # from the signal to its end
+    cpu: float = 0.0  # s of all its processes in that time: what it would take if the machine were its own
     problems: list[str] = field(default_factory=list)
 
 
@@ -41,6 +44,8 @@ def started(command: InterruptedCommand, folder: Path, more: tuple[str, ...] = (
         "PYTHONPATH": str(ROOT), "TMPDIR": str(folder / "tmp"), "PYTHONFAULTHANDLER": "1", "NUMBA_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",
     }  # fmt: skip
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell starts what runs behind it so, and children inherit
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     with (folder / "said.txt").open("ab") as said:
         return subprocess.Popen(
             [sys.executable, "-m", "dem_cli", *command.words, "-q", *more], cwd=folder, env=environment, stdout=said,
@@ -59,12 +64,13 @@ def interrupted(
 
     whole_group: all its processes hear the signal, as with Ctrl-C in a terminal.
     """
+    before = cpu_of_children()
     process = started(command, folder)
     wait(process)
     kept = command.kept(folder)
     if process.poll() is not None:
         return None
-    begun = time.monotonic()
+    begun, spent = time.monotonic(), cpu_of_group(process.pid)
     (os.killpg if whole_group else os.kill)(process.pid, number)
     try:
         code = process.wait(PATIENCE)
@@ -72,10 +78,26 @@ def interrupted(
         process.send_signal(signal.SIGABRT)  # it says where it is
         process.wait()
         os.killpg(process.pid, signal.SIGKILL)
-        return InterruptTrial(None, PATIENCE, [f"hangs: {(folder / 'said.txt').read_text()}"])
-    trial = InterruptTrial(code, time.monotonic() - begun)
+        return InterruptTrial(None, PATIENCE, 0.0, [f"hangs: {(folder / 'said.txt').read_text()}"])
+    trial = InterruptTrial(code, time.monotonic() - begun, max(0.0, cpu_of_children() - before - spent))
     trial.problems = problems(command, folder, code, kept) + survivors(process.pid)
     return trial
+
+
+def cpu_of_children() -> float:
+    """CPU of all that were waited for [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def cpu_of_group(group: int) -> float:
+    """CPU of the processes of a group, and of those that they have waited for [s]; 0 where the system does not tell."""
+    ticks = 0
+    for file in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            fields = file.read_text().rpartition(")")[2].split()
+            ticks += sum(map(int, fields[11:15])) if int(fields[2]) == group else 0
+    return ticks / os.sysconf("SC_CLK_TCK")
 
 
 def problems(command: InterruptedCommand, folder: Path, code: int, kept: Kept) -> list[str]:
