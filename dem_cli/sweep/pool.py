@@ -198,7 +198,7 @@ def _work(pipe: Connection, function: Callable[..., Any], temporary: str) -> Non
         os._exit(1)
 
     threading.Thread(target=leave_with_parent, daemon=True).start()
-    with Interrupts(("SIGTERM",)), suppress(EOFError, OSError, KeyboardInterrupt):
+    with Interrupts(("SIGTERM",), at_once=True), suppress(EOFError, OSError, KeyboardInterrupt):
         while not asked():
             pipe.send_bytes(_answered(function, pipe.recv()))
 

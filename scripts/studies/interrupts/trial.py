@@ -19,9 +19,10 @@ from studies.interrupts.commands import InterruptedCommand, Kept
 from studies.places import ROOT
 
 PATIENCE = 60.0  # s after which it hangs
-SOON = 2.0  # s in which its processes are gone
+SOON = 10.0  # s in which all its processes are gone, the tracker of multiprocessing too
 TOO_LATE, INTERRUPTED = 0, 130
 UNBEGUN = (-signal.SIGINT, -signal.SIGTERM)  # Python itself has not read the program yet
+SITE = "Fatal Python error: init"  # nor here, with exit code 1
 HALF_DONE = (".dem-new-", ".dem-old-", ".part-", ".lock")
 
 
@@ -90,23 +91,32 @@ def cpu_of_children() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def cpu_of_group(group: int) -> float:
-    """CPU of the processes of a group, and of those that they have waited for [s]; 0 where the system does not tell."""
-    ticks = 0
+def group_of(group: int) -> dict[Path, list[str]]:
+    """Processes of a group: their folders in /proc, and what stands in `stat` from the state on."""
+    found = {}
     for file in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             fields = file.read_text().rpartition(")")[2].split()
-            ticks += sum(map(int, fields[11:15])) if int(fields[2]) == group else 0
+            if int(fields[2]) == group:
+                found[file.parent] = fields
+    return found
+
+
+def cpu_of_group(group: int) -> float:
+    """CPU of the processes of a group, and of those that they have waited for [s]; 0 where the system does not tell."""
+    ticks = sum(int(value) for fields in group_of(group).values() for value in fields[11:15])
     return ticks / os.sysconf("SC_CLK_TCK")
 
 
 def problems(command: InterruptedCommand, folder: Path, code: int, kept: Kept) -> list[str]:
     """What is not as promised, a line each."""
-    found = [] if code in (TOO_LATE, INTERRUPTED, *UNBEGUN) else [f"exit code {code}"]
+    said = (folder / "said.txt").read_text(encoding="utf-8")
+    unbegun = code in UNBEGUN or (code == 1 and SITE in said)
+    found = [] if code in (TOO_LATE, INTERRUPTED) or unbegun else [f"exit code {code}: {said[-300:]}"]
     names = [path for path in folder.rglob("*") if any(word in path.name for word in HALF_DONE)]
     found += [f"left: {path.relative_to(folder)}" for path in names if path.name not in (".sweep.lock", ".tables.lock")]
     found += [f"left in the folder of temporary files: {path.name}" for path in (folder / "tmp").iterdir()]
-    if code in UNBEGUN:
+    if unbegun:
         found += [f"ended by the signal, and left {path.name}" for path in folder.glob("*out*")]
     for path, text in kept.items():
         if not (path.exists() and path.read_bytes().startswith(text)) and code != TOO_LATE:
@@ -130,7 +140,8 @@ def survivors(group: int) -> list[str]:
         except ProcessLookupError:
             return []
         if time.monotonic() > until:
-            return ["a process of it goes on"]
+            words = {(place / "cmdline").read_text().replace("\0", " ") for place in group_of(group)}
+            return [f"a process of it goes on: {', '.join(words)}"]
         time.sleep(0.01)
 
 
