@@ -56,7 +56,7 @@ class Interrupts:
         if _noted.depth:
             look()
         else:
-            _noted.asked = _noted.answered = False
+            _noted.asked, _noted.answered, _noted.raised = False, False, -_APART
         self._hears, self._mode = True, _noted.at_once
         _noted.depth, _noted.at_once = _noted.depth + 1, self.at_once
         for name in self.signals:
@@ -73,8 +73,11 @@ class Interrupts:
         for number, handler in self._previous.items():
             ignored = self._over or (_noted.asked and self.ends_program)
             signal.signal(number, signal.SIG_IGN if ignored else handler)
-        if kind is None and not self.ends_program:
-            look()
+        if not _noted.depth:
+            too_late = _noted.asked and not _noted.answered
+            _noted.asked = _noted.answered = False
+            if kind is None and too_late and not self.ends_program:
+                raise KeyboardInterrupt
 
     def over(self) -> None:
         """The exit code is known: what comes now is too late."""

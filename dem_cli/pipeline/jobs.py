@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.errors import DemError, OutputError
+from dem_cli.interrupts import insist
 
 if TYPE_CHECKING:
     from dem_cli.case.overrides import Override
@@ -66,6 +67,7 @@ def do_job(job: SweepJob) -> Summary:
     except Exception as error:  # a fault of the program in one run does not stop a thousand others
         import traceback
 
+        insist()  # which may be what a library made of an interrupt
         return failure(job, f"internal error: {type(error).__name__}: {error}", traceback.format_exc())
     if summary["status"] == "interrupted":
         raise KeyboardInterrupt

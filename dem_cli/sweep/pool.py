@@ -10,6 +10,7 @@ import multiprocessing
 import os
 import pickle
 import signal
+import tempfile
 import threading
 import time
 import traceback
@@ -95,10 +96,10 @@ def _answers(
 class _Worker:
     """A fresh process (a fork would copy threads that hold locks), and what it is doing."""
 
-    def __init__(self, function: Callable[..., Any]):
+    def __init__(self, function: Callable[..., Any], temporary: str):
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
-        self.process = context.Process(target=_work, args=(theirs, function), daemon=True)
+        self.process = context.Process(target=_work, args=(theirs, function, temporary), daemon=True)
         with _no_interrupts_for_children():
             self.process.start()
         theirs.close()
@@ -112,10 +113,14 @@ class _Worker:
 
 
 class _Crew:
-    """All processes; on leaving, those still working are told to stop, and ended if they do not."""
+    """All processes; on leaving, those still working are told to stop, and ended if they do not.
+
+    Their temporary files are in a folder of ours: who is ended cannot remove them.
+    """
 
     def __init__(self, function: Callable[..., Any]):
         self.function = function
+        self.temporary = tempfile.TemporaryDirectory(prefix="dem-", ignore_cleanup_errors=True)
         self.workers: list[_Worker] = []
 
     def busy(self) -> list[_Worker]:
@@ -126,7 +131,7 @@ class _Crew:
         while waiting and len(self.busy()) < width:
             idle = [worker for worker in self.workers if worker.task is None]
             if not idle:
-                idle = [_Worker(self.function)]
+                idle = [_Worker(self.function, self.temporary.name)]
                 self.workers += idle
             idle[0].give(waiting.popleft())
 
@@ -155,6 +160,7 @@ class _Crew:
             if kind is not None:
                 worker.process.terminate()
         _ended(self.workers)
+        self.temporary.cleanup()
 
 
 def _ended(workers: Sequence[_Worker]) -> None:
@@ -180,9 +186,10 @@ def _no_interrupts_for_children() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _work(pipe: Connection, function: Callable[..., Any]) -> None:
+def _work(pipe: Connection, function: Callable[..., Any], temporary: str) -> None:
     """What a process does: one item after the other, until there are no more or it is told to stop."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tempfile.tempdir = temporary
     parent = multiprocessing.parent_process()
     assert parent is not None
 
@@ -191,7 +198,7 @@ def _work(pipe: Connection, function: Callable[..., Any]) -> None:
         os._exit(1)
 
     threading.Thread(target=leave_with_parent, daemon=True).start()
-    with Interrupts(("SIGTERM",)), suppress(EOFError, OSError, KeyboardInterrupt):
+    with Interrupts(("SIGTERM",), at_once=True), suppress(EOFError, OSError, KeyboardInterrupt):
         while not asked():
             pipe.send_bytes(_answered(function, pipe.recv()))
 

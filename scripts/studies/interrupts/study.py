@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from dem_cli.sweep.pool import GRACE
 from studies.interrupts.commands import COMMANDS, InterruptedCommand
 from studies.interrupts.trial import InterruptTrial, gone_on, interrupted, started
 from studies.study import StudyRunner
@@ -53,7 +54,12 @@ class InterruptStudy(StudyRunner):
                 trials[number].append(one(command, Path(place), numbers, number, whole, i % EVERY == 0))
             load.append(os.getloadavg()[0])
         rows = [summarised(signal.Signals(number).name, found) for number, found in trials.items()]
-        return {"whole": round(whole, 1), "load": [round(value, 1) for value in load], "signals": rows}
+        return {
+            "whole": round(whole, 1),
+            "busy": options.busy,
+            "load": [round(value, 1) for value in load],
+            "signals": rows,
+        }
 
     def said(self, section: str, found: Any) -> str:
         rows = ["  ".join(row_of(one)) for one in found["signals"]]
@@ -96,6 +102,7 @@ def summarised(name: str, trials: Sequence[InterruptTrial]) -> dict[str, Any]:
         "signal": name,
         "codes": dict(sorted(codes.items())),
         "seconds": sorted(round(trial.seconds, 2) for trial in trials),
+        "cpu": sorted(round(trial.cpu, 2) for trial in trials),
         "problems": [line for trial in trials for line in trial.problems],
     }
 
@@ -104,9 +111,9 @@ def row_of(row: Mapping[str, Any]) -> list[str]:
     """A row of the table."""
     times, codes = row["seconds"], dict(row["codes"])
     known = [codes.pop(code, 0) for code in ("130", "0")]
-    unbegun = sum(codes.pop(code, 0) for code in ("-2", "-15"))
+    unbegun = sum(codes.pop(code, 0) for code in ("-2", "-15", "1"))
     late = sum(value > LIMIT for value in times)
-    at = [times[int(share * (len(times) - 1))] for share in (0.5, 0.95, 1.0)]
+    at = [of[int(share * (len(of) - 1))] for of in (times, row["cpu"]) for share in (0.5, 0.95, 1.0)]
     wrong = f"**{len(row['problems'])}**" if row["problems"] or codes else "0"
     return [
         row["signal"],
@@ -119,8 +126,10 @@ def row_of(row: Mapping[str, Any]) -> list[str]:
 
 def values(kept: Mapping[str, Any]) -> dict[str, Any]:
     """What page.md.j2 shows."""
-    head = ["command", "runs for", "load", "signal", "interrupts", "130", "0", "unbegun", "median", "95 %", "longest",
-            f"above {LIMIT:g} s", "wrong"]  # fmt: skip
+    head = [
+        *("command", "runs for", "load", "signal", "interrupts", "130", "0", "unbegun", "median", "95 %", "longest"),
+        *("CPU: median", "95 %", "most", f"above {LIMIT:g} s", "wrong"),
+    ]
     sections = {name: found for name, found in kept.items() if name in COMMANDS}
     rows = [
         [WORDS.get(name, name), f"{found['whole']} s", " to ".join(map(str, found["load"])), *row_of(row)]
@@ -135,6 +144,11 @@ def values(kept: Mapping[str, Any]) -> dict[str, Any]:
         "wrong": sum(len(row["problems"]) for row in all_rows),
         "limit": LIMIT,
         "every": EVERY,
+        "above": sum(value > LIMIT for row in all_rows for value in row["seconds"]),
+        "hung": sum(row["codes"].get("hung", 0) for row in all_rows),
+        "grace": GRACE,
+        "cores": os.cpu_count(),
+        "busy": max(found["busy"] for found in sections.values()),
     }
 
 
