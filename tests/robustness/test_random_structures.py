@@ -137,6 +137,11 @@ def made_up(**default):
         ({"failure_load": 0.48, "failure_load_bracket": [0.48, 0.481]}, verdicts.BELOW),
         ({"failure_load": 0.51, "failure_load_bracket": [0.51, 0.511]}, verdicts.SILENT),
         ({"status": "does not stand", "failure_load": None, "failure_load_bracket": None}, verdicts.STANDS_OR_FALLS),
+        (
+            {"status": "no failure up to 100", "failure_load": None, "failure_load_bracket": [100.0, None]},
+            verdicts.ABOVE,
+        ),
+        ({"status": "an equilibrium exists", "failure_load": None, "equilibrium_load": 0.53}, verdicts.ABOVE),
         ({"status": "crashed: ValueError: no"}, verdicts.CRASHED),
         ({"status": "not converged", "failure_load": None}, verdicts.UNFINISHED),
     ],

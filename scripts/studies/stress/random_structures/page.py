@@ -17,10 +17,10 @@ Row = Mapping[str, Any]
 def load_of(row: Row, name: str = DEFAULT) -> str:
     """What a method says, in short."""
     answer = row["answers"][name]
-    load, status = answer.get("failure_load"), answer["status"]
-    if load is None:
+    load, status = verdicts.claimed(answer), answer["status"]
+    if load is None or status.startswith(verdicts.LOCKED):
         return status.partition(":")[0]
-    return f"{load:.4f}" + ("" if status == verdicts.SOLVED else f" ({status})")
+    return f"{load:.4f}" + ("*" if status.startswith(verdicts.EXISTS) else "" if status == verdicts.SOLVED else " (?)")
 
 
 def line(row: Row) -> str:

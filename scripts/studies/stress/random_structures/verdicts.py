@@ -16,6 +16,7 @@ RESOLUTION = 0.002  # of analysis.resolution: methods that are as near as that a
 SLACK = 1e-3  # of a bound, that the accuracy of equilibria may take
 SAME = 1e-3  # associated and lowest load as near as that: the load is known
 FALLS, LOCKED, SOLVED = "does not stand", "no failure", "ok"
+EXISTS = "an equilibrium exists"  # of a start that claims no failure load
 
 Finding = tuple[str, str]
 ABOVE, BELOW, STANDS_OR_FALLS = "above the associated load", "below the lowest load", "stands or falls"
@@ -29,6 +30,13 @@ def reported(summary: Mapping[str, Any], load: float) -> bool:
     if span:
         return bool(span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION))
     return any("depends on the way" in line for line in summary.get("warnings", []))
+
+
+def claimed(found: Answer) -> float | None:
+    """The load that an answer says is carried: the failure load, an equilibrium, the highest that was tried."""
+    if found["status"].startswith(LOCKED):
+        return found["failure_load_bracket"][0]
+    return found.get("failure_load") or found.get("equilibrium_load")
 
 
 def bracket(found: Answer) -> tuple[float, float] | None:
@@ -67,21 +75,21 @@ def bound_of(row: Mapping[str, Any]) -> float | None:
 
 def of_bounds(name: str, answer: Answer, associated: float | None, lowest: float | None) -> Iterator[Finding]:
     """An answer against the range of admissible loads. bounds: as bound_of."""
-    status, load = answer["status"], answer.get("failure_load")
+    status, load = answer["status"], claimed(answer)
     if status.startswith("crashed"):
         yield CRASHED, f"{name}: {status}"
     elif status.startswith(FALLS):
         if lowest is not None:
             yield STANDS_OR_FALLS, f"{name}: {status}, but stands up to {lowest:.5g} at least"
     elif associated is None:
-        if status in (SOLVED, LOCKED):
+        if status.startswith((SOLVED, LOCKED, EXISTS)):
             yield STANDS_OR_FALLS, f"{name}: {status}, {load}; no forces carry the dead loads"
     elif load is not None and load > associated * (1.0 + SLACK):
         yield ABOVE, f"{name}: {load:.5f} > {associated:.5f} ({load / associated - 1.0:+.2%})"
     elif bracket(answer) and lowest is not None and answer["failure_load_bracket"][1] < lowest * (1.0 - SLACK):
         high = answer["failure_load_bracket"][1]
         yield BELOW, f"{name}: fails at {high:.5g}, stands up to {lowest:.5g} at least ({high / lowest - 1.0:+.2%})"
-    elif status not in (SOLVED, LOCKED):
+    elif not status.startswith((SOLVED, LOCKED, EXISTS)):
         yield UNFINISHED, f"{name}: {status}, load {load}, {answer.get('steps')} steps"
 
 
