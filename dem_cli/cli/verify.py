@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli.cli.words import console
-from dem_cli.cli.words.console import seconds
+from dem_cli.cli.words.numbers import seconds
 from dem_cli.errors import UsageError
 from dem_cli.version import __version__
 

@@ -48,9 +48,14 @@ class Job:
         """A job that reports to `observer`."""
         return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
 
+    def stiffness(self, kinematics: str) -> float:
+        """kn·h/W of "auto" joints in a static analysis."""
+        stiffness = self.settings.stiffness
+        return stiffness.fixed if kinematics == "fixed" else stiffness.statics
+
     def simulation(self, kinematics: str, ratio: float | None = None) -> Simulation:
         """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings)."""
-        ratio = self.settings.stiffness.statics if ratio is None else ratio
+        ratio = self.stiffness(kinematics) if ratio is None else ratio
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(
             lambda: Simulation(

@@ -34,7 +34,8 @@ from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP
 class AutomaticStiffness:
     """kn·h/W of "auto" joints: normal stiffness [Pa/m] times smallest edge over mean weight per joint area."""
 
-    statics: float = 1e6  # where the stiffness drops out
+    fixed: float = 1e10  # where geometry is that of the start: the stiffness drops out
+    statics: float = 1e6  # where geometry moves
     dynamics: float = 1e5  # in time histories: the deeper joints give, the longer the step
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
 

@@ -66,6 +66,7 @@ class Simulation:
         self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
+        self.first_gaps = self.contacts.gaps.copy()
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = play_of_start(self.tracking, self.bodies, settings.clearance)
         self.first_places = self.places()

@@ -65,3 +65,20 @@ def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
             return near
         reached[new] = True
         near += 1
+
+
+def largest_structure(joints: np.ndarray, fixed: np.ndarray) -> int:
+    """How many free blocks the largest structure has whose blocks hang together by joints; joints: (n, 2) blocks.
+
+    Supports join nothing: two walls on one ground are two structures.
+    """
+    inner = joints[~fixed[joints].any(axis=1)]
+    label = np.arange(len(fixed))
+    while True:
+        lowest = label[inner].min(axis=1, initial=len(fixed))
+        smaller = label.copy()
+        np.minimum.at(smaller, inner.ravel(), np.repeat(lowest, 2))
+        smaller = smaller[smaller]
+        if np.array_equal(smaller, label):
+            return int(np.bincount(label[~fixed]).max(initial=0))
+        label = smaller
