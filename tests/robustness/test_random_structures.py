@@ -159,6 +159,20 @@ def test_a_range_that_holds_all_methods_is_a_word():
     assert [name for name, _ in verdicts.findings(made_up(**off, **less))] == [verdicts.SILENT]
 
 
+def test_the_path_of_limit_analysis_is_a_method():
+    row = made_up()
+    agrees, differs = ({"limit": row["limit"] | {"non_associated": load}} for load in (0.5008, 0.49))
+    assert verdicts.findings(row | agrees) == []
+    assert [name for name, _ in verdicts.findings(row | differs)] == [verdicts.SILENT]
+
+
+def test_what_is_kept_beside_the_page_says_the_same():
+    for default in ({}, {"failure_load": 0.51, "failure_load_bracket": [0.51, 0.511]}):
+        row = made_up(**default)
+        assert verdicts.findings(study.shortened(row)) == verdicts.findings(row)
+        assert page.line(study.shortened(row)) == page.line(row)
+
+
 def test_other_faults():
     """Associated loads that differ; a structure that stands, or not, against what linear programs say."""
     row = made_up()
