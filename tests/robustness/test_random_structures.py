@@ -137,6 +137,11 @@ def made_up(**default):
         ({"failure_load": 0.48, "failure_load_bracket": [0.48, 0.481]}, verdicts.BELOW),
         ({"failure_load": 0.51, "failure_load_bracket": [0.51, 0.511]}, verdicts.SILENT),
         ({"status": "does not stand", "failure_load": None, "failure_load_bracket": None}, verdicts.STANDS_OR_FALLS),
+        (
+            {"status": "no failure up to 100", "failure_load": None, "failure_load_bracket": [100.0, None]},
+            verdicts.ABOVE,
+        ),
+        ({"status": "an equilibrium exists", "failure_load": None, "equilibrium_load": 0.53}, verdicts.ABOVE),
         ({"status": "crashed: ValueError: no"}, verdicts.CRASHED),
         ({"status": "not converged", "failure_load": None}, verdicts.UNFINISHED),
     ],
@@ -152,6 +157,20 @@ def test_a_range_that_holds_all_methods_is_a_word():
     less = {"load_range": {"lowest": 0.507, "highest": 0.511, "why": "two histories"}}
     assert verdicts.findings(made_up(**off, **said)) == []
     assert [name for name, _ in verdicts.findings(made_up(**off, **less))] == [verdicts.SILENT]
+
+
+def test_the_path_of_limit_analysis_is_a_method():
+    row = made_up()
+    agrees, differs = ({"limit": row["limit"] | {"non_associated": load}} for load in (0.5008, 0.49))
+    assert verdicts.findings(row | agrees) == []
+    assert [name for name, _ in verdicts.findings(row | differs)] == [verdicts.SILENT]
+
+
+def test_what_is_kept_beside_the_page_says_the_same():
+    for default in ({}, {"failure_load": 0.51, "failure_load_bracket": [0.51, 0.511]}):
+        row = made_up(**default)
+        assert verdicts.findings(study.shortened(row)) == verdicts.findings(row)
+        assert page.line(study.shortened(row)) == page.line(row)
 
 
 def test_other_faults():

@@ -25,7 +25,7 @@ from scipy.sparse.csgraph import connected_components
 
 Tables = dict[str, Any]
 INTERVALS = 12  # of the load that are tried at most, halved where nothing is gained
-MOST_PROGRAMS = 1500  # linear programs of one structure
+EFFORT = 50_000  # linear programs of a structure × its joints, at most: some seconds
 LEAST_GAIN = 0.02  # of an interval: less is none
 
 
@@ -170,7 +170,8 @@ class AdmissibleLoads:
         """A load below which nothing collapses, None: none was proved; sought to `accuracy` of the associated one."""
         low, high = 0.0, associated
         for _ in range(INTERVALS):
-            if associated - low <= accuracy * associated or self.programs + len(self.joints) > MOST_PROGRAMS:
+            effort = (self.programs + len(self.joints)) * len(self.joints)
+            if associated - low <= accuracy * associated or effort > EFFORT:
                 break
             strengths = self.friction * self.least_normals(low, high)
             reached = self.reach(strengths, low, high)

@@ -15,7 +15,10 @@ Tables = dict[str, Any]
 Answer = dict[str, Any]
 DEFAULT = "default"
 STARTS = ("gravity", "path", "limit")  # analysis.start
-KEPT = ("status", "failure_load", "failure_load_bracket", "load_range", "limit_analysis", "start", "steps", "warnings")
+KEPT = (
+    "status", "failure_load", "failure_load_bracket", "equilibrium_load", "load_range", "unique", "start", "steps",
+    "warnings",
+)  # fmt: skip
 
 
 def answers(tables: Tables, max_steps: int | None = None) -> dict[str, Answer]:

@@ -17,10 +17,10 @@ Row = Mapping[str, Any]
 def load_of(row: Row, name: str = DEFAULT) -> str:
     """What a method says, in short."""
     answer = row["answers"][name]
-    load, status = answer.get("failure_load"), answer["status"]
-    if load is None:
+    load, status = verdicts.claimed(answer), answer["status"]
+    if load is None or status.startswith(verdicts.LOCKED):
         return status.partition(":")[0]
-    return f"{load:.4f}" + ("" if status == verdicts.SOLVED else f" ({status})")
+    return f"{load:.4f}" + ("*" if status.startswith(verdicts.EXISTS) else "" if status == verdicts.SOLVED else " (?)")
 
 
 def line(row: Row) -> str:
@@ -44,8 +44,8 @@ def counts(rows: Sequence[Row]) -> dict[str, str]:
     """What was found, by name."""
     every = [(row, *finding) for row in rows for finding in verdicts.findings(row)]
     known = [row for row in rows if is_known(row)]
-    pairs = [pair for row in rows for pair in verdicts.disagreements(row["answers"])]
-    differ = [row for row in rows if verdicts.disagreements(row["answers"])]
+    pairs = [pair for row in rows for pair in verdicts.disagreements(row)]
+    differ = [row for row in rows if verdicts.disagreements(row)]
     found = {
         "structures": f"{len(rows):,}",
         "free blocks": f"{min(row['blocks'] for row in rows)} to {max(row['blocks'] for row in rows)}",
@@ -70,7 +70,7 @@ def section() -> str:
     if not rows:
         return ""
     about = [*counts(rows).items()]
-    differ = [row for row in rows if verdicts.disagreements(row["answers"]) or verdicts.findings(row)]
+    differ = [row for row in rows if verdicts.disagreements(row) or verdicts.findings(row)]
     return filled(
         "stress/random_structures/section.md.j2",
         counts=markdown(["what", "how many"], [list(item) for item in about]),
@@ -94,7 +94,7 @@ def kinds(rows: Sequence[Row]) -> list[list[str]]:
             str(len(found)),
             str(sum(map(is_known, found))),
             worst(found),
-            str(sum(bool(verdicts.disagreements(row["answers"])) for row in found)),
+            str(sum(bool(verdicts.disagreements(row)) for row in found)),
         ]
         for kind, found in sorted(alike.items())
     ]

@@ -59,11 +59,23 @@ class RandomStudy(StudyRunner):
         wrong = [(row, name, said) for row in found for name, said in verdicts.findings(row) if name in verdicts.FAULTS]
         return [f"{row['seed']}: {name}: {said}" for row, name, said in wrong]
 
+    def write(self, found: Mapping[str, Any]) -> None:
+        super().write({name: [shortened(row) for row in rows] for name, rows in found.items()})
+
     def draw(self, chosen: Mapping[str, Any]) -> None:
         """The last section of docs/stress.md, from what is kept."""
         path = DOCS / "stress.md"
         before = path.read_text(encoding="utf-8").partition(HEADING)[0] if path.exists() else ""
         path.write_text(before + page.section(), encoding="utf-8")
+
+
+def shortened(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A record as it is kept beside the page: what its tables and findings need, with the digits that are shown."""
+    answers = {
+        name: {key: value for key, value in answer.items() if value is not None and key not in ("start", "warnings")}
+        for name, answer in row["answers"].items()
+    }
+    return storage.rounded({**row, "answers": answers})
 
 
 def keep(file: Path, rows: Mapping[int, Any]) -> None:

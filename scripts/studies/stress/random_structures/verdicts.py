@@ -16,6 +16,8 @@ RESOLUTION = 0.002  # of analysis.resolution: methods that are as near as that a
 SLACK = 1e-3  # of a bound, that the accuracy of equilibria may take
 SAME = 1e-3  # associated and lowest load as near as that: the load is known
 FALLS, LOCKED, SOLVED = "does not stand", "no failure", "ok"
+ZERO_DILATION = "dem limit"  # its path of joints that do not dilate
+EXISTS = "an equilibrium exists"  # of a start that claims no failure load
 
 Finding = tuple[str, str]
 ABOVE, BELOW, STANDS_OR_FALLS = "above the associated load", "below the lowest load", "stands or falls"
@@ -26,9 +28,14 @@ FAULTS = (ABOVE, BELOW, STANDS_OR_FALLS, CRASHED, ASSOCIATED, SILENT)  # what mu
 def reported(summary: Mapping[str, Any], load: float) -> bool:
     """Whether a run says itself that another method comes to such a load."""
     span = summary.get("load_range")
-    if span:
-        return bool(span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION))
-    return any("depends on the way" in line for line in summary.get("warnings", []))
+    return bool(span and span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION))
+
+
+def claimed(found: Answer) -> float | None:
+    """The load that an answer says is carried: the failure load, an equilibrium, the highest that was tried."""
+    if found["status"].startswith(LOCKED):
+        return found["failure_load_bracket"][0]
+    return found.get("failure_load") or found.get("equilibrium_load")
 
 
 def bracket(found: Answer) -> tuple[float, float] | None:
@@ -43,9 +50,16 @@ def apart(one: tuple[float, float], other: tuple[float, float]) -> float:
     return gap / max(one[1], other[1], 1e-9)
 
 
-def disagreements(answers: Mapping[str, Answer]) -> list[tuple[str, str, float]]:
+def claims(row: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Failure loads of all methods that give one, each as a bracket."""
+    known = {name: found for name, answer in row["answers"].items() if (found := bracket(answer))}
+    path = row["limit"].get("non_associated")
+    return known if path is None else known | {ZERO_DILATION: (path, path)}
+
+
+def disagreements(row: Mapping[str, Any]) -> list[tuple[str, str, float]]:
     """Pairs of methods whose brackets are further apart than the resolution, and by how much of the load."""
-    known = {name: found for name, answer in answers.items() if (found := bracket(answer))}
+    known = claims(row)
     pairs = ((a, b, apart(known[a], known[b])) for a, b in combinations(known, 2))
     return [(a, b, gap) for a, b, gap in pairs if gap > RESOLUTION]
 
@@ -56,7 +70,7 @@ def findings(row: Mapping[str, Any]) -> list[Finding]:
     for name, answer in row["answers"].items():
         found += of_bounds(name, answer, bound_of(row), row["lowest"])
     found += of_limit_analysis(row["limit"], bound_of(row))
-    return [*found, *unsaid(row["answers"])]
+    return [*found, *unsaid(row)]
 
 
 def bound_of(row: Mapping[str, Any]) -> float | None:
@@ -67,21 +81,21 @@ def bound_of(row: Mapping[str, Any]) -> float | None:
 
 def of_bounds(name: str, answer: Answer, associated: float | None, lowest: float | None) -> Iterator[Finding]:
     """An answer against the range of admissible loads. bounds: as bound_of."""
-    status, load = answer["status"], answer.get("failure_load")
+    status, load = answer["status"], claimed(answer)
     if status.startswith("crashed"):
         yield CRASHED, f"{name}: {status}"
     elif status.startswith(FALLS):
         if lowest is not None:
             yield STANDS_OR_FALLS, f"{name}: {status}, but stands up to {lowest:.5g} at least"
     elif associated is None:
-        if status in (SOLVED, LOCKED):
+        if status.startswith((SOLVED, LOCKED, EXISTS)):
             yield STANDS_OR_FALLS, f"{name}: {status}, {load}; no forces carry the dead loads"
     elif load is not None and load > associated * (1.0 + SLACK):
         yield ABOVE, f"{name}: {load:.5f} > {associated:.5f} ({load / associated - 1.0:+.2%})"
     elif bracket(answer) and lowest is not None and answer["failure_load_bracket"][1] < lowest * (1.0 - SLACK):
         high = answer["failure_load_bracket"][1]
         yield BELOW, f"{name}: fails at {high:.5g}, stands up to {lowest:.5g} at least ({high / lowest - 1.0:+.2%})"
-    elif status not in (SOLVED, LOCKED):
+    elif not status.startswith((SOLVED, LOCKED, EXISTS)):
         yield UNFINISHED, f"{name}: {status}, load {load}, {answer.get('steps')} steps"
 
 
@@ -102,10 +116,10 @@ def of_limit_analysis(answer: Answer, associated: float | None) -> Iterator[Find
         yield ASSOCIATED, f"dem limit: {ours:.6g}, ours {associated:.6g} ({ours / associated - 1.0:+.2%})"
 
 
-def unsaid(answers: Mapping[str, Answer]) -> Iterator[Finding]:
+def unsaid(row: Mapping[str, Any]) -> Iterator[Finding]:
     """Methods that disagree with any other while the default run does not say so."""
-    pairs = disagreements(answers)
-    loads = {name: sum(bracket(answers[name]) or ()) / 2.0 for pair in pairs for name in pair[:2]}
-    if loads and not all(reported(answers[DEFAULT], load) for load in loads.values()):
+    pairs, known = disagreements(row), claims(row)
+    loads = {name: sum(known[name]) / 2.0 for pair in pairs for name in pair[:2]}
+    if loads and not all(reported(row["answers"][DEFAULT], load) for load in loads.values()):
         widest = max(gap for *_, gap in pairs)
         yield SILENT, f"{', '.join(f'{name} {load:.5g}' for name, load in loads.items())}: up to {widest:.2%} apart"
