@@ -62,8 +62,8 @@ class RockingSettings:
     turn_of_many: float = 1e-5  # rad, in ensembles, where records differ by far more
     doubtful: float = 1e-4  # rad: from here on a run says so
     round_off: float = 2e-6  # of its weight, that round-off of places may do to the force on a block
-    work: float = 1e8  # steps × contact points of one run that stiffness may lead to: some seconds
-    work_of_many: float = 2e7  # the same of each run of an ensemble: a second
+    work: float = 3e7  # steps × contact points of one run that stiffness may lead to: two seconds
+    work_of_many: float = 2e7  # the same of each run of an ensemble: one second
     share: float = 0.5  # of analysis.max_steps, that it may lead to
     points_per_step: float = 8.0  # contact points that a step costs beside its own
     pressed: float = 0.01  # of the mean weight of a block: joints that carry less hold nobody upright

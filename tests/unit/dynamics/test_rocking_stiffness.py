@@ -9,6 +9,7 @@ import engine
 import pytest
 from engine import block, rectangle, scene, tables
 
+from dem_cli.analyses.estimate import describe
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
 from dem_cli.engine.properties import joint_properties
@@ -131,6 +132,17 @@ def test_a_run_says_what_it_chose_and_how_far_its_peaks_move():
     assert 0.0 <= found["softer_joints_move"] < ROCKING.moved
     assert found["warnings"] == []
     assert "elastic_turn" not in run(1e9, *drums(1, 0.5, 2.0), **PULSE, **SHORT)
+
+
+def test_ensembles_and_estimates_choose_alike():
+    """ε = 1e-5 in a fragility, 1e-6 in a single run: its step, which `dem check` knows, is √10 as long."""
+    blocks = drums(1, 0.5, 2.0)
+    levels = {"unit_acceleration": 3.0, "intensities": [0.5, 1.0]}
+    case = tables(GROUND, *blocks, joints={"dry": {"friction": 5.0}}, **PULSE, **SHORT)
+    many = {"kind": "fragility", "duration": 1.5} | levels
+    single, ensemble = (engine.solve({**case, "analysis": a})[0]["time_step"] for a in (SHORT["analysis"], many))
+    assert ensemble == pytest.approx(single * (ROCKING.turn_of_many / ROCKING.turn) ** 0.5, rel=1e-6)
+    assert dict(describe(*scene(case)))["time step"].startswith(f"{single:.3g} s")
 
 
 def test_a_run_on_joints_that_had_to_stay_soft_says_so():
