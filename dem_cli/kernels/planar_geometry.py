@@ -28,21 +28,22 @@ def place_end(xa, xb, share, gap, ta, tb, corner_a, corner_b):
     share: of the normal of the edge of a in that of the end, `share_of`; gap: of the end [m]. Across the joint the
     place goes with the share from one edge to the other, so that the moment of the shear force does not jump either.
     """
-    across = 0.0
     if share >= 1.0:
         nx, ny = ta[1], -ta[0]
+        x, y = corner_b
     elif share <= 0.0:
         nx, ny = -tb[1], tb[0]
+        x, y = corner_a
     else:
         nx = share * ta[1] - (1.0 - share) * tb[1]
         ny = -share * ta[0] + (1.0 - share) * tb[0]
         unit = 1.0 / math.sqrt(nx * nx + ny * ny)
         nx *= unit
         ny *= unit
-        across = gap * unit * (share - 1.0 if share >= 0.5 else share)
-    x, y = corner_b if share >= 0.5 else corner_a
-    x += across * nx
-    y += across * ny
+        across, (x, y) = (share - 1.0, corner_b) if share >= 0.5 else (share, corner_a)
+        across *= gap * unit
+        x += across * nx
+        y += across * ny
     ax, ay = x - xa[0], y - xa[1]
     bx, by = x - xb[0], y - xb[1]
     levers_a = ((ax * ny - ay * nx,), (ax * nx + ay * ny,))
