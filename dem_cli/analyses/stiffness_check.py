@@ -75,6 +75,6 @@ def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> list[st
     if not worst:
         return []
     monitors = job.case.monitor
-    names = [f"{monitors[i].quantity} of '{monitors[i].place}' by {moved[i]:.0%}" for i in worst[:MOST_LISTED]]
+    names = [f"{monitors[i].quantity} of '{monitors[i].place}' by {moved[i]:.1%}" for i in worst[:MOST_LISTED]]
     more = f" and {len(worst) - MOST_LISTED} more" if len(worst) > MOST_LISTED else ""
     return [f"{factor} peaks move, {', '.join(names)}{more}: {WHY}"]
