@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.analysis import LimitLoads
 
 INTERRUPTED = "interrupted"
+MOTION, IMPOSSIBLE = "motion", "limit analysis"  # what failure is proved by
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -229,7 +230,8 @@ def _answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str
         answer["undecided_loads"] = search.undecided
     if search.failing is not None:
         answer["proof_of_failure"] = {
+            "by": IMPOSSIBLE if search.impossible else MOTION,
             "released_share_of_work": search.failing.released,
-            "growth_when_time_doubles": search.failing.growth,
+            "growth_when_time_doubles": None if search.impossible else search.failing.growth,
         }
     return answer

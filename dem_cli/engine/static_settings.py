@@ -17,6 +17,7 @@ class ProofSettings:
     steady: float = 1.55  # growth while time doubles that counts as steady motion
     far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
     far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
+    beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load
     steadily: float = 3.3  # times as far, where the motion does not accelerate
     gross: float = 0.1  # of the width of a block: no elastic motion
     turned: float = 0.05  # rad: no elastic rotation
@@ -51,6 +52,7 @@ class LoadSearchSettings:
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
     likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
+    unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
     small_steps: int = 50  # to an estimate on which histories differ

@@ -11,7 +11,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import Verdict, settle_or_fail, stand
+from dem_cli.statics.equilibrium import Ahead, Verdict, settle_or_fail, stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.post_peak import fall_under, soften_falls
 from dem_cli.statics.rigid_limits import RigidLimits
@@ -155,7 +155,7 @@ def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> 
         return None
     place(sim, start)
     before = sim.save()
-    verdict = settle_or_fail(sim, load, job.budget, elastic, plateau=start.plateau)
+    verdict = settle_or_fail(sim, load, job.budget, elastic, ahead=Ahead(start.plateau))
     if verdict.state == "failure" and load * sim.live_scale <= start.load:
         job.skipped.append(f"a start next to failure: it did not hold, {sim.steps - steps:,} steps")
         sim.restore(held)

@@ -49,6 +49,11 @@ class Path:
             return None
         return self.normal, self.shear, self.gaps, self.displacements
 
+    def reach(self, load: float) -> float:
+        """Displacement, in elastic ones, at which the path first came to a load; to one beyond, that at its highest."""
+        first = next((i for i, reached in enumerate(self.loads) if reached >= load), self.highest)
+        return self.reached[first] if self.reached else 0.0
+
     @property
     def finished(self) -> bool:
         """Whether the load stopped growing."""

@@ -13,12 +13,13 @@ from typing import Any, NamedTuple
 from dem_cli.statics.failure_bracket import FailureLoad
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
+LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
 
 
 class History(NamedTuple):
     """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
 
-    method: str  # RAISED, IN_LARGE_STEPS, PATH or CREEP
+    method: str  # RAISED, IN_LARGE_STEPS, PATH, CREEP or LIMIT
     load: float
     finished: bool  # False: at least this load
 
@@ -43,6 +44,8 @@ def histories(search: FailureLoad) -> list[History]:
     limits = search.limits
     if limits is not None and limits.followed and limits.path is not None and limits.path.load is not None:
         found.append(History(PATH, limits.path.load, limits.path.finished))
+    if limits is not None and search.bound is not None and not limits.slides:
+        found.append(History(LIMIT, search.bound, True))
     if search.crept_beyond and search.crept is not None:
         found.append(History(CREEP, search.crept * search.scale, False))
     return found
@@ -62,9 +65,7 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
     if not apart:
         return None
     loads = [low, *(other.load for other in apart)]
-    others = ", ".join(
-        f"{'' if other.finished else 'at least '}{other.load:.5g} by {_BY[other.method]}" for other in apart
-    )
+    others = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
     why = f"{low:.5g} raised from gravity in steps, {others}"
     return {"lowest": min(loads), "highest": max(loads), "why": why}
 
@@ -73,17 +74,20 @@ def _at_least(history: History) -> str:
     return "" if history.finished else "at least "
 
 
-_BY = {IN_LARGE_STEPS: "larger steps", PATH: "the zero-dilation path", CREEP: "a creep that came to rest"}
+_BY = {
+    IN_LARGE_STEPS: "larger steps",
+    PATH: "the zero-dilation path",
+    LIMIT: "limit analysis without any sliding",
+    CREEP: "a creep that came to rest",
+}
 
 
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
     """Words of warning where histories differ, or where the bracket is wider than asked for."""
     said = []
     if spread is not None:
-        share = (
-            f"{100.0 * (spread['highest'] - spread['lowest']) / abs(search.carried):.2g} %" if search.carried else ""
-        )
-        said.append(f"how much this structure carries depends on the way it is loaded, by {share}: {spread['why']}")
+        share = 100.0 * (spread["highest"] - spread["lowest"]) / spread["highest"]
+        said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
     if search.found and search.wide and search.width is not None:
         said.append(
             f"reached from gravity: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket of "

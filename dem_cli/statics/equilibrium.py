@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,16 @@ class Verdict:
     released: float = 0.0  # failure: share of the work of the loads that became motion or was damped
     growth: float = 0.0  # failure: growth of the displacement in the last doubling of time
     block: str | None = None  # failure: that came to rest elsewhere
+
+
+class Ahead(NamedTuple):
+    """What a path from gravity says of a load (see FailureTest)."""
+
+    plateau: bool = False
+    reach: float = 0.0
+
+
+NOTHING_KNOWN = Ahead()
 
 
 def check_finite(sim: Simulation) -> None:
@@ -103,14 +113,14 @@ def settle_or_fail(
     scale: float,
     tolerance: float | None = None,
     since: np.ndarray | None = None,
-    plateau: bool = False,
+    ahead: Ahead = NOTHING_KNOWN,
     most_steps: float = math.inf,
 ) -> Verdict:
     """Constant load with combined damping until equilibrium or failure is proven; "unknown" after `most_steps`.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
-    default: where it is now. plateau: see FailureTest.
+    default: where it is now. ahead: what a path says of this load.
     """
     relaxation = sim.settings.relaxation
     tolerance = relaxation.tolerance if tolerance is None else tolerance
@@ -118,7 +128,7 @@ def settle_or_fail(
     sim.use_combined_damping()
     _limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
-    motion = FailureTest(sim, scale, plateau)
+    motion = FailureTest(sim, scale, *ahead)
     _ramp(sim, load, scale, budget, doing)
     done, calm = 0, 0
     for look in count(2):

@@ -42,6 +42,7 @@ class FailureLoad:
     found: bool = False  # the load is known, as closely as asked for or `wide`
     wide: bool = False  # the bracket is wider than asked for
     failing: Verdict | None = None
+    impossible: bool = False  # limit analysis proved that nothing is in equilibrium there; the motion shows it
     failed_state: SavedState | None = None  # of the lowest failure
     crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
     crept_state: SavedState | None = None

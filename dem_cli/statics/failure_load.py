@@ -26,7 +26,7 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.model.scales import largest_structure
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import Verdict, check_finite, settle_or_fail
+from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.trial_loads import TrialLoads
 from dem_cli.statics.warm_start import GRAVITY, LIMIT, place
@@ -125,7 +125,7 @@ class LoadSearch:
         """A better estimate, and whether the load is expected to fail there: at the bound, or where the path ends."""
         limits = self.answer.limits
         assert limits is not None
-        if estimate >= self.settings.likely * self.impossible:
+        if estimate >= self.settings.likely * self.impossible or not limits.slides:
             return self.impossible, True
         if self.too_large():
             return estimate, False
@@ -229,6 +229,7 @@ class LoadSearch:
             elif verdict.state == "failure":
                 trials.fails(load, for_certain=load >= self.impossible)
                 answer.high, answer.failing, answer.failed_state = load * answer.scale, verdict, self.sim.save()
+                answer.impossible = load >= self.impossible
             else:
                 trials.leaves(load)
             answer.undecided = [other * answer.scale for other in trials.undecided]
@@ -275,10 +276,19 @@ class LoadSearch:
             tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
             verdict = settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
-                plateau=load > self.plateau, most_steps=most,
+                ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
+
+    def _ahead(self, load: float) -> Ahead:
+        """What a path that was followed says of a load."""
+        limits = self.answer.limits
+        if limits is not None and self.impossible < np.inf and not limits.slides:
+            return Ahead(reach=self.settings.unslid)  # there is an equilibrium, however softly something rests there
+        if limits is None or not limits.followed or limits.path is None:
+            return Ahead(load > self.plateau)
+        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load))
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""

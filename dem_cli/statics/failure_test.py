@@ -32,12 +32,14 @@ class FailureTest:
 
     scale    displacement that is elastic [m]
     plateau  the load is known to grow no more with displacement: high structures need not go further than low ones
+    reach    how far an equilibrium at this load may be, in elastic displacements, where a path there is known
     """
 
-    def __init__(self, sim: Simulation, scale: float, plateau: bool = False) -> None:
+    def __init__(self, sim: Simulation, scale: float, plateau: bool = False, reach: float = 0.0) -> None:
         proof = sim.settings.proof
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
-        self.far = (proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2)) * scale
+        far = proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2, proof.beyond * reach)
+        self.far = far * scale
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             width = float(np.median(sim.widths[sim.free]))
             self.far = min(self.far, max(proof.not_elastic * scale, proof.gross * width))

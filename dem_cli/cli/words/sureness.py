@@ -44,7 +44,7 @@ def _of_load(summary: Mapping[str, Any]) -> list[str]:
         return [f"{within} under this history", between]
     if summary.get("unique"):
         return [within, "no other load is possible"]
-    others = (summary.get("histories") or [])[1:]
+    others = (summary.get("histories") or [])[1:]  # of them one by limit analysis alone is none from gravity
     if any(history["finished"] for history in others):
         return [within, "a second history agrees"]
     return [f"{within} under this history"]
