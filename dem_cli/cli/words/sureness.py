@@ -44,7 +44,8 @@ def _of_load(summary: Mapping[str, Any]) -> list[str]:
         return [f"{within} under this history", between]
     if summary.get("unique"):
         return [within, "no other load is possible"]
-    others = (summary.get("histories") or [])[1:]  # of them one by limit analysis alone is none from gravity
-    if any(history["finished"] for history in others):
-        return [within, "a second history agrees"]
-    return [f"{within} under this history"]
+    agrees = any(history["finished"] for history in (summary.get("histories") or [])[1:])
+    parts = [within, "a second history agrees"] if agrees else [f"{within} under this history"]
+    bound = (summary.get("limit_analysis") or {}).get("associated")
+    above = bound is not None and bound > 1.005 * bracket[1]
+    return [*parts, f"not above {load_text(bound)} on any"] if above else parts

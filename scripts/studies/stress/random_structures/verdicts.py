@@ -26,9 +26,13 @@ FAULTS = (ABOVE, BELOW, STANDS_OR_FALLS, CRASHED, ASSOCIATED, SILENT)  # what mu
 
 
 def reported(summary: Mapping[str, Any], load: float) -> bool:
-    """Whether a run says itself that another method comes to such a load."""
+    """Whether a run says itself that another method may come to such a load: in its range, or below a bound left open."""
     span = summary.get("load_range")
-    return bool(span and span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION))
+    inside = span and span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION)
+    low, _ = summary.get("failure_load_bracket") or (None, None)
+    bound = (summary.get("limit_analysis") or {}).get("associated")
+    left_open = summary.get("unique") is False and None not in (low, bound) and low <= load <= bound * (1.0 + RESOLUTION)
+    return bool(inside or left_open)
 
 
 def claimed(found: Answer) -> float | None:
