@@ -111,7 +111,7 @@ def _changed(load: float, rigid: float, lowered: float) -> list[str]:
     return [f"the given kn {change}: on stiff joints it is {rigid:.5g}"]
 
 
-def _off_the_load(peak: post_peak.Peak, search: FailureLoad, scale: float, off: float) -> list[str]:
+def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, off: float) -> list[str]:
     """A word where the curve of the collapse does not come to what the structure carries at rest, or passes it."""
     low, high = search.low, search.high
     if peak.load is None or not low or high is None:
@@ -167,7 +167,7 @@ def _by_load(job: Job) -> bool:
     return wanted == "load" or (wanted == "auto" and snaps)
 
 
-def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.Peak]:
+def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.carried / sim.live_scale
@@ -183,7 +183,7 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, p
         if by_load:
             impossible = search.failed / sim.live_scale
             post_peak.follow_load(falling, job.track(falling), impossible, until, frames, job.budget)
-            return falling, post_peak.Peak(displacement=search.peak_displacement)
+            return falling, post_peak.CurvePeak(displacement=search.peak_displacement)
         peak = post_peak.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
         if peak.followed < until:
             job.warnings.append(
@@ -195,7 +195,7 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, p
     except KeyboardInterrupt:
         search.status = INTERRUPTED
         job.warnings.append("the collapse was not followed to its end: interrupted")
-    return falling, post_peak.Peak()
+    return falling, post_peak.CurvePeak()
 
 
 def _answer(search: FailureLoad, sim: Simulation) -> dict[str, Any]:

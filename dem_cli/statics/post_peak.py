@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
 
 
-class Peak(NamedTuple):
+class CurvePeak(NamedTuple):
     """The peak of the curve of a collapse."""
 
     load: float | None = None  # highest multiplier, internal
@@ -52,7 +52,7 @@ def softness(
 
 def follow(
     sim: Simulation, track: Track, rate: float, failure: float, until: float, frames: int, budget: Budget
-) -> Peak:
+) -> CurvePeak:
     """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
 
     failure: internal multiplier of failure; rows and frames go to the track as they come. Where inertia lifts the
@@ -89,7 +89,7 @@ def follow(
         if done:
             close = post_peak.at_peak * min(highest, failure)
             reached = next((moved for load, moved in curve if load >= close), moved)
-            return Peak(highest, reached, moved, ceiling == math.inf)
+            return CurvePeak(highest, reached, moved, ceiling == math.inf)
         sim.prescribe_rate(min((post_peak.growth_again if slowed else post_peak.growth) * sim.rate, rate))
         pace = abs(moved - before) / chunk
         wanted = until / post_peak.rows / pace if pace > 0.0 else 2 * chunk

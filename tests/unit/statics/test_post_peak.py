@@ -14,7 +14,7 @@ from dem_cli.analyses.pushover import _off_the_load
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
-from dem_cli.statics.post_peak import Peak, follow
+from dem_cli.statics.post_peak import CurvePeak, follow
 
 WALL = Path(__file__).resolve().parents[3] / "cases" / "verification" / "wall_3.toml"
 SLENDER = ("structure.0.courses=40", "structure.0.blocks_per_course=5", "analysis.follow=0.02")
@@ -76,11 +76,11 @@ def test_a_block_that_meets_another_goes_on_and_carries_more():
 @pytest.mark.parametrize(
     ("peak", "words"),
     [
-        (Peak(1.03, 0.1, 1.0), "so fast that its curve peaks 2 %"),
-        (Peak(0.95, 0.1, 1.0), "on softer joints and with geometry that moves: its curve peaks 5 % below"),
-        (Peak(2.0, 0.1, 1.0, True), "carries 98 % above the failure load after it has failed"),
-        (Peak(0.99, 0.1, 1.0), None),
-        (Peak(), None),
+        (CurvePeak(1.03, 0.1, 1.0), "so fast that its curve peaks 2 %"),
+        (CurvePeak(0.95, 0.1, 1.0), "on softer joints and with geometry that moves: its curve peaks 5 % below"),
+        (CurvePeak(2.0, 0.1, 1.0, True), "carries 98 % above the failure load after it has failed"),
+        (CurvePeak(0.99, 0.1, 1.0), None),
+        (CurvePeak(), None),
     ],
 )
 def test_a_curve_off_the_load_is_told(peak, words):
