@@ -43,9 +43,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         if case.analysis.follow > 0.0:
             falling, peak = _fall(job, sim, search)
             sims.append(falling)
-            found["displacement_at_failure"] = peak["displacement"]
-            found["peak_of_curve"] = peak["load"] and peak["load"] * sim.live_scale
-            job.warnings += _too_fast(found["peak_of_curve"], search.high, settings.doubts.overshoot)
+            found["displacement_at_failure"] = peak.displacement
+            found["peak_of_curve"] = peak.load and peak.load * sim.live_scale
+            off = _off_the_load(peak, search, sim.live_scale, settings.doubts.off_the_load)
+            found["curve_off_the_load"] = bool(off)
+            job.warnings += off
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
@@ -130,14 +132,23 @@ def _changed(load: float, rigid: float, lowered: float) -> list[str]:
     return [f"the given kn {change}: on stiff joints it is {rigid:.5g}"]
 
 
-def _too_fast(peak: float | None, high: float | None, overshoot: float) -> list[str]:
-    """A word where the curve of the collapse is above what the structure carries at rest."""
-    if peak is None or high is None or peak <= (1.0 + overshoot) * high:
+def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, off: float) -> list[str]:
+    """A word where the curve of the collapse does not come to what the structure carries at rest, or passes it."""
+    low, high = search.low, search.high
+    if peak.load is None or not low or high is None:
         return []
-    share = f"{100 * (peak / high - 1):.2g} %"
-    return [
-        f"the collapse was followed so fast that its curve peaks {share} above the failure load: only its shape counts"
-    ]
+    load = peak.load * scale
+    if load > (1.0 + off) * high:
+        above = f"{100 * (load / high - 1):.2g} % above the failure load"
+        if peak.hardens:
+            return [f"the structure carries {above} after it has failed and moved: its curve peaks there"]
+        why = f"so fast that its curve peaks {above}"
+    elif load < (1.0 - off) * low:
+        below = f"{100 * (1 - load / low):.2g} % below the failure load"
+        why = f"on softer joints and with geometry that moves: its curve peaks {below}"
+    else:
+        return []
+    return [f"the collapse was followed {why}: only its shape counts"]
 
 
 def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
@@ -178,7 +189,7 @@ def _by_load(job: Job) -> bool:
     return wanted == "load" or (wanted == "auto" and snaps)
 
 
-def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, dict[str, float | None]]:
+def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.carried / sim.live_scale
@@ -197,14 +208,19 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, d
         if by_load:
             impossible = search.failed / sim.live_scale
             post_peak.follow_load(falling, job.track(falling), impossible, until, frames, job.budget)
-            return falling, {"load": None, "displacement": search.peak_displacement}
-        return falling, post_peak.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
+            return falling, post_peak.CurvePeak(displacement=search.peak_displacement)
+        peak = post_peak.follow(falling, job.track(falling), rate, load, until, frames, job.budget)
+        if peak.followed < until:
+            job.warnings.append(
+                f"the collapse was not followed to its end, but to {peak.followed:.3g} m: it is too slow"
+            )
+        return falling, peak
     except SolverError as error:
         job.warnings.append(f"the collapse was not followed to its end: {error}")
     except KeyboardInterrupt:
         search.status = INTERRUPTED
         job.warnings.append("the collapse was not followed to its end: interrupted")
-    return falling, {"load": None, "displacement": None}
+    return falling, post_peak.CurvePeak()
 
 
 def _answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:

@@ -86,6 +86,12 @@ class PostPeakSettings:
     most: int = 60_000
     growth: float = 1.1  # of the rate from one look to the next, so that nothing is thrown at the start
     start_up: int = 50  # looks over which it grows
+    ceiling: float = 1.015  # of the failure load: steps whose mean load is above are done again at ...
+    slower: float = 0.7  # ... this share of the rate, ...
+    tries: int = 12  # ... so often; what is above then is carried at rest
+    growth_again: float = 1.03  # of the rate from then on, from one look to the next
+    longest_look_slowed: int = 2000  # steps from one look to the next, as long as the rate has not grown again
+    patience: int = 2_000_000  # steps of the whole way, at most
     rows: int = 250  # of the history
     first_look: int = 50  # steps to it; from one look to the next they at most double, and are
     shortest_look: int = 20  # at least, and at most
@@ -99,7 +105,7 @@ class PostPeakSettings:
     harder: float = 1.005  # growth of a load that holds after all
     near_peak: float = 0.97  # share of the failure load at which loading counts as over; or of the highest load, ...
     falls_from: float = 0.8  # ... where that was at least this share of the failure load
-    at_peak: float = 0.99  # of the highest load: the displacement of the peak is where the curve first came to it
+    at_peak: float = 0.99  # of the highest load or that of failure: the displacement there is where the curve first was
 
 
 @dataclass(frozen=True)

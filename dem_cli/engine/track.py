@@ -19,11 +19,12 @@ class Track:
         self.sim, self.observer, self.monitors, self.frames = sim, observer, monitors, frames
         self.kept: list[HistoryRow] = []
 
-    def row(self, stage: str) -> HistoryRow:
-        """The history row of this instant."""
+    def row(self, stage: str, load: float | None = None) -> HistoryRow:
+        """The history row of this instant. load: internal multiplier, where that of the instant is not wanted."""
         sim = self.sim
+        load = sim.load if load is None else load
         return HistoryRow(
-            stage, sim.steps, sim.load * sim.live_scale, measures.largest_displacement(sim), sim.unbalanced,
+            stage, sim.steps, load * sim.live_scale, measures.largest_displacement(sim), sim.unbalanced,
             measures.largest_overlap(sim), measures.energy(sim), self.monitors.values(sim), sim.time,
         )  # fmt: skip
 
@@ -42,6 +43,6 @@ class Track:
             self.observer.row(row)
         self.kept.clear()
 
-    def write(self, stage: str) -> None:
-        """Hand over a row now."""
-        self.observer.row(self.row(stage))
+    def write(self, stage: str, load: float | None = None) -> None:
+        """Hand over a row now, as `row`."""
+        self.observer.row(self.row(stage, load))

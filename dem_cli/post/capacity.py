@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +29,32 @@ def draw_capacity(results: Results, path: Path) -> None:
             _draw_answers(axis, summary, labelled=i == len(axes) - 1)
             if len(panels) > 1:
                 axis.set_title(("up to failure", "whole collapse")[i], fontweight="normal", color=style.GREY)
-            if i == 0:
+            if i == 0 and not off_the_load(summary):
                 _mark_failure(axis, summary, to_failure)
+        if off_the_load(summary):
+            _say(axes[-1], off_the_load(summary))
         axes[0].set_ylabel("load multiplier λ")
         _limit_loads(axes[0], results)
         _draw_legend(figure, *axes[-1].get_legend_handles_labels())
         style.headline(figure, summary)
+
+
+def off_the_load(summary: Mapping[str, Any]) -> str:
+    """What to say of a curve that misses the failure load by more than may be drawn as a capacity; else nothing."""
+    peak, load = summary.get("peak_of_curve"), summary.get("failure_load")
+    if not summary.get("curve_off_the_load") or not peak or not load:
+        return ""
+    share, where = 100.0 * abs(peak / load - 1.0), "above" if peak > load else "below"
+    return f"no capacity curve: peaks {share:.2g} % {where} the failure load, only its shape counts"
+
+
+def _say(axis: Any, words: str) -> None:
+    """Words over a curve, that go with the picture wherever it goes."""
+    box = {"boxstyle": "round", "fc": "white", "ec": style.FAILURE, "alpha": 0.9}
+    axis.text(
+        0.98, 0.97, words, transform=axis.transAxes, ha="right", va="top", fontsize=9, color=style.FAILURE, bbox=box,
+        wrap=True, zorder=6,
+    )  # fmt: skip
 
 
 def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:

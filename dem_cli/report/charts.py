@@ -11,7 +11,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.series import BASE, MONITOR_UNITS
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
-from dem_cli.post.capacity import with_breaks
+from dem_cli.post.capacity import off_the_load, with_breaks
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import of_quantity, thinned
 from dem_cli.report.packed_arrays import pack
@@ -50,7 +50,7 @@ def _capacity(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
         lines.append(line(name, x, y, name))
     chart: Chart = {
         "id": "capacity",
-        "title": "Capacity curve",
+        "title": f"Collapse: {off}" if (off := off_the_load(results.summary)) else "Capacity curve",
         "x": f"control displacement [{unit}]",
         "y": "load multiplier λ",
         "lines": lines,

@@ -7,7 +7,8 @@ behind, as on a tilting table.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
@@ -19,6 +20,15 @@ from dem_cli.statics.equilibrium import check_finite, relax, settle_or_fail
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.simulation import Simulation
+
+
+class CurvePeak(NamedTuple):
+    """The peak of the curve of a collapse."""
+
+    load: float | None = None  # highest multiplier, internal
+    displacement: float | None = None  # where the curve first came close to it or to the failure load [m]
+    followed: float = 0.0  # how far the curve goes [m]
+    hardens: bool = False  # more was carried after failure, however slowly it was followed
 
 
 def softness(
@@ -42,11 +52,11 @@ def softness(
 
 def follow(
     sim: Simulation, track: Track, rate: float, failure: float, until: float, frames: int, budget: Budget
-) -> dict[str, float | None]:
+) -> CurvePeak:
     """Creep at `rate` [J per step] until a block moved by `until` [m]; returns the peak of the curve.
 
-    failure: internal multiplier of failure; rows and frames go to the track as they come. The peak is
-    {"load": the highest multiplier, "displacement": where the curve first came close to it}.
+    failure: internal multiplier of failure; rows and frames go to the track as they come. Where inertia lifts the
+    load above it, the way goes on more slowly; after very many steps it ends where it is.
     """
     relaxation, post_peak = sim.settings.relaxation, sim.settings.post_peak
     relax(sim, 0.0, relaxation.gravity_tolerance)
@@ -56,33 +66,55 @@ def follow(
     sim.prescribe_rate(rate / post_peak.growth**post_peak.start_up)
     stage, next_frame, chunk = "loading", 0.0, post_peak.first_look
     curve: list[tuple[float, float]] = []
-    highest = 0.0
+    start, highest, slowed, ceiling = sim.steps, 0.0, False, post_peak.ceiling * failure
     while True:
         before = measures.largest_displacement(sim)
-        sim.advance(chunk, sim.creep_mode)
-        budget.spend(chunk, "following the collapse")
-        check_finite(sim)
+        slowed = _creep(sim, chunk, ceiling, budget) or (slowed and sim.rate < rate)
         moved = measures.largest_displacement(sim)
         load = sim.mean_load / sim.dead_share
-        curve.append((load, moved))
-        done = moved >= until
+        if load > ceiling:
+            ceiling = math.inf  # however slowly: it carries more, now that it has moved
+        done = moved >= until or sim.steps > start + post_peak.patience
         highest = max(highest, load)
         falls = highest > post_peak.falls_from * failure and load < post_peak.near_peak * highest
         if falls or load >= post_peak.near_peak * failure:
             stage = "collapse"
-        track.write(stage)
+        shown = load if slowed or sim.load > ceiling else sim.load  # that of an instant may be inertia
+        track.write(stage, shown)
+        curve.append((shown, moved))
         if done or (stage == "collapse" and moved >= next_frame):
             track.frame("collapse")
             next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            reached = next((moved for load, moved in curve if load >= post_peak.at_peak * highest), moved)
-            return {"load": highest, "displacement": reached}
-        sim.prescribe_rate(min(post_peak.growth * sim.rate, rate))
+            close = post_peak.at_peak * min(highest, failure)
+            reached = next((moved for load, moved in curve if load >= close), moved)
+            return CurvePeak(highest, reached, moved, ceiling == math.inf)
+        sim.prescribe_rate(min((post_peak.growth_again if slowed else post_peak.growth) * sim.rate, rate))
         pace = abs(moved - before) / chunk
         wanted = until / post_peak.rows / pace if pace > 0.0 else 2 * chunk
         longest = post_peak.longest_look_before_peak if stage == "loading" else post_peak.longest_look
+        longest = min(longest, post_peak.longest_look_slowed) if slowed else longest
         chunk = int(min(max(wanted, post_peak.shortest_look), 2 * chunk, longest))
+
+
+def _creep(sim: Simulation, steps: int, ceiling: float, budget: Budget) -> bool:
+    """So many steps of a creep; done again more slowly, some times, as long as their mean load is above the ceiling.
+
+    What is above the failure load is inertia and damping of blocks that are hurried. Returns whether it was slowed.
+    """
+    post_peak = sim.settings.post_peak
+    for tries in range(post_peak.tries + 1):
+        last = tries == post_peak.tries or ceiling == math.inf
+        saved, rate = None if last else sim.save(), sim.rate
+        sim.advance(steps, sim.creep_mode)
+        budget.spend(steps, "following the collapse")
+        check_finite(sim)
+        if saved is None or sim.mean_load <= ceiling * sim.dead_share:
+            break
+        sim.restore(saved)
+        sim.prescribe_rate(post_peak.slower * rate)
+    return tries > 0
 
 
 def soften_falls(sim: Simulation, until: float, steps: int | None = None) -> None:

@@ -37,6 +37,12 @@ def test_a_seed_is_a_structure(structures):
     assert structures[3] != structures[4]
 
 
+def test_structures_that_are_drawn_can_be_read():
+    """Of all kinds, with bystanders and materials, before any linear program looks at them."""
+    for seed in range(60):
+        from_tables(generator.drawn(np.random.default_rng([1, seed])))
+
+
 def test_every_kind_comes():
     drawn = {generator.drawn(np.random.default_rng(seed))["title"].partition(" beside")[0] for seed in range(60)}
     assert drawn == set(generator.KINDS)

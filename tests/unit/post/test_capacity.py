@@ -1,13 +1,17 @@
-"""capacity.png: a legend with long lines stays inside the picture."""
+"""capacity.png: a legend with long lines stays inside the picture; a curve off the failure load says so in it."""
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from dem_cli.post.capacity import _draw_legend
+from dem_cli.post import capacity
+from dem_cli.post.capacity import _draw_legend, draw_capacity
 
 
 @pytest.mark.parametrize(("count", "letters"), [(1, 4), (3, 8), (8, 25), (4, 60), (8, 5)])
@@ -24,3 +28,20 @@ def test_legend_is_no_wider_than_the_figure(count, letters):
     assert len(legend.get_texts()) == count
     rows = len({round(text.get_window_extent().y0) for text in legend.get_texts()})
     assert rows == 1 or rows < count or letters > 50  # no more rows than it takes
+
+
+@pytest.mark.parametrize(("peak", "words"), [(0.7, "peaks 9.4 % above"), (0.6, "peaks 6.2 % below"), (0.64, "")])
+def test_a_curve_off_the_failure_load_says_so_in_the_picture_and_has_no_mark(tmp_path, monkeypatch, peak, words):
+    drawn = []
+    monkeypatch.setattr(capacity.style, "headline", lambda figure, summary: drawn.append(figure))
+    history = np.zeros(20, [("displacement", float), ("load", float), ("step", int), ("stage", "U10")])
+    history["displacement"], history["step"] = np.linspace(0.0, 0.01, 20), np.arange(20)
+    history["load"], history["stage"] = peak, "collapse"
+    summary = {"failure_load": 0.64, "failure_load_bracket": [0.64, 0.641], "displacement_at_failure": 0.005}
+    summary |= {"peak_of_curve": peak, "curve_off_the_load": bool(words)}
+    draw_capacity(SimpleNamespace(history=history, summary=summary), tmp_path / "capacity.png")
+    axis = drawn[0].axes[0]
+    said = [text.get_text() for text in axis.texts]
+    assert [words in text for text in said if "only its shape counts" in text] == ([True] if words else [])
+    assert len([line for line in axis.lines if line.get_marker() == "o"]) == (0 if words else 1)
+    assert (tmp_path / "capacity.png").stat().st_size > 0

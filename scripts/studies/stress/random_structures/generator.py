@@ -75,7 +75,7 @@ def drawn(rng: Rng) -> Tables:
 def add(tables: Tables, made: Blocks | Tables, shift: float, prefix: str) -> None:
     """Blocks, or a [[structure]], to the tables of a case."""
     if isinstance(made, dict):
-        tables.setdefault("structure", []).append(made)
+        tables.setdefault("structure", []).append({"material": "stone", **made})
         return
     moved = [
         block | {"id": prefix + block["id"], "vertices": [[x + shift, y] for x, y in block["vertices"]]}

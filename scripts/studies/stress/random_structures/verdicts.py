@@ -126,4 +126,12 @@ def unsaid(row: Mapping[str, Any]) -> Iterator[Finding]:
     loads = {name: sum(known[name]) / 2.0 for pair in pairs for name in pair[:2]}
     if loads and not all(reported(row["answers"][DEFAULT], load) for load in loads.values()):
         widest = max(gap for *_, gap in pairs)
-        yield SILENT, f"{', '.join(f'{name} {load:.5g}' for name, load in loads.items())}: up to {widest:.2%} apart"
+        named = ", ".join(f"{name} {load:.5g}" for name, load in loads.items())
+        of_default = sum(known.get(DEFAULT, ())) / 2.0
+        saying = [name for name, load in loads.items() if name != DEFAULT and speaks(row, name, of_default)]
+        yield SILENT, f"{named}: up to {widest:.2%} apart" + (f"; said by {', '.join(saying)} alone" if saying else "")
+
+
+def speaks(row: Mapping[str, Any], name: str, load: float) -> bool:
+    """Whether the run of a start says of itself that another method comes to such a load."""
+    return name in row["answers"] and reported(row["answers"][name], load)
