@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -161,10 +162,11 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, d
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.carried / sim.live_scale
     by_load = _by_load(job)
-    ratio, softer = sim.settings.stiffness.statics, 1.0
+    ratio = ratio_of(sim)
     if not by_load:
-        ratio, softer = post_peak.softness(job.case, search.elastic, load, sim.smallest, until, job.settings)
+        ratio = post_peak.softness(ratio, search.elastic, load, sim.smallest, until, job.settings)
     falling = job.simulation("large", ratio)
+    softer = ratio_of(sim) / ratio_of(falling) if ratio_of(falling) > 0.0 else 1.0
     falling.count_from(sim.steps)
     fast = search.compliance * softer / sim.settings.post_peak.steps
     rate = min(fast, search.compliance / search.elastic * until / sim.settings.post_peak.fewest)

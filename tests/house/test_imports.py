@@ -94,7 +94,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "statics",
         "tables",
     },
-    "statics": {"case.schema", "engine", "kernels.records", "limit"},
+    "statics": {"engine", "kernels.records", "limit"},
     "engine": {
         "limit.settings",
         "geometry",
