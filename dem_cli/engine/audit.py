@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.engine import measures
-from dem_cli.engine.automatic_stiffness import leaning, ratio_of
+from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.measures import closure, free_falls
 from dem_cli.model.scales import WEIGHTLESS, own_weights
 
@@ -65,13 +65,13 @@ def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
     """Where even "auto" joints as stiff as round-off allows let a structure lean by what counts."""
     if sim.kinematics == "fixed":
         return []
-    share, resolution = leaning(sim), getattr(case.analysis, "resolution", None)
-    cost = share * sim.shown if sim.takes_back else share
-    if share <= sim.settings.doubts.buckles and (resolution is None or cost <= resolution):
+    resolution = getattr(case.analysis, "resolution", None)
+    allowed = sim.settings.doubts.buckles if sim.takes_back else resolution
+    if allowed is None or sim.leans <= allowed:
         return []
     return [
-        f"the structure leans over its joints, as stiff as round-off allows (kn·h/W {ratio_of(sim):.2g}): "
-        f"that alone lowers its load by about {min(share, 1.0):.1%} between two loads at rest"
+        f'"auto" joints are as stiff as round-off allows (kn·h/W {ratio_of(sim):.2g}), and the structure leans over '
+        f"them all the same: that alone may lower its load by {min(sim.leans, 1.0):.0%}; do not trust this run"
     ]
 
 

@@ -52,10 +52,10 @@ def needed_ratio(sim: Simulation, resolution: float | None = None) -> float:
 
 def shown_closure(sim: Simulation, resolution: float | None = None) -> float:
     """Share of their closure that "auto" joints may show in an equilibrium; resolution: of a load, relative."""
-    relief, leans = sim.settings.relief, leaning(sim)
-    if resolution is None or leans == 0.0:
+    relief = sim.settings.relief
+    if resolution is None or sim.leans == 0.0:
         return relief.shown
-    return min(relief.shown, relief.of_resolution * resolution / leans)
+    return min(relief.shown, relief.of_resolution * resolution / sim.leans)
 
 
 def leaning(sim: Simulation) -> float:

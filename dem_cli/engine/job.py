@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
-from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, shown_closure
+from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, why_moving
@@ -62,6 +62,7 @@ class Job:
             return sim
         needed = needed_ratio(sim, resolution)
         sim = sim if needed == ratio_of(sim) else self._compiled(kinematics, needed)
+        sim.leans = leaning(sim)
         sim.shown = shown_closure(sim, resolution)
         return sim
 

@@ -72,6 +72,7 @@ class Simulation:
         # Closure of "auto" joints is taken back at rest (engine/rigid_joints.py):
         self.takes_back = kinematics == "large" and not law.bonded and bool(properties.rigid.any())
         self.taken_back = np.zeros((model.n_blocks, model.dead_loads.shape[1]))  # all of it, since the start [m, rad]
+        self.leans = 0.0  # share of its load that leaning over such joints would cost, if it is known
         self.shown = settings.relief.shown  # share of the closure of rigid joints that geometry may show at rest
 
     @property

@@ -21,7 +21,8 @@ def compliance(sim: Simulation) -> tuple[float, float]:
     load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
     load, value, largest = load_search.probe_in_play if sim.play.moved.any() else load_search.probe, 0.0, 0.0
-    steps = max(load_search.probe_steps, load_search.probe_steps_per_depth * sim.depth**2)
+    steps = min(load_search.probe_steps_per_depth * sim.depth**2, load_search.most_probe_steps)
+    steps = max(steps, load_search.probe_steps)
     for _ in range(load_search.probes):
         verdict = relax(sim, load, relaxation.tolerance, steps)
         value = (measures.live_displacement(sim) - before) / load

@@ -162,3 +162,14 @@ def test_a_tall_stack_stands_a_settlement():
     summary, _ = solve(case)
     assert summary["status"] == "ok"
     assert summary["largest_displacement"] == pytest.approx(0.001, rel=0.01)
+
+
+def test_what_round_off_leaves_too_soft_is_said():
+    """300 drums need kn·h/W = 3e8; forces would then balance to 4e-5 of the weight at best, not to 1e-5."""
+    said = {}
+    for number in (30, 300):
+        made = scene(drums(number))
+        job = Job.start(made.case, made.model, Records())
+        said[number] = " ".join(job.outcome([job.first_simulation()], {"status": "ok"}).summary["warnings"])
+    assert "as stiff as round-off allows" in said[300]
+    assert said[30] == ""

@@ -98,6 +98,7 @@ def test_round_off_is_the_limit():
 
 def test_closure_shown_costs_less_than_the_resolution():
     sim = simulation(tables(BASE, *stack(30, 0.5, 1.0)), "large", RATIO)
+    sim.leans = leaning(sim)
     for resolution in (RESOLUTION, 1e-4):
         shown = shown_closure(sim, resolution)
         assert shown * leaning(sim) <= DEFAULT.relief.of_resolution * resolution * (1 + 1e-12)
