@@ -51,7 +51,7 @@ def build_model(loaded: LoadedCase) -> Model:
 
     Raises CaseError, with file and line, on bad geometry and unknown blocks.
     """
-    from dem_cli.assembly import validate
+    from dem_cli.assembly import sanity, validate
     from dem_cli.assembly.assemble import assembly
 
     found_odd: list[str] = []
@@ -61,9 +61,10 @@ def build_model(loaded: LoadedCase) -> Model:
             from dem_cli.motion.ground_motions import check
 
             found_odd += map(loaded.render, check(loaded.case))
-    found = validate.problems(loaded.case, made.model, made.blocks)
+    found = validate.problems(loaded.case, made.model, made.blocks) or sanity.problems(loaded.case, made.model)
     if found:
         raise CaseError(found, loaded.render)
-    found_odd += [*map(loaded.render, made.doubts), *validate.warnings(made.model)]
+    doubts = (*made.doubts, *sanity.doubts(loaded.case, made.model, made.blocks))
+    found_odd += [*map(loaded.render, doubts), *validate.warnings(made.model)]
     loaded.warnings += [line for line in found_odd if line not in loaded.warnings]
     return made.model

@@ -14,9 +14,9 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import FALLS, settle, settle_or_fail
+from dem_cli.statics.equilibrium import settle, settle_or_fail
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of
 from dem_cli.engine.clock import duration_words
-from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
@@ -52,7 +52,7 @@ def describe(case: Case, model: Model) -> Rows:
 
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
-    moving = why_moving(case, model, DEFAULT) if moving is None else moving
+    moving = why_moving(case, model) if moving is None else moving
     sim = simulation("fixed" if moving is None else "large", _ratio(case, model))
     needed = ratio_of(sim) if moving is None else needed_ratio(sim, getattr(case.analysis, "resolution", None))
     sim = sim if needed == ratio_of(sim) else simulation(sim.kinematics, needed)
@@ -60,7 +60,7 @@ def describe(case: Case, model: Model) -> Rows:
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        ("kinematics", _kinematics(wanted, moving)),
+        *_kinematics(wanted, moving, model),
         ("time step", _time_step(sim)),
         *_runs(case),
         ("cost", _cost(case, sim)),
@@ -70,10 +70,11 @@ def describe(case: Case, model: Model) -> Rows:
 
 
 def _shaking(case: Case, model: Model) -> Rows:
-    from dem_cli.analyses.estimate_shaking import describe_shaking
+    from dem_cli.analyses.estimate_shaking import describe_shaking, settings_of
     from dem_cli.dynamics.history import damping_of_start, shaken
 
-    sim = shaken(case, model, damping_of_start(case, model, DEFAULT), settings=DEFAULT)
+    settings = settings_of(case, model)
+    sim = shaken(case, model, damping_of_start(case, model, settings), settings=settings)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
@@ -137,12 +138,18 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
     return rows
 
 
-def _kinematics(wanted: str, moving: str | None) -> str:
+def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:
+    """Whether geometry moves, and which gaps stay open where it does not."""
+    doubt = open_gaps_doubt(model) if moving is None else None
+    gaps = [] if doubt is None else [("gaps", doubt)]
     if moving:
-        return f"large: {moving}"
-    if wanted != "auto":
-        return f"{wanted} (as the case says)"
-    return "fixed (auto): all joints are closed, and the geometry of the start is exact for a failure load"
+        text = f"large: {moving}"
+    elif wanted != "auto":
+        text = f"{wanted} (as the case says)"
+    else:
+        closed = "no gap may close" if gaps else "all joints are closed"
+        text = f"fixed (auto): {closed}, and the geometry of the start is exact for a failure load"
+    return [("kinematics", text), *gaps]
 
 
 def _time_step(sim: Simulation) -> str:

@@ -8,17 +8,30 @@ from typing import TYPE_CHECKING
 from dem_cli.analyses.modes import touching_points
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.clock import duration_words
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.record_search import runs_per_record
 from dem_cli.motion.ground_motions import motions_of, suites_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.model.model import Model
 
 NANOSECONDS = {False: 20, True: 55}  # per contact point and step, one core, without and with dashpots
 PER_STEP = 0.4  # µs beside them
+
+
+def settings_of(case: Case, model: Model) -> Settings:
+    """Settings with the stiffness that a run gives "auto" joints; the default one where its length is not known."""
+    length = case.analysis.duration or GroundMotion(motions_of(case), model).duration
+    if length <= 0.0:
+        return DEFAULT
+    return rocking_stiffness(case, model, length, many=case.analysis.kind == "fragility", settings=DEFAULT).applied(
+        DEFAULT
+    )
 
 
 def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]]:

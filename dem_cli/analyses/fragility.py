@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.history import duration_of
+from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
@@ -22,8 +25,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer, RunRow, distinct
-from dem_cli.statics.equilibrium import FALLS
+from dem_cli.output.record import FALLS, Observer, RunRow, distinct
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -44,13 +46,15 @@ class FragilityStudy:
     """All records at all intensities, on the structure of the case and on slightly different ones."""
 
     def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch):
-        self.settings = settings
         self.case, self.model, self.observer, self.batch = case, model, observer, batch
         self.analysis: FragilityAnalysis = case.analysis
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
-        self.warnings: list[str] = []
+        duration = duration_of(case, GroundMotion(self.records, model))
+        self.stiffness = rocking_stiffness(case, model, duration, many=True, settings=settings)
+        self.settings = self.stiffness.applied(settings)
+        self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
 
     def run(self) -> Outcome:
         """Rest, all runs, and what they say."""
@@ -123,7 +127,7 @@ class FragilityStudy:
             "records": self.names,
             "collapse_intensities": [_upper(bounds[0, r]) for r in range(len(self.records))],
             "stood_up_to": [_lower(bounds[0, r]) for r in range(len(self.records))],
-            **distribution(table, levels, self.analysis.confidence, self.case.seed, self.settings.statistics),
+            **distribution(table, levels, self.analysis.confidence, self.settings.statistics),
             "never_collapsed": int(np.isinf(table[:, :, 1]).sum()),
             "collapsed_at_lowest": int((table[:, :, 0] == 0.0).sum()),
             "unit_acceleration": self.analysis.unit_acceleration,
@@ -159,6 +163,11 @@ class FragilityStudy:
             self.warnings.append(
                 f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
                 "resolved, closer levels are needed"
+            )
+        if answer["median"] is not None and answer["confidence"] is None:
+            self.warnings.append(
+                "fewer than 2 records both stood and fell: median and dispersion have no confidence band, take "
+                "more records or other intensities"
             )
         if self.analysis.bisects:
             self.warnings.append(

@@ -9,8 +9,8 @@ from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
-from dem_cli.statics.equilibrium import FALLS, settle
+from dem_cli.output.record import FALLS, Observer
+from dem_cli.statics.equilibrium import settle
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

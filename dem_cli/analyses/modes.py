@@ -21,8 +21,8 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight
-from dem_cli.output.record import Frame, Observer
-from dem_cli.statics.equilibrium import FALLS, settle, stand
+from dem_cli.output.record import FALLS, Frame, Observer
+from dem_cli.statics.equilibrium import settle, stand
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

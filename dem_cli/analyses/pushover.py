@@ -11,16 +11,20 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import post_peak
-from dem_cli.statics.equilibrium import FALLS, settle
-from dem_cli.statics.failure_bracket import FailureLoad, SearchRange
+from dem_cli.statics.agreement import doubts, histories, load_range, unique
+from dem_cli.statics.equilibrium import settle
+from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
-from dem_cli.statics.warm_start import GRAVITY, LIMIT, PATH, find_start
+from dem_cli.statics.rigid_limits import RigidLimits
+from dem_cli.statics.warm_start import GRAVITY, find_start
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.engine.track import Track
+    from dem_cli.limit.analysis import LimitLoads
 
 INTERRUPTED = "interrupted"
 
@@ -32,26 +36,10 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     sims = [sim]
     found: dict[str, Any] = {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
-    if search.found and search.start["kind"] == LIMIT:
-        job.warnings.append(
-            "started from the forces of limit analysis without friction in head joints: "
-            "the load that the structure reaches from gravity may be some per cent lower"
-        )
-    elif search.found and search.start["kind"] == GRAVITY and len(sim.free) > settings.warm_start.large:
-        large = settings.warm_start.large
-        job.warnings.append(f"more than {large} blocks raised from gravity: the true failure load may be higher")
-    if search.crept is not None and search.crept_beyond:
-        job.warnings.append(
-            f"a creep to failure came to rest at {search.crept * sim.live_scale:.5g}, above the proven failure: "
-            "how much this structure carries depends on the way it is loaded"
-        )
-    if search.status == "ok":
-        found |= describe(sim, search.standing)
-        failing = sim.save()
-        sim.restore(search.standing)
-        track.frame("loading")
-        sim.restore(failing)
-        track.frame("collapse")
+    resolution = case.analysis.resolution
+    job.warnings += doubts(search, resolution, load_range(search, resolution))
+    if search.status == OK:
+        found |= _mechanism(sim, search, track)
         if case.analysis.follow > 0.0:
             falling, peak = _fall(job, sim, search)
             sims.append(falling)
@@ -63,9 +51,21 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
-    if case.analysis.limit:
+    if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
         found["limit_analysis"] = _limit_analysis(job, search)
-    return job.outcome(sims, _answer(search, sim) | found)
+    return job.outcome(sims, _answer(search, sim, resolution) | found)
+
+
+def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
+    """How the structure fails, with the frames before and after, where failure was shown by motion."""
+    failing = search.failed_state
+    sim.restore(search.standing)
+    track.frame("loading")
+    if failing is None:
+        return {}
+    sim.restore(failing)
+    track.frame("collapse")
+    return describe(sim, search.standing)
 
 
 def _search(job: Job) -> tuple[FailureLoad, Simulation]:
@@ -77,20 +77,24 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
         track = job.track(sim)
         try:
             if settle(sim, track, job.budget).state == "equilibrium":
-                start, search.start = find_start(job, sim)
-                search.limits = start.limits if start is not None else None
+                search.limits = RigidLimits(job, sim)
+                start, search.start = find_start(job, sim, search.limits)
                 wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
-                LoadSearch(sim, wanted, job.budget, track, search).run(start)
+                load_search = LoadSearch(sim, wanted, job.budget, track, search)
+                load_search.run(start)
+                _second_history(job, load_search)
             else:
                 search.status = FALLS
         except SolverError as error:
             job.warnings.append(str(error))
+            search.end_undecided(job.settings.load_search.widest)
         except KeyboardInterrupt:
             search.status = INTERRUPTED
         moved = search.peak_displacement / sim.smallest
         given = any(joint.kn != "auto" for joint in job.case.joints.values())
         soft = given and moved > job.settings.load_search.soft * analysis.resolution
-        if not (soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"):
+        again = soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"
+        if not again or search.status == INTERRUPTED:
             if rigid and search.found:
                 job.warnings += _changed(search.carried, rigid, job.settings.doubts.lowered)
             if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):
@@ -100,6 +104,22 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
         job.warnings.clear()
         rigid = search.carried if search.found else None
         search, sim = FailureLoad(), job.simulation("large")
+
+
+def _second_history(job: Job, load_search: LoadSearch) -> None:
+    """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
+
+    Where it ends elsewhere, the load is raised again in small steps.
+    """
+    search, resolution = load_search.answer, job.case.analysis.resolution
+    if not search.found or search.limits is None or unique(search, resolution) or load_search.too_large():
+        return
+    path = search.limits.path
+    apart = load_range(search, resolution)
+    if path is None or path.load is None or apart is None or not path.finished:
+        return
+    if abs(path.load - search.carried) > resolution * path.load and search.start["kind"] == GRAVITY:
+        load_search.run_again_in_small_steps(min(path.load, search.carried))
 
 
 def _changed(load: float, rigid: float, lowered: float) -> list[str]:
@@ -122,32 +142,33 @@ def _too_fast(peak: float | None, high: float | None, overshoot: float) -> list[
 
 def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
-    from dem_cli.limit.analysis import limit_loads, taken_as_plane
-    from dem_cli.limit.path import OK
-
-    case, model = job.case, job.model
-    properties = joint_properties(case, model, job.settings.stiffness.statics)
-    if note := taken_as_plane(properties):
-        job.warnings.append(note)
-    by_path = search.start.get("kind") == PATH  # known already
-    try:
-        law, limit = law_of(case), job.settings.limit
-        loads = search.limits or limit_loads(model, properties, law, associated_only=by_path, settings=limit)
-    except UsageError as error:
-        job.warnings.append(f"no limit analysis: {error}")
+    assert search.limits is not None
+    if job.case.analysis.limit:
+        _ = search.limits.path  # asked for
+    loads = search.limits.loads() or _of_the_start(job)
+    if loads is None:
         return {}
-    summary = loads.summary()
-    if by_path:
-        status, load = search.start["status"], search.start["load"]
-        summary["non_associated" if status == OK else "non_associated_at_least"] = load
-        summary["non_associated_status"] = status
     bound = loads.associated.upper
     if search.found and bound is not None and search.carried > (1.0 + job.settings.doubts.above) * bound:
         job.warnings.append(
             f"the failure load {search.carried:.5g} is above the associated limit load {bound:.5g}, "
             "which rigid blocks cannot exceed: do not trust this run"
         )
-    return summary
+    return loads.summary()
+
+
+def _of_the_start(job: Job) -> LimitLoads | None:
+    """Limit analysis of the geometry of the start, where that of the run moves; None, with a word, without any."""
+    from dem_cli.limit.analysis import limit_loads, taken_as_plane
+
+    properties = joint_properties(job.case, job.model, job.settings.stiffness.fixed)
+    if note := taken_as_plane(properties):
+        job.warnings.append(note)
+    try:
+        return limit_loads(job.model, properties, law_of(job.case), settings=job.settings.limit)
+    except UsageError as error:
+        job.warnings.append(f"no limit analysis: {error}")
+        return None
 
 
 def _by_load(job: Job) -> bool:
@@ -162,9 +183,9 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, d
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.carried / sim.live_scale
     by_load = _by_load(job)
-    ratio = ratio_of(sim)
-    if not by_load:
-        ratio = post_peak.softness(ratio, search.elastic, load, sim.smallest, until, job.settings)
+    ratio = (
+        None if by_load else post_peak.softness(ratio_of(sim), search.elastic, load, sim.smallest, until, job.settings)
+    )
     falling = job.simulation("large", ratio)
     softer = ratio_of(sim) / ratio_of(falling) if ratio_of(falling) > 0.0 else 1.0
     falling.count_from(sim.steps)
@@ -184,20 +205,27 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, d
     return falling, {"load": None, "displacement": None}
 
 
-def _answer(search: FailureLoad, sim: Simulation) -> dict[str, Any]:
+def _answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
     """The failure load and how it was obtained."""
     status = search.status
-    if status == "no failure":
+    if status == NO_FAILURE:
         status = f"no failure up to a load multiplier of {search.limit:g}"
     answer: dict[str, Any] = {
         "status": status,
         "failure_load": search.low if search.found else None,
         "failure_load_bracket": [search.low, search.high],
+        "load_range": load_range(search, resolution),
+        "histories": [history.summary() for history in histories(search)],
+        "unique": unique(search, resolution) if search.bound is not None else None,
         "onset_of_displacements": search.onset,
         "kinematics": sim.kinematics,
         "start": search.start,
         "search": [vars(p) for p in search.passes],
     }
+    if status == EXISTS:
+        answer["equilibrium_load"] = search.low
+    if search.undecided:
+        answer["undecided_loads"] = search.undecided
     if search.failing is not None:
         answer["proof_of_failure"] = {
             "released_share_of_work": search.failing.released,

@@ -127,7 +127,7 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(self.case, self.model, self.settings)
+        moving = why_moving(self.case, self.model)
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)
@@ -154,8 +154,10 @@ class SafetyStudy:
         return (value - self.known.impossible) * math.copysign(1.0, self.known.impossible - self.known.carried)
 
     def _check(self, ends: Ends) -> None:
-        """Words about answers that contradict each other."""
+        """Words about a structure that does not stand as it is, and about answers that contradict each other."""
         doubts = self.settings.doubts
+        if self.analysis.of_strength and ends.fails is not None and ends.fails <= 1.0:
+            self.warnings.append("it does not stand as it is: it fails at F = 1, with the strengths of the case")
         if bisection.changes(self.answers) > 1:
             tried = ", ".join(f"{v:.5g} {'stands' if s else 'fails'}" for v, s in sorted(self.answers.items()))
             self.warnings.append(f"not monotone: {tried}; the answer is the first failure from the side that stands")

@@ -15,8 +15,8 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
-from dem_cli.statics.equilibrium import FALLS, check_finite, settle_or_fail, stand
+from dem_cli.output.record import FALLS, Observer
+from dem_cli.statics.equilibrium import check_finite, settle_or_fail, stand
 from dem_cli.statics.post_peak import soften_falls
 
 if TYPE_CHECKING:

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.analyses.stiffness_check import checked
 from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import TimeHistory
+from dem_cli.dynamics.history import TimeHistory, duration_of
+from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
@@ -24,7 +26,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
-from dem_cli.output.record import Observer, RunRow
+from dem_cli.output.record import FALLS, Observer, RunRow
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -44,8 +46,15 @@ def run(
     job = Job.start(case, model, observer, settings)
     for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
         job.clock.imported(module)
-    outcome = TimeHistory(job, GroundMotion(motions_of(case), model)).run()
-    if doubtful(case):
+    motions = motions_of(case)
+    ground = GroundMotion(motions, model)
+    chosen = rocking_stiffness(case, model, duration_of(case, ground), settings=settings)
+    job.settings = chosen.applied(settings)
+    history = TimeHistory(job, ground)
+    outcome = history.run()
+    if chosen.automatic and outcome.summary["status"] == "ok":
+        outcome.summary |= checked(history, motions, chosen, outcome.summary["collapsed"], settings)
+    if doubtful(case) and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
         found = repeated(case, model, observer, settings, batch or Batch())
@@ -63,6 +72,9 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed."""
     started = time.perf_counter()
     motions, quiet = motions_of(case), ProgressOnly(observer)
+    duration = duration_of(case, GroundMotion(motions, model))
+    chosen = rocking_stiffness(case, model, duration, many=True, settings=settings)
+    settings = chosen.applied(settings)
     variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
     structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
@@ -75,6 +87,8 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     runs = [batcher.done[trial] for trial in trials]
     observer.runs(_rows(trials, runs, structures, max((motion.peak for motion in motions), default=0.0)))
     warnings = [f"structure {1 + t.structure}: {run.how}" for t, run in zip(trials, runs) if run.collapsed is None]
+    if chosen.turn > settings.rocking.doubtful:
+        warnings.append(f"repeats: {chosen.doubt}")
     fell = case.analysis.repeats - len(trials)
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")

@@ -70,6 +70,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
     for i, parameters in enumerate(case.structure):
         try:
             generated = GENERATORS[parameters.kind].build(parameters)
+            _check_corners(generated)
         except ValueError as error:
             keys = error.keys if isinstance(error, KeyProblem) else ()
             problems.append(CaseProblem(("structure", i, *keys), str(error)))
@@ -87,6 +88,14 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
     if problems:
         raise CaseError(problems)
     return _sorted(blocks), aliases(local)
+
+
+def _check_corners(blocks: Sequence[Block]) -> None:
+    """Raises ValueError where a generated block has no area: fewer than three corners that are not the same point."""
+    flat = [block.id for block in blocks if any(len(part) < 3 for part in block.parts)]
+    if flat:
+        more = f" (and {len(flat) - 1} more)" if len(flat) > 1 else ""
+        raise ValueError(f"block '{flat[0]}'{more} has no area: its sides are too different in length")
 
 
 def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:

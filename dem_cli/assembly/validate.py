@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.contact.gaps import CLOSING_GAP, joined, joint_reach
 from dem_cli.contact.layout import PointLayout, steepest
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 DEEPEST_OVERLAP = 1e-6  # of the smaller block: deeper is a mistake
-SUPPORT_GAP = 1e-3  # of the smaller block: a wider gap is no support
 SLIVER_WIDTH = 1e-3  # width over length of a block
 SIZE_RATIO = 1e3  # largest over smallest free block
 MASS_RATIO = 1e6  # heaviest over lightest free block
@@ -93,7 +93,7 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
 
     corners = undeformed(model)
-    faces = find_joints(model, corners, SUPPORT_GAP * float(model.parts.sizes.min()))
+    faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
     edges = edges_of(model, faces)
     along = corners[edges[:, 1]] - corners[edges[:, 0]]
     beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
@@ -210,7 +210,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
         p, q = near.parts[k] - first_part[block] + 1
         message = f"parts {p} and {q} of block '{blocks[block].id}' overlap by {depth:.3g} m"
         found.append((blocks[block].path, message))
-    touching = same & (near.separation <= SUPPORT_GAP * near.scale)
+    touching = same & joined(near.separation, near.scale)
     group = _components(model.n_parts, near.parts[touching])
     loose = np.unique(model.part_blocks[group != group[first_part[model.part_blocks]]])
     found += [(blocks[i].path, f"the parts of block '{blocks[i].id}' do not touch each other") for i in loose]
@@ -219,7 +219,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
 
 def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
     """Groups of blocks from which no chain of touching blocks leads to a fixed one."""
-    touching = near.separation <= SUPPORT_GAP * near.scale
+    touching = joined(near.separation, near.scale)
     group = _components(model.n_blocks, near.blocks[touching])
     held = np.zeros(model.n_blocks, bool)
     held[group[model.fixed]] = True
@@ -238,9 +238,7 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
 def _neighbours(model: Model) -> Neighbours:
     corners = world_corners(block_shape(model), model.centroids, unturned(model.n_blocks, model.dimension))
     sizes = model.parts.sizes
-    free = ~model.fixed[model.part_blocks]
-    reach = SUPPORT_GAP * float(sizes[free].max() if free.any() else sizes.max())
-    faces = find_joints(model.parts_alone(), corners, reach)  # parts of one block and fixed blocks as well
+    faces = find_joints(model.parts_alone(), corners, joint_reach(model))  # parts of one block and fixed blocks as well
     return Neighbours(faces.parts, model.part_blocks[faces.parts], faces.separation, sizes[faces.parts].min(axis=1))
 
 

@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from dem_cli.interrupts import insist
+
 LONG = 4.0  # s: what takes longer is measured once
 
 
@@ -36,3 +38,4 @@ def in_turn(jobs: Sequence[TimedTask], rounds: int, long: float = LONG) -> None:
         for job in jobs:
             if not job.seconds or min(job.seconds) < long:
                 job.once()
+                insist()  # a run answers Ctrl-C with what it has so far

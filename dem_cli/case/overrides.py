@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import tomli
 from pydantic import BaseModel
 
+from dem_cli.case.impossible import parsed
 from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
 
@@ -63,7 +64,7 @@ def plain_value(value: Any, where: str) -> Any:
 def key_path(text: str) -> KeyPath:
     """`joints.dry.friction` as its keys; () for a text that is no key path."""
     try:
-        return single_path(tomli.loads(f"{text} = 0"))
+        return single_path(parsed(f"{text} = 0"))
     except tomli.TOMLDecodeError:
         return ()
 
@@ -102,7 +103,7 @@ def single_path(table: dict[str, Any]) -> KeyPath:
 def literal(text: str) -> Any:
     """A TOML value; a text that is none is taken as a string."""
     try:
-        table = tomli.loads(f"value = {text}")
+        table = parsed(f"value = {text}")
     except tomli.TOMLDecodeError:
         return text
     return table["value"] if len(table) == 1 else text

@@ -1,35 +1,153 @@
-"""Plausibility of a case: what is allowed, but looks like a slip, most often a wrong unit."""
+"""Plausibility of a case: what is allowed, but looks like a slip, most often a wrong unit, and which is likely."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
+from dem_cli.case.base import CaseModel
 from dem_cli.case.schema import Case
 from dem_cli.case.wording import show
-from dem_cli.errors import CaseProblem
+from dem_cli.errors import CaseProblem, KeyPath
 
-LIGHTEST, HEAVIEST = 100.0, 25000.0  # kg/m3: cork and osmium, about
-STEEPEST = 5.0  # tan(79°)
 SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in time
+NO_SLIP = (5.0, 10.0)  # friction coefficients that are written where joints must not slip; and from LOCKED on
+LOCKED = 90.0  # no angle in degrees
+MANY = 10  # blocks: so many are not as large as one that stands for a whole wall
+VERTICAL = 1e-3  # horizontal share of a direction that counts as none
+
+
+class UsualRange(NamedTuple):
+    """What a number is between in nearly every case, and the units that slip in."""
+
+    low: float
+    high: float
+    unit: str
+    what: str
+    likely: tuple[float, float] = (0.0, 0.0)  # what it is between where it was meant in another unit
+    others: Mapping[str, float] = {}  # other units, and one of them in ours
+
+    def doubt(self, value: float, *also: str) -> str | None:
+        """The words about an unusual value; None of a usual one. also: what else may have been meant."""
+        if self.low <= value <= self.high:
+            return None
+        text = f"{show(value)} {self.unit} is unusual for {self.what}"
+        found = {unit: factor * value for unit, factor in self.others.items()}
+        meant = [f"{v:.4g} ({show(value)} {u})" for u, v in found.items() if self.likely[0] <= v <= self.likely[1]]
+        meant += also
+        return f"{text}, did you mean {' or '.join(meant)}?" if meant else text
+
+
+LENGTHS = {"mm": 1e-3, "cm": 1e-2}
+STRENGTH = UsualRange(20.0, 1e10, "Pa", "a joint", (1e3, 1e9), {"MPa": 1e6, "kPa": 1e3})
+USUAL = {
+    # cork to lead; what is heavier stands for a load, where something usual is beside it
+    "density": UsualRange(
+        100.0, 12000.0, "kg/m3", "a building material", (400.0, 8000.0),
+        {"g/cm3": 1000.0, "kN/m3": 1000.0 / 9.81, "N/m3": 1.0 / 9.81},
+    ),
+    "gravity": UsualRange(
+        0.5, 30.0, "m/s2", "gravity (9.81 on Earth)", (9.0, 10.5), {"mm/s2": 1e-3, "cm/s2": 1e-2}
+    ),
+    "friction_angle_deg": UsualRange(5.0, 65.0, "deg", "a friction angle", (5.0, 65.0), {"rad": 180.0 / math.pi}),
+    "cohesion": STRENGTH,
+    "tension": STRENGTH,
+    "compression": STRENGTH,
+    "jcs": STRENGTH,
+    # a barrel vault; the largest stone ever moved; many blocks of an arch or a wall
+    "thickness": UsualRange(0.0, 50.0, "m", "the depth of a structure", (0.02, 5.0), LENGTHS),
+    "block": UsualRange(0.0, 20.0, "m", "the size of a block", (0.02, 5.0), LENGTHS),
+    "blocks": UsualRange(0.0, 8.0, "m", "the size of blocks", (0.02, 5.0), LENGTHS),
+}  # fmt: skip
+STEEPEST = 2.0  # friction coefficient, tan(63°)
 
 
 def doubts(case: Case) -> Iterator[CaseProblem]:
-    """Warnings about a valid case."""
-    for name, material in case.materials.items():
-        if not LIGHTEST <= material.density <= HEAVIEST:
-            message = f"{show(material.density)} kg/m3 is unusual for a building material"
-            if LIGHTEST <= material.density * 1000.0 <= HEAVIEST:  # given in g/cm3
-                message += f", did you mean {show(material.density * 1000.0)}?"
-            yield CaseProblem(("materials", name, "density"), message)
+    """Warnings about a valid case, from what it says; `size_doubts` are about its blocks."""
+    yield from _material_doubts(case)
     for name, joint in case.joints.items():
-        friction = getattr(joint, "friction", None)
-        if friction is not None and friction > STEEPEST:
-            message = f"{show(friction)} is unusual for tan(phi); an angle is given as friction_angle_deg"
-            yield CaseProblem(("joints", name, "friction"), message)
+        yield from _joint_doubts(joint, ("joints", name))
     if case.gravity == 0.0:
         yield CaseProblem(("gravity",), "0 leaves the blocks without weight")
-    elif not 0.5 <= case.gravity <= 30.0:
-        yield CaseProblem(("gravity",), f"{show(case.gravity)} m/s2 is unusual; on Earth it is 9.81")
+    elif text := USUAL["gravity"].doubt(case.gravity):
+        yield CaseProblem(("gravity",), text)
     for table in () if case.analysis.kind in SHAKES else ("motion", "damping", "initial"):
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
+    yield from _live_doubts(case)
+
+
+def _material_doubts(case: Case) -> Iterator[CaseProblem]:
+    """Densities; a heavy one beside usual ones is a load that is drawn as a block."""
+    usual = any(USUAL["density"].doubt(material.density) is None for material in case.materials.values())
+    for name, material in case.materials.items():
+        text = USUAL["density"].doubt(material.density)
+        if text and not (usual and material.density > USUAL["density"].high):
+            yield CaseProblem(("materials", name, "density"), text)
+
+
+def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
+    """Friction and strengths of a joint; 0 means that there is none."""
+    friction = getattr(joint, "friction", None)
+    if friction is not None and STEEPEST < friction < LOCKED and friction not in NO_SLIP:
+        angle = math.degrees(math.atan(friction))
+        message = f"{show(friction)} is unusual for tan(phi), phi = {angle:.3g} deg; "
+        yield CaseProblem((*path, "friction"), message + "an angle is given as friction_angle_deg")
+    for key in type(joint).model_fields:
+        value = getattr(joint, key)
+        tangent = key == "friction_angle_deg" and value is not None and 0.05 <= value <= STEEPEST
+        also = (f"friction = {show(value)}",) if tangent else ()
+        if key in USUAL and value and (text := USUAL[key].doubt(value, *also)):
+            yield CaseProblem((*path, key), text)
+
+
+def _live_doubts(case: Case) -> Iterator[CaseProblem]:
+    """Live loads and directions that the analysis does not use, and those that push nothing sideways."""
+    pattern = getattr(case.analysis, "pattern", None)
+    live = [i for i, load in enumerate(case.load) if load.kind == "live"]
+    if live and pattern != "live":
+        more = f" (and {len(live) - 1} more)" if len(live) > 1 else ""
+        why = f"kind = {show(case.analysis.kind)} has no live load"
+        if pattern is not None:
+            why = f"the live load of pattern = {show(pattern)} is the weight of the blocks; "
+            why += "point loads take part with pattern = 'live'"
+        yield CaseProblem(("load", live[0], "kind"), f"not used{more}: {why}")
+    if pattern == "live" and "direction" in case.analysis.model_fields_set:
+        yield CaseProblem(("analysis", "direction"), "not used: pattern = 'live' has its own directions", at_key=True)
+    elif pattern == "mass":
+        x, y = case.analysis.direction
+        if math.hypot(x, y) > 0.0 and abs(x) <= VERTICAL * math.hypot(x, y):
+            what = "heavier" if y < 0.0 else "lighter"
+            message = f"along gravity: blocks become {what}, and nothing pushes them sideways"
+            yield CaseProblem(("analysis", "direction"), message)
+
+
+class BlockSizes(NamedTuple):
+    """Of the blocks that can move, as they stand in the case file."""
+
+    ids: Sequence[str]
+    paths: Sequence[KeyPath]  # of the tables that they come from
+    sizes: Sequence[float]  # root of the area [m]
+    thickness: Sequence[float]  # depth out of plane [m]
+    median: float  # of the sizes [m]
+    extent: float  # of all of them together [m]
+
+
+def size_doubts(blocks: BlockSizes) -> Iterator[CaseProblem]:
+    """Warnings about blocks that are too large, or too deep, to be in metres: one each, at the first such block."""
+    if not blocks.sizes:
+        return
+    usual = USUAL["blocks" if len(blocks.sizes) >= MANY else "block"]
+    if text := usual.doubt(float(f"{blocks.median:.4g}")):
+        first = next(i for i, size in enumerate(blocks.sizes) if size >= blocks.median)
+        yield CaseProblem(blocks.paths[first], f"block '{blocks.ids[first]}': {text}")
+    deepest = max(range(len(blocks.thickness)), key=lambda i: blocks.thickness[i])
+    depth, usual = blocks.thickness[deepest], USUAL["thickness"]
+    if depth > DEEP and depth > DEEPER_THAN_WIDE * blocks.extent:
+        usual = usual._replace(high=0.0, what=f"a structure {blocks.extent:.3g} m in size")
+    if text := usual.doubt(depth):
+        yield CaseProblem((*blocks.paths[deepest], "thickness"), text)
+
+
+DEEP, DEEPER_THAN_WIDE = 5.0, 10.0  # [m]; a depth above both is none, whatever the structure

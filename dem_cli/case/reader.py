@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import datetime
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ import tomli
 from pydantic import ValidationError
 
 from dem_cli.case import cross_references, retired_keys
+from dem_cli.case.impossible import impossible_values, parsed
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import Override, apply, parse
 from dem_cli.case.plausibility import doubts
@@ -126,7 +126,7 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
     if data.get("dimension") == 3 and data["dimension"] is not True:  # the rest would be misread as 2D
         found = [CaseProblem(("dimension",), "3D is not available yet in this version: only 2")]
         raise CaseError(found, source.render)
-    found = [CaseProblem(place, f"{date} is a date; no key takes one") for place, date in dates(data)]
+    found = list(impossible_values(data))
     if found:
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
@@ -144,23 +144,13 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
     return case
 
 
-def dates(value: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
-    """TOML has dates and times; a case has none."""
-    if isinstance(value, (datetime.date, datetime.time)):
-        yield path, value
-    pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, item in pairs:
-        if isinstance(item, (dict, list, datetime.date, datetime.time)):
-            yield from dates(item, (*path, key))
-
-
 def parse_toml(path: Path, text: str) -> dict[str, Any]:
     """TOML as plain data; a syntax error as file, line and column."""
     if not text.strip():
         message = f"{path}: the file is empty; `dem new wall` prints a case to start from"
         raise CaseError([CaseProblem((), message)])
     try:
-        return tomli.loads(text)
+        return parsed(text)
     except tomli.TOMLDecodeError as error:
         message = f"{path}:{error.lineno}:{error.colno}: not valid TOML: {syntax_message(error.msg)}"
         raise CaseError([CaseProblem((), message)]) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -49,6 +50,13 @@ def with_value(case: Case, text: str, value: float) -> Case:
         return type(case).model_validate(data)
     except ValidationError as error:
         raise impossible(f"{text} = {value:.6g}", problems_from(error, type(case), data)) from None
+
+
+def impossible_table(what: str, path: KeyPath, declared: type[BaseModel], error: ValidationError) -> CaseError:
+    """The same of a table, at a key path, in which a value is not allowed."""
+    found = {str(item["loc"][0]): item["input"] for item in error.errors(include_url=False) if item["loc"]}
+    listed = problems_from(error, declared, found)
+    return impossible(what, [replace(problem, path=(*path, *problem.path)) for problem in listed])
 
 
 def impossible(what: str, found: Sequence[CaseProblem]) -> CaseError:

@@ -14,9 +14,9 @@ from dem_cli.cli.options import case_argument, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
+from dem_cli.interrupts import Interrupts
 from dem_cli.output.record import Observer
 from dem_cli.pipeline.batches import usable_cores
-from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -140,7 +140,10 @@ class RowKeeper(Observer):
 
 
 def solved(text: str) -> TrialAnswer:
-    """One trial, up to failure: its case as text, so that it can go to another process."""
+    """One trial, up to failure: its case as text, so that it can go to another process.
+
+    Raises KeyboardInterrupt where it was stopped.
+    """
     from dem_cli import api
     from dem_cli.analyses.solve import solve
     from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
@@ -155,6 +158,8 @@ def solved(text: str) -> TrialAnswer:
         summary = solve(case.model_copy(update={"analysis": only_failure}), model, observer).summary
     except DemError as error:  # as text: it may not survive the way between processes
         return TrialAnswer(f"not converged: {error}")
+    if summary["status"] == "interrupted":
+        raise KeyboardInterrupt
     return TrialAnswer(
         summary["status"],
         summary.get("failure_load"),

@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from dem_cli.errors import DemError
+from dem_cli.interrupts import Interrupts, asked
 from dem_cli.version import __version__
 
 COMMANDS = {  # name -> the line that `dem --help` shows
@@ -67,6 +68,14 @@ class LazyGroup(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
         options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
+        is_program = not args and options.get("args") is None
+        with Interrupts(at_once=True, ends_program=is_program) as interrupts:  # until a command has something to keep
+            code = self._exit_code(args, options)
+            if is_program:
+                interrupts.over()
+        sys.exit(code or 0)
+
+    def _exit_code(self, args: tuple[Any, ...], options: dict[str, Any]) -> int | None:
         try:
             code = super().main(*args, **options)
             sys.stdout.flush()
@@ -74,14 +83,25 @@ class LazyGroup(click.Group):
             error.show()
             code = error.exit_code
         except (click.Abort, KeyboardInterrupt):
-            click.echo("interrupted", err=True)
-            code = INTERRUPTED_CODE
+            code = interrupted()
         except BrokenPipeError:
             code = quiet_pipe()
         except DemError as error:
             click.echo("\n".join(f"error: {line}" for line in str(error).splitlines()), err=True)
             code = error.exit_code
-        sys.exit(code or 0)
+        except Exception as error:
+            if asked():
+                return interrupted()  # what a library made of it while it was imported
+            from dem_cli.cli import internal_error  # a fault of the program
+
+            code = internal_error.report(error, internal_error.command_line(args[0] if args else options.get("args")))
+        return code
+
+
+def interrupted() -> int:
+    """The end after Ctrl-C."""
+    click.echo("interrupted", err=True)
+    return INTERRUPTED_CODE
 
 
 def unknown_command(name: str) -> str:

@@ -137,6 +137,8 @@ def draw(folder: Path, quiet: bool) -> None:
         draw_all(folder, folder)
     except (DemError, OSError) as error:
         console.note(f"no pictures: {error}", quiet)
+    except KeyboardInterrupt:
+        console.note("not all pictures: interrupted", quiet)
     except Exception as error:  # a fault of the program in a picture does not cost hours of solving
         console.note(f"no pictures: internal error: {type(error).__name__}: {error}", quiet)
 

@@ -7,7 +7,6 @@ import re
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,7 @@ from dem_cli.cli.options import case_argument, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
-from dem_cli.pipeline.interrupts import Interrupts
+from dem_cli.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -65,7 +64,8 @@ def command(
     """Solve CASE once for every combination of values in its [sweep].
 
     Every run gets a folder in DIR/runs; DIR/sweep.csv and DIR/sweep.sqlite have a row for each. The same command goes
-    on where an interrupted or killed one stopped. Exit code: 0 all solved, 1 some failed.
+    on where an interrupted or killed one stopped. Exit code: 0 all solved, 1 some failed; a run that does not stand is
+    solved, and counted.
     """
     from dem_cli import api
     from dem_cli.sweep.folder import opened
@@ -168,15 +168,15 @@ class SweepProgress:
         there = len(wanted & self.known.keys())
         rest = "; the others are done now" if there < len(wanted) else ""
         console.note(f"{there:,} of {len(wanted):,} runs are there already{rest}", self.quiet or not there)
-        with ExitStack() as stack:
-            interrupts = stack.enter_context(Interrupts())
+        with Interrupts():
             try:
                 self.work(mine, do, wanted)
             except KeyboardInterrupt:
+                tidy(self.folder)
                 console.note(f"{len(self.known):,} runs are kept; the same command goes on from there", self.quiet)
                 raise
             finally:
-                with interrupts.shielded(), tables_alone(self.folder):
+                with tables_alone(self.folder):
                     if len(self.known) < self.count:  # others' runs, as far as they are
                         self.known = finished(self.sweep) | self.known
                     found = self.write()
@@ -205,6 +205,7 @@ class SweepProgress:
 
     def write(self) -> dict[str, Any]:
         """The tables and sweep.json; the outcome."""
+        from dem_cli.output.record import FALLS
         from dem_cli.sweep.run import FAILED, WAITING
         from dem_cli.sweep.table import rows, write
 
@@ -218,6 +219,7 @@ class SweepProgress:
             "runs": len(table),
             "different": self.count,
             "solved": len(table) - len(failed) - states[WAITING],
+            "do not stand": states[FALLS],
             "failed": len(failed),
             "waiting": states[WAITING],
         }
@@ -253,7 +255,8 @@ def told(found: dict[str, Any], folder: Path) -> str:
     from dem_cli.cli.run import shown
 
     lines = [found["title"] or "sweep"]
-    lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved, {found['failed']:,} failed"
+    fallen = f" ({found['do not stand']:,} of them do not stand)" if found["do not stand"] else ""
+    lines.append(f"  runs      {found['runs']:,}: {found['solved']:,} solved{fallen}, {found['failed']:,} failed"
                  + (f", {found['waiting']:,} not done yet" if found["waiting"] else ""))  # fmt: skip
     for row in found["failures"][:MOST_FAILURES]:
         values = ", ".join(f"{key} = {brief(row[key])}" for key in found["keys"])

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli.cli.words import console
-from dem_cli.cli.words.console import seconds
+from dem_cli.cli.words.numbers import seconds
 from dem_cli.errors import UsageError
+from dem_cli.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -72,7 +73,9 @@ def command(
     if write and shelves:
         raise UsageError("--write needs all references of a case; leave out --shelf")
     remarks = left_out(len(found.without), slow)
-    records = on_shelves(sorted(run_all(cases, costs, jobs, quiet), key=lambda record: record["case"]), shelves)
+    with Interrupts():
+        found_records = sorted(run_all(cases, costs, jobs, quiet), key=lambda record: record["case"])
+    records = on_shelves(found_records, shelves)
     show(records, time.perf_counter() - began, as_json)  # before anything that a full disk can stop
     if write:
         write_page(write, records)

@@ -88,3 +88,10 @@ def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
     counts = starts[joints + 1] - starts[joints]
     before = np.concatenate([[0], np.cumsum(counts)])[:-1]
     return np.repeat(starts[joints] - before, counts) + np.arange(counts.sum())
+
+
+def only_points(joints: Joints, kept: np.ndarray) -> Joints:
+    """The joints with some of their points only; kept: (n_points,) bool."""
+    upto = np.concatenate([[0], np.cumsum(kept)])
+    points = {name: getattr(joints, name)[kept] for name in ("frames", "levers", "points", "kn", "ks")}
+    return joints._replace(starts=upto[joints.starts], **points)

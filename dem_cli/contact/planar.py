@@ -63,7 +63,7 @@ def points(
         chains = made_chains(model, faces, corners, properties) if chains is None else chains
         starts, profile, shares = come_back(chains, faces, edges, corners)
     joints = joints_of(model, faces, properties, starts, areas, shares)
-    scales = [lengths[:, 0], 1.0 / lengths, 0.5 / (BLEND * shortest), _cotangents(model)[edges]]
+    scales = [lengths[:, 0], 1.0 / lengths, 0.25 / (BLEND * shortest), _cotangents(model)[edges]]
     geometry = PlanarGeometry(
         faces=faces.faces,
         features=np.arange(len(joints.kn)) - starts[joints.owners],
@@ -155,12 +155,10 @@ def microrotations(joints: Joints, geometry: PlanarGeometry) -> np.ndarray:
 
 
 def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:
-    """1: a corner of b on the edge of a; 0: one of a on the edge of b; between: both corners meet, (n_points,)."""
+    """Share of the edge of a in the normal of each point: 1 but at ends near or beyond a corner of a, (n_points,)."""
     a0, a1, b0, b1 = (corners[geometry.edges[:, i]] for i in range(4))
-    along = (a1 - a0) * geometry.scales[:, [1]]
-    low = ((b1 - a0) * along).sum(axis=1)
-    high = geometry.scales[:, 0] - ((b0 - a0) * along).sum(axis=1)
+    both = (a1 - a0) * geometry.scales[:, [1]] - (b1 - b0) * geometry.scales[:, [2]]
     found = np.ones(len(joints.kn))
-    for inside, ends in ((low, joints.starts[:-1]), (high, joints.starts[1:] - 1)):
-        found[ends] = np.clip(0.5 + inside * geometry.scales[:, 3], 0.0, 1.0)
+    for inside, ends in ((b1 - a0, joints.starts[:-1]), (a1 - b0, joints.starts[1:] - 1)):
+        found[ends] = np.clip(0.5 + (inside * both).sum(axis=1) * geometry.scales[:, 3], 0.0, 1.0)
     return found

@@ -15,12 +15,15 @@ import numpy as np
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
 from dem_cli.engine.dynamic_settings import FrequencySettings
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.kernels.records import Joints
+    from dem_cli.model.model import Model
 
 
 class System(NamedTuple):
@@ -72,10 +75,25 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     closed: which contact points act, (n_points,) bool; default: all in the list, also those that are open and may
     close: no state of the structure with these joints vibrates faster. geometric: with the forces that act now.
     """
+    contacts = sim.measured()  # and frames and levers of this instant
+    model, joints = sim.model, sim.joints
+    found = springs_of(model, joints, closed, sim.settings.frequency)
+    if not geometric:
+        return found
     from scipy.sparse import diags_array
 
-    contacts = sim.measured()  # and frames and levers of this instant
-    model, joints, d = sim.model, sim.joints, sim.model.dimension
+    per_mass = diags_array(1.0 / np.sqrt(found.masses))
+    turning = geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies)
+    return found._replace(geometric=(per_mass @ turning @ per_mass).tocsr())
+
+
+def springs_of(
+    model: Model, joints: Joints, closed: np.ndarray | None = None, settings: FrequencySettings = DEFAULT.frequency
+) -> System:
+    """Springs and masses of joints whose frames and levers are current; closed: as for `system`."""
+    from scipy.sparse import diags_array
+
+    d = model.dimension
     blocks = np.flatnonzero(~model.fixed)
     masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]]).ravel()
     springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
@@ -84,10 +102,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     per_mass = diags_array(1.0 / np.sqrt(masses))
     rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ per_mass).tocsr()
     rows.eliminate_zeros()
-    turning = None
-    if geometric:
-        turning = (per_mass @ geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies) @ per_mass).tocsr()
-    return System(rows, turning, masses, blocks, sim.settings.frequency)
+    return System(rows, None, masses, blocks, settings)
 
 
 def highest_frequency(sim: Simulation) -> float:
@@ -95,7 +110,12 @@ def highest_frequency(sim: Simulation) -> float:
 
     The largest eigenvalue to round-off, or Gershgorin's bound above it where the iteration does not converge.
     """
-    return _largest(system(sim))[0]
+    return highest_of(system(sim))
+
+
+def highest_of(found: System) -> float:
+    """The same of springs and masses."""
+    return _largest(found)[0]
 
 
 def limiting(sim: Simulation) -> Highest:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.collapse_criterion import check_energy, check_finite
+from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
 from dem_cli.dynamics.ground import GroundMotion
@@ -25,8 +25,8 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import Energy, Samples
-from dem_cli.statics.equilibrium import FALLS, stand
+from dem_cli.output.record import FALLS, Energy, Samples
+from dem_cli.statics.equilibrium import stand
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -53,11 +53,11 @@ class TimeHistory:
 
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
-        self.duration = _duration(job.case, ground)
+        self.duration = duration_of(job.case, ground)
         self.damping = damping_of_start(job.case, job.model, job.settings)
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
-        self.overlap = 0.0
+        self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
         """The simulation, with laws that know the time step."""
@@ -122,11 +122,14 @@ class TimeHistory:
                 f"({self.case.analysis.max_steps:,}): {self.step.cause}"
             )
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
-        done, fallen, end = 0, None, self.duration
+        done, end = 0, self.duration
+        fallen: CollapsedBlock | None = None
         frames = SnapshotTimes(0.0, end, output.frames)
         while done < total and sim.time < end - 0.5 * dt:
             n = min(stretch, total - done, max(1, math.ceil((end - sim.time) / dt - 0.5)))
-            self._stretch(n, every)
+            values = self._stretch(n, every)
+            if fallen is None:
+                np.maximum(self.peaks, np.abs(values).max(axis=0, initial=0.0), out=self.peaks)
             done += n
             self._look()
             if fallen is None:
@@ -144,8 +147,8 @@ class TimeHistory:
             found |= {"collapse_block": fallen.block, "collapse": fallen.how}
         return found
 
-    def _stretch(self, n_steps: int, every: int) -> None:
-        """n_steps of motion, sampled every so many steps since the start of the run."""
+    def _stretch(self, n_steps: int, every: int) -> np.ndarray:
+        """n_steps of motion, sampled every so many steps since the start of the run: the monitors, (n, n_monitors)."""
         sim, monitors, dt = self.sim, self.job.monitors, self.step.step
         done = round(sim.time / dt)
         since = done % every  # steps since the last sample was due, which the stretch begins with
@@ -156,10 +159,13 @@ class TimeHistory:
         check_finite(sim)
         new = slice(1 if since else 0, None)  # the first sample of a stretch that begins between two is none
         times = (dt * (done - since + every * np.arange(n_samples)))[new]
+        values = np.zeros((0, len(self.peaks)))
         if len(times):
             base = self.ground.of_base(times)
-            self.track.observer.samples(Samples(times, base, monitors.series(watch.samples[new], base)))
+            values = monitors.series(watch.samples[new], base)
+            self.track.observer.samples(Samples(times, base, values))
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
+        return values
 
     def _look(self) -> None:
         """The books of this instant; stops a run that makes energy."""
@@ -171,7 +177,8 @@ class TimeHistory:
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """The summary, audited."""
         sim = self.sim
-        shares = energy_shares(measures.energy(sim))
+        fell = found["status"] == FALLS  # in pseudo-time, damped so that it may come to rest: nothing of the case
+        shares = {} if fell else energy_shares(measures.energy(sim))
         if shares.get("local", 0.0) > self.job.settings.doubts.governs:
             self.job.warnings.append(
                 f"local damping took {shares['local']:.0%} of the energy that was lost: it has no physical meaning and "
@@ -213,8 +220,8 @@ def energy_shares(energy: Energy) -> dict[str, float]:
     return {name: value / total for name, value in taken.items() if value != 0.0} if total > 0.0 else {}
 
 
-def _duration(case: Case, ground: GroundMotion) -> float:
-    """How long to look. Raises CaseError where neither the case nor a motion says it."""
+def duration_of(case: Case, ground: GroundMotion) -> float:
+    """How long to look [s]. Raises CaseError where neither the case nor a motion says it."""
     duration = case.analysis.duration or ground.duration
     if duration <= 0.0:
         message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"

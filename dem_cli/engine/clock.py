@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
+from dem_cli.interrupts import at_once
 from dem_cli.kernels.jit import cache_is_cold
 from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 
@@ -66,7 +67,8 @@ class Clock(Observer):
             self.progress("compiling (once)", 0.0, 0.0, None)
         sim = make()
         built = time.perf_counter()
-        sim.compile()
+        with at_once():  # a minute, the first time
+            sim.compile()
         self.compiling += time.perf_counter() - (begun if cold else built)
         return sim
 

@@ -11,7 +11,9 @@ from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
+from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
+from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
 from dem_cli.kernels.records import Dampers, Ground, Watch
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
@@ -56,7 +58,7 @@ class DynamicSimulation(Simulation):
         self.loads.speed_limits[:] = np.inf
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
         self.control[slot.MASS_RATE] = self.damping.mass
-        self._new_dampers()
+        self._new_dampers(STARTS)
         self.ledger[:] = 0.0
         self.ledger[slot.EXTERNAL] = self.elastic_energy()  # what the springs hold was given before
         self.centred = self.ledger.copy()
@@ -69,7 +71,7 @@ class DynamicSimulation(Simulation):
         change, elastic = (self.bodies.velocities - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
         self.ledger[slot.EXTERNAL] = elastic + kinetic
-        self._new_dampers()
+        self._new_dampers(STARTS)
         self.bodies.velocities[self.free] -= 0.5 * change
 
     def set_masses(self) -> None:
@@ -82,8 +84,8 @@ class DynamicSimulation(Simulation):
         if self.real:
             self._new_dampers()
 
-    def _new_dampers(self) -> None:
-        """Dampers of the present joints; what they remember is with the points already."""
+    def _new_dampers(self, closed: int = STICKS) -> None:
+        """Dampers of the present joints; what they remember is with the points. closed: state of those closed."""
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn)
         self.dampers = Dampers(
@@ -94,7 +96,7 @@ class DynamicSimulation(Simulation):
             gains=np.ones((n, d)),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
-            states=(contacts.normal != 0.0).astype(np.int8),
+            states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),
             masses=self.masses,
             pushes=np.zeros_like(self.bodies.velocities),
         )
@@ -118,10 +120,12 @@ class DynamicSimulation(Simulation):
     def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0) -> None:
         """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
-        The books are closed in the middle of the last step, where places, velocities and forces are of one time.
+        The books are closed in the middle of the last step, where places, velocities and forces are of one time. Raises
+        KeyboardInterrupt.
         """
         step, end = first, first + n_steps
         while step < end:
+            look()
             last = step == end - 1
             if last:
                 before = self.ledger.copy()

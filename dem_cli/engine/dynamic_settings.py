@@ -51,6 +51,28 @@ class HistorySettings:
 
 
 @dataclass(frozen=True)
+class RockingSettings:
+    """Stiffness of "auto" joints in time histories (dynamics/rocking_stiffness.py), and how it is checked.
+
+    Angles are those by which blocks turn on their joints when their weight acts sideways: well-conditioned peaks are
+    off by about 0.2 % at 1e-6, 0.5 % at 1e-5, 2 % at 1e-4 (docs/rocking.md, Default settings).
+    """
+
+    turn: float = 1e-6  # rad
+    turn_of_many: float = 1e-5  # rad, in ensembles, where records differ by far more
+    doubtful: float = 1e-4  # rad: from here on a run says so
+    round_off: float = 2e-6  # of its weight, that round-off of places may do to the force on a block
+    work: float = 3e7  # steps × contact points of one run that stiffness may lead to: two seconds
+    work_of_many: float = 2e7  # the same of each run of an ensemble: one second
+    share: float = 0.5  # of analysis.max_steps, that it may lead to
+    points_per_step: float = 8.0  # contact points that a step costs beside its own
+    pressed: float = 0.01  # of the mean weight of a block: joints that carry less hold nobody upright
+    mechanism: float = 1e3  # rad: blocks that turn further are not held by their joints
+    softer: float = 10.0  # joints of the second run that shows how much stiffness matters
+    moved: float = 0.02  # of a peak, that it may move by
+
+
+@dataclass(frozen=True)
 class RestitutionSettings:
     """The dashpot that gives a wanted ratio of angular velocities, found by rocking a block."""
 
@@ -70,7 +92,8 @@ class StatisticsSettings:
     """Many runs: draws of slightly different structures, and the distribution of what they carry."""
 
     largest_draw: float = 3.0  # standard deviations that a draw is limited to
-    resamples: int = 400  # of the bootstrap
+    grid: int = 100  # medians and dispersions, each, that the confidence of a fit is found from
+    fewest_known: int = 2  # records that both stood and fell, without which there is no confidence
     points: int = 101  # of the curve in summary.json
     narrowest: float = 1e-4  # least dispersion: all bounds overlap
     few: int = 2  # intervals between levels that any narrow distribution fits

@@ -10,7 +10,7 @@ from dem_cli.engine.audit import warnings as doubts
 from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
-from dem_cli.engine.kinematics import live_scale, why_moving
+from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import closure
 from dem_cli.engine.monitors import Monitors
 from dem_cli.engine.properties import joint_properties, law_of
@@ -49,13 +49,18 @@ class Job:
         """A job that reports to `observer`."""
         return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
 
+    def stiffness(self, kinematics: str) -> float:
+        """kn·h/W of "auto" joints in a static analysis, at least."""
+        stiffness = self.settings.stiffness
+        return stiffness.fixed if kinematics == "fixed" else stiffness.statics
+
     def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
         """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings).
 
         Where geometry moves they stand for rigid ones (engine/rigid_joints.py) and are stiffer if the structure leans
         too far on them; elastic: they are the springs that they are.
         """
-        ratio = self.settings.stiffness.statics if ratio is None else ratio
+        ratio = self.stiffness(kinematics) if ratio is None else ratio
         sim, resolution = self._compiled(kinematics, ratio), getattr(self.case.analysis, "resolution", None)
         if kinematics == "fixed" or elastic:
             sim.takes_back = False
@@ -82,10 +87,12 @@ class Job:
 
     def first_simulation(self) -> Simulation:
         """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
-        moving = why_moving(self.case, self.model, self.settings)
+        moving = why_moving(self.case, self.model)
         if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
+            if doubt := open_gaps_doubt(self.model):
+                self.warnings.append(doubt)
         elif moving:
             self.skipped.append(f"fixed geometry: {moving}")
         return self.simulation("fixed" if moving is None else "large")

@@ -6,19 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.contact.detect import find_joints
-from dem_cli.contact.start import TOUCHING_GAP
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.contact.gaps import gap_words, gaps_of_start
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
-from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 
-def why_moving(case: Case, model: Model, settings: Settings = DEFAULT) -> str | None:
+def why_moving(case: Case, model: Model) -> str | None:
     """Why geometry moves on the way to failure ("": the case says so); None: that of the start is good enough.
 
     Raises CaseError where the case asks for fixed geometry that its joints do not allow.
@@ -34,8 +30,20 @@ def why_moving(case: Case, model: Model, settings: Settings = DEFAULT) -> str | 
         return "" if wanted == "large" else None
     if case.imperfection:
         return "imperfections of blocks leave gaps that may close"
-    gaps = open_joints(model, settings.detection.meant_gap)
-    return f"{gaps} joints have gaps that may close" if gaps else None
+    gaps = gaps_of_start(model)
+    gaps = gaps.where(gaps.close)
+    return f"{gap_words(model, gaps)} may close" if len(gaps.widths) else None
+
+
+def open_gaps_doubt(model: Model) -> str | None:
+    """What is to be said where geometry does not move: the gaps that stay open; None: there are none."""
+    gaps = gaps_of_start(model)
+    if not len(gaps.widths):
+        return None
+    return (
+        f"{gap_words(model, gaps)}: nothing rests there, as the geometry of the start is kept; "
+        'with analysis.kinematics = "large" gaps close'
+    )
 
 
 def live_scale(model: Model) -> float:
@@ -44,9 +52,3 @@ def live_scale(model: Model) -> float:
     dead = np.sqrt((model.dead_loads[free, :d] ** 2).sum(axis=1)).sum()
     live = np.sqrt((model.live_loads[free, :d] ** 2).sum(axis=1)).sum()
     return float(dead / live) if dead > 0.0 and live > 0.0 else 1.0
-
-
-def open_joints(model: Model, meant_gap: float = DEFAULT.detection.meant_gap) -> int:
-    """How many faces start so close that they may meet: the geometry of the start is wrong for them."""
-    edge = smallest_edge(model)
-    return int((np.abs(find_joints(model, undeformed(model), meant_gap * edge).separation) > TOUCHING_GAP * edge).sum())

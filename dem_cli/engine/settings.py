@@ -15,6 +15,7 @@ from dem_cli.engine.dynamic_settings import (
     HistorySettings,
     ModesSettings,
     RestitutionSettings,
+    RockingSettings,
     StatisticsSettings,
 )
 from dem_cli.engine.static_settings import (
@@ -34,8 +35,9 @@ from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP
 class AutomaticStiffness:
     """kn·h/W of "auto" joints: normal stiffness [Pa/m] times smallest edge over mean weight per joint area."""
 
-    statics: float = 1e6  # where the stiffness drops out
-    dynamics: float = 1e5  # in time histories: the deeper joints give, the longer the step
+    fixed: float = 1e10  # where geometry is that of the start: the stiffness drops out
+    statics: float = 1e6  # where geometry moves
+    dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
     # Share of its load that leaning over its joints may cost a structure that moves: where failed loads are tried again
     # from close by, so that only the last step of the load counts (far from 0.8: it falls by itself), and elsewhere.
@@ -51,7 +53,6 @@ class DetectionSettings:
     skin: float = 0.05  # reach, as a share of the smallest edge
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
     same_place: float = 0.01  # of the reach: blocks that moved less have the same faces as before
-    meant_gap: float = 1e-3  # of the smallest edge: narrower gaps of the start may close, and geometry has to move
     shortest_call: int = 100  # steps of one compiled call, at least
     longest_call: int = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 
@@ -153,6 +154,7 @@ class Settings:
     frequency: FrequencySettings = field(default_factory=FrequencySettings)
     modes: ModesSettings = field(default_factory=ModesSettings)
     history: HistorySettings = field(default_factory=HistorySettings)
+    rocking: RockingSettings = field(default_factory=RockingSettings)
     restitution: RestitutionSettings = field(default_factory=RestitutionSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)
     statistics: StatisticsSettings = field(default_factory=StatisticsSettings)

@@ -17,6 +17,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.rotation import turned_as_one
+from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
@@ -66,6 +67,7 @@ class Simulation:
         self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
         self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
+        self.first_gaps = self.contacts.gaps.copy()
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = play_of_start(self.tracking, self.bodies, settings.clearance)
         self.first_places = self.places()
@@ -148,9 +150,10 @@ class Simulation:
     # -- stepping ----------------------------------------------------------------------------------
 
     def advance(self, n_steps: int, mode: int) -> None:
-        """n_steps steps of one mode (kernels.records), with detection when it is due."""
+        """n_steps steps of one mode (kernels.records), with detection when it is due. Raises KeyboardInterrupt."""
         left, load = n_steps, 0.0
         while left > 0:
+            look()
             done = self._step(min(left, self.longest), mode)
             left -= done
             self.steps += done

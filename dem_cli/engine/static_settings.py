@@ -50,18 +50,28 @@ class LoadSearchSettings:
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
-    coarse: float = 0.01  # bracket, over its load, narrow enough between a held load and one proved impossible
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
+    likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
+    short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
+    beyond: float = 0.35  # ... and the one above it
+    small_steps: int = 50  # to an estimate on which histories differ
+    light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
+    trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
+    trial_per_point: int = 100  # steps × number of contact points
+    most_undecided: int = 5  # trials, before the bracket stays as wide as it is
+    aside: float = 0.45  # of the bracket: how far from an undecided load the next trial is
+    effort: float = 2e10  # steps × contact points, about 200 s: from there on a bracket that is known is not narrowed
+    widest: float = 0.1  # bracket, over its load, that is still given as an answer where it cannot be narrowed
 
 
 @dataclass(frozen=True)
 class WarmStartSettings:
-    """A start next to failure from a static solver: for which sizes, and when its path has come to failure."""
+    """The path of a static solver, as a start or beside it: for which sizes, and when it has come to failure."""
 
-    small: int = 100  # blocks, up to which raising the load from gravity is as fast
-    large: int = 1000  # blocks, beyond which the path takes too many factorisations
-    flat: float = 0.5  # of the resolution: growth of the load along the path that counts as none
+    large: int = 1000  # blocks of one structure, beyond which the path takes too many factorisations
+    flat: float = 1.0  # resolutions: growth of the load along the path, over that of displacement, that counts as none
+    slides: float = 1e-3  # share of friction in the work of a limit mechanism, below which nothing slides in it
     drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure
     at_the_end: int = 4  # last increments, among which the highest load is a plateau and not a peak
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 from dem_cli.engine.dynamic_settings import StatisticsSettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.shaken_run import RestedStructure, ShakenRunResult
+from dem_cli.interrupts import look
 
 if TYPE_CHECKING:
     from dem_cli.motion.motion import Motion
@@ -82,13 +83,14 @@ class Batcher:
         return run
 
     def work(self, tasks: Sequence[Task], say: Say) -> None:
-        """All tasks; an interrupt in between leaves what is finished in the journal."""
+        """All tasks. Raises KeyboardInterrupt where one came; what is finished is in the journal."""
         with ThreadPoolExecutor(max(1, min(self.batch.threads, len(tasks)))) as pool:
             try:
                 pending = {pool.submit(task, self.answer) for task in tasks}
                 while pending:
                     finished, pending = wait(pending, self.settings.ask, FIRST_COMPLETED)
                     say(len(self.done))
+                    look()
                     for future in finished:
                         future.result()
             except BaseException:

@@ -11,7 +11,8 @@ import numpy as np
 from dem_cli.engine.dynamic_settings import StatisticsSettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.batch import ShakingTrial
-from dem_cli.ensembles.lognormal import Lognormal, bootstrap, fit
+from dem_cli.ensembles.lognormal import Lognormal, fit
+from dem_cli.ensembles.lognormal_band import confidence_band
 from dem_cli.ensembles.shaken_run import ShakenRunResult
 
 
@@ -50,24 +51,21 @@ def survived_above(found: Outcomes) -> list[float]:
 
 
 def distribution(
-    bounds: np.ndarray, levels: Sequence[float], confidence: float, seed: int,
-    statistics: StatisticsSettings = DEFAULT.statistics,
-) -> dict[str, Any]:  # fmt: skip
+    bounds: np.ndarray, levels: Sequence[float], confidence: float, statistics: StatisticsSettings = DEFAULT.statistics
+) -> dict[str, Any]:
     """Keys of the summary: the lognormal fit, its confidence and the curve.
 
     bounds: (n_records, n_structures, 2).
     """
-    lower, upper = bounds[:, :, 0], bounds[:, :, 1]
-    found = fit(lower.ravel(), upper.ravel(), statistics.narrowest)
+    found = fit(bounds[:, :, 0].ravel(), bounds[:, :, 1].ravel(), statistics.narrowest)
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
     at = _range(found, levels, statistics.points)
-    curve, sure, band = {"intensity": at, "share": found.share(at)}, None, None
-    if len(lower) > 1:
-        band = bootstrap(lower, upper, at, confidence, seed, statistics.resamples, statistics.narrowest)
+    curve, sure = {"intensity": at, "share": found.share(at)}, None
+    band = confidence_band(bounds, at, confidence, (levels[0], levels[-1]), statistics)
     if band is not None:
         curve |= {"low": band.low, "high": band.high}
-        sure = {"level": confidence, "median": band.median, "dispersion": band.dispersion, "resamples": band.resamples}
+        sure = {"level": confidence, "median": band.median, "dispersion": band.dispersion, "resamples": None}
     return {"median": found.median, "dispersion": found.dispersion, "confidence": sure, "curve": curve}
 
 

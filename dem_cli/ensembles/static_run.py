@@ -14,6 +14,7 @@ from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import Verdict, settle_or_fail, stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.post_peak import fall_under, soften_falls
+from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import LIMIT, find_start, place
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> 
     None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
     """
     held, steps = sim.save(), sim.steps
-    start, _ = find_start(job, sim)
+    start, _ = find_start(job, sim, RigidLimits(job, sim))
     if start is None:
         return None
     place(sim, start)

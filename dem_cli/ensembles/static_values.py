@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from dem_cli.assembly.assemble import assembly
 from dem_cli.assembly.validate import problems
-from dem_cli.case.variation import impossible, value_at, with_value
+from dem_cli.case.variation import impossible, impossible_table, value_at, with_value
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.static_settings import SafetySettings
 from dem_cli.ensembles.bisection import Scale
@@ -74,8 +74,7 @@ def weaker(case: Case, factor: float) -> Case:
         try:
             joints[name] = reduced(joint, factor, case.analysis.reduce)
         except ValidationError as error:
-            said = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-            raise impossible(f"F = {factor:.5g}", [CaseProblem(("joints", name), said)]) from None
+            raise impossible_table(f"F = {factor:.5g}", ("joints", name), type(joint), error) from None
     return case.model_copy(update={"joints": joints})
 
 

@@ -27,7 +27,7 @@ from dem_cli.kernels.vec import (
     turn,
 )
 
-OPEN, STICKS, SLIPS = 0, 1, 2
+OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
 @always_inline
@@ -69,6 +69,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                         memory[point, k] = 0.0
                 continue
             met = states[point] == OPEN
+            closed = 0.0 if states[point] == STARTS else 1.0  # share of the step before
             states[point] = STICKS if slips[point] == seen[point] else SLIPS
             seen[point] = slips[point]
             frame = load_frame(frames, point, like)
@@ -81,7 +82,8 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             shares[point] = 1.0
             n_met += met
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
-                shares[point] = 0.5 + min(max(contacts.gaps[point] / (opening * dt), 0.0), 1.0)
+                closed = min(max(contacts.gaps[point] / (opening * dt), 0.0), 1.0)
+                shares[point] = 0.5 + closed
             masses = inverse_masses[a, 0] + inverse_masses[b, 0]
             turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
             for k in range(d):
@@ -103,7 +105,7 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             add_at(pushes, b, d, add_torques(levers_b, push, along, none), 1.0)
             if n_elements > 0:
                 stiffness = (kns[point], kss[point])
-                _relax(memory, rates, elements, states[point], normals[point], stiffness, point, first, d)
+                _relax(memory, rates, elements, states[point], normals[point], stiffness, closed, point, first, d)
                 normal, shear = 0.0, scale(0.0, sliding)
                 for e in range(n_elements):
                     column = first + d * (e + 1)
@@ -118,11 +120,14 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
 
 
 @inline
-def _relax(memory, rates, elements, state, pressed, stiffness, point, first, d):
-    """Forces of the Maxwell elements of a point after a step at constant rates; with its own they do not pull."""
+def _relax(memory, rates, elements, state, pressed, stiffness, closed, point, first, d):
+    """Forces of the Maxwell elements of a point after a step at constant rates; with its own they do not pull.
+
+    closed: share of the step in which the point was closed; what has just met or begun held nothing before.
+    """
     total = 0.0
     for e in range(elements.shape[0]):
-        keep, gain = elements[e, 0], elements[e, 1]
+        keep, gain = elements[e, 0], closed * elements[e, 1]
         column = first + d * (e + 1)
         for k in range(d):
             held = keep * memory[point, column + k] - gain * stiffness[min(k, 1)] * rates[point, k]

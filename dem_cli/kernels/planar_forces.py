@@ -56,6 +56,7 @@ def make_planar_forces(
                     stale[-1] = 1
                 gap_low = max(gap_low, 0.0)
                 gap_high = max(gap_high, 0.0)
+            true_low, true_high = gap_low, gap_high
             opened_low, opened_high = gap_low - gaps[first], gap_high - gaps[second]
             gaps[first] = gap_low
             gaps[second] = gap_high
@@ -74,7 +75,7 @@ def make_planar_forces(
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             if on_low:
-                frame, levers_a, levers_b, _ = place_end(xa, xb, share_low, ta, tb, a0, b1)
+                frame, levers_a, levers_b, _ = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 if keeps:
                     frames[first, 0], frames[first, 1] = frame[0]
                     levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
@@ -92,7 +93,7 @@ def make_planar_forces(
                 torque_a = add_torques(levers_a, normal, shear, torque_a)
                 torque_b = add_torques(levers_b, normal, shear, torque_b)
             if on_high:
-                frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, ta, tb, a1, b0)
+                frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
                 if keeps:
                     frames[second, 0], frames[second, 1] = frame[0]
                     levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]

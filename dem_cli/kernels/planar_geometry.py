@@ -1,9 +1,12 @@
 """Contact geometry that moves with the blocks, 2D: two edges and the ends of their overlap.
 
-Both ends of the overlap of two edges are corners of one block on the edge of the other. The contact
-normal is that of the edge; where two corners meet (a hinge of an arch, the end of a column joint) it
-turns smoothly into the bisector of both edges within BLEND of an edge length, because there a corner
-changes from one edge to the other with every vibration.
+Both ends of the overlap of two edges are corners of one block on the edge of the other: of the two corners at an end
+the one that lies inside, seen along the bisector of both edges. There its gap is the same whichever of the two it is,
+and the way from one to the other goes across the joint: where they pass each other neither gap nor moment jumps.
+The normal is that of the edge, and jumps by the angle between both. Where corners nearly coincide (a hinge of an arch,
+the end of a column joint) they pass with every vibration: within BLEND of an edge length the normal turns smoothly
+from one edge to the other, by way of the bisector. Nothing else is blended: a place between two corners that are not
+the same lies outside the overlap.
 """
 
 from __future__ import annotations
@@ -19,8 +22,12 @@ BLEND = 0.02  # share of the shorter edge over which the normal turns
 
 
 @always_inline
-def place_end(xa, xb, share, ta, tb, corner_a, corner_b):
-    """Frame, levers and place of one end: `share` 1 is a corner of b on the edge of a, 0 the reverse."""
+def place_end(xa, xb, share, gap, ta, tb, corner_a, corner_b):
+    """Frame, levers and place of one end: from `share` 0.5 on a corner of b on the edge of a, else the reverse.
+
+    share: of the normal of the edge of a in that of the end, `share_of`; gap: of the end [m]. Across the joint the
+    place goes with the share from one edge to the other, so that the moment of the shear force does not jump either.
+    """
     if share >= 1.0:
         nx, ny = ta[1], -ta[0]
         x, y = corner_b
@@ -33,8 +40,10 @@ def place_end(xa, xb, share, ta, tb, corner_a, corner_b):
         unit = 1.0 / math.sqrt(nx * nx + ny * ny)
         nx *= unit
         ny *= unit
-        x = share * corner_b[0] + (1.0 - share) * corner_a[0]
-        y = share * corner_b[1] + (1.0 - share) * corner_a[1]
+        across, (x, y) = (share - 1.0, corner_b) if share >= 0.5 else (share, corner_a)
+        across *= gap * unit
+        x += across * nx
+        y += across * ny
     ax, ay = x - xa[0], y - xa[1]
     bx, by = x - xb[0], y - xb[1]
     levers_a = ((ax * ny - ay * nx,), (ax * nx + ay * ny,))
@@ -43,23 +52,28 @@ def place_end(xa, xb, share, ta, tb, corner_a, corner_b):
 
 
 @always_inline
+def share_of(twice_inside, blend):
+    """Share of the normal of a at an end: 1 where the corner of b lies inside, 0 where that of a does.
+
+    twice_inside: how far the corner of b is inside [m], along a and along b, added up; blend: ¼ / (BLEND · edge).
+    """
+    return min(max(0.5 + twice_inside * blend, 0.0), 1.0)
+
+
+@always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
     """The overlap of two edges: its length, the gaps of both ends, and what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
     tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
-    # How far the edge of b ends inside that of a, at both ends; then the clipped overlap.
-    low = (b1[0] - a0[0]) * ta[0] + (b1[1] - a0[1]) * ta[1]
-    high = length_a - ((b0[0] - a0[0]) * ta[0] + (b0[1] - a0[1]) * ta[1])
+    # How far the edge of b ends inside that of a, at both ends, along a and along b; then the clipped overlap.
+    lx, ly, hx, hy = b1[0] - a0[0], b1[1] - a0[1], a1[0] - b0[0], a1[1] - b0[1]
+    low, high = lx * ta[0] + ly * ta[1], hx * ta[0] + hy * ta[1]
     overlap = length_a - max(low, 0.0) - max(high, 0.0)
-    share_low = min(max(0.5 + low * blend, 0.0), 1.0)
-    share_high = min(max(0.5 + high * blend, 0.0), 1.0)
-    # Distance of each corner to the other edge, positive outside; the outward normal is (ty, -tx).
-    gap_b1 = (b1[0] - a0[0]) * ta[1] - (b1[1] - a0[1]) * ta[0]
-    gap_b0 = (b0[0] - a0[0]) * ta[1] - (b0[1] - a0[1]) * ta[0]
-    gap_a0 = (a0[0] - b0[0]) * tb[1] - (a0[1] - b0[1]) * tb[0]
-    gap_a1 = (a1[0] - b0[0]) * tb[1] - (a1[1] - b0[1]) * tb[0]
-    gap_low = share_low * gap_b1 + (1.0 - share_low) * gap_a0
-    gap_high = share_high * gap_b0 + (1.0 - share_high) * gap_a1
+    share_low = share_of(low - lx * tb[0] - ly * tb[1], blend)
+    share_high = share_of(high - hx * tb[0] - hy * tb[1], blend)
+    # Distance of a corner to the other edge, positive outside; the outward normal is (ty, -tx).
+    gap_low = lx * ta[1] - ly * ta[0] if share_low >= 0.5 else ly * tb[0] - lx * tb[1]
+    gap_high = hy * ta[0] - hx * ta[1] if share_high >= 0.5 else hx * tb[1] - hy * tb[0]
     return overlap, gap_low, gap_high, share_low, share_high, ta, tb
 
 
@@ -124,8 +138,8 @@ def measure(joints, geometry, contacts, bodies):
             gap_high = max(gap_high, 0.0)
         gaps[first] = gap_low
         gaps[second] = gap_high
-        for point, share, ca, cb in ((first, share_low, a0, b1), (second, share_high, a1, b0)):
-            frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, tb, ca, cb)
+        for point, share, gap, ca, cb in ((first, share_low, gap_low, a0, b1), (second, share_high, gap_high, a1, b0)):
+            frame, levers_a, levers_b, place = place_end(xa, xb, share, gap, ta, tb, ca, cb)
             frames[point, 0], frames[point, 1] = frame[0]
             points[point, 0], points[point, 1] = place
             levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]

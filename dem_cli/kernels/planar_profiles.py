@@ -16,7 +16,7 @@ import numpy as np
 
 from dem_cli.kernels.contact_forces import make_press, meeting
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.planar_geometry import apart, place_end
+from dem_cli.kernels.planar_geometry import apart, place_end, share_of
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
@@ -40,10 +40,16 @@ def _outside(point, on_line, t):
 
 
 @always_inline
-def _end(inside, blend, corner_a, corner_b, ta, ts, on_side):
-    """Gap at an end of the joint, and its share: 1 is a corner of b on the edge of a, 0 one of a on a side of b."""
-    share = min(max(0.5 + inside * blend, 0.0), 1.0)
-    gap = share * _outside(corner_b, corner_a, ta) + (1.0 - share) * _outside(corner_a, on_side, ts)
+def _along(start, end, t):
+    """Way from one point to another along a direction t [m]."""
+    return (end[0] - start[0]) * t[0] + (end[1] - start[1]) * t[1]
+
+
+@always_inline
+def _end(twice_inside, blend, corner_a, corner_b, ta, ts, on_side):
+    """Gap at an end of the joint, and its share as in planar_geometry.py, with a side of the chain as edge of b."""
+    share = share_of(twice_inside, blend)
+    gap = _outside(corner_b, corner_a, ta) if share >= 0.5 else _outside(corner_a, on_side, ts)
     return gap, share
 
 
@@ -95,8 +101,7 @@ def make_profiled_forces(
             slope_last = (gn - profile[last - 1, 1]) / (un - profile[last - 1, 0])
             corner_low = _vertex(b1, tb, 0.0, g0 - slope_first * u0)
             corner_high = _vertex(b1, tb, length_b, gn + slope_last * (length_b - un))
-            low = (corner_low[0] - a0[0]) * ta[0] + (corner_low[1] - a0[1]) * ta[1]
-            high = length_a - ((corner_high[0] - a0[0]) * ta[0] + (corner_high[1] - a0[1]) * ta[1])
+            low, high = _along(a0, corner_low, ta), _along(corner_high, a1, ta)
             overlap = length_a - max(low, 0.0) - max(high, 0.0)
             # Sides on which the corners of a lie.
             k, m = first, last - 1
@@ -108,6 +113,8 @@ def make_profiled_forces(
             side_high = _side(tb, (profile[m + 1, 1] - profile[m, 1]) / (profile[m + 1, 0] - profile[m, 0]))
             on_low = _vertex(b1, tb, profile[k, 0], profile[k, 1])
             on_high = _vertex(b1, tb, profile[m, 0], profile[m, 1])
+            low += _along(corner_low, a0, side_low)
+            high += _along(a1, corner_high, side_high)
             gap_low, share_low = _end(low, blend, a0, corner_low, ta, side_low, on_low)
             gap_high, share_high = _end(high, blend, a1, corner_high, ta, side_high, on_high)
             wrong = apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint)
@@ -141,9 +148,10 @@ def make_profiled_forces(
                 else:
                     corner_b = _vertex(b1, tb, profile[point, 0], profile[point, 1])
                     gap = _outside(corner_b, a0, ta)
-                    along = (corner_b[0] - a0[0]) * ta[0] + (corner_b[1] - a0[1]) * ta[1]
+                    along = _along(a0, corner_b, ta)
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
                         gap, faces = max(gap, 0.0), False
+                depth = gap
                 gap += offset
                 if wrong:
                     gap = max(gap, 0.0)
@@ -156,7 +164,7 @@ def make_profiled_forces(
                     gap -= closures[point]
                 if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
-                frame, levers_a, levers_b, place = place_end(xa, xb, share, ta, side, corner_a, corner_b)
+                frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
                 if keeps or places:
                     frames[point, 0], frames[point, 1] = frame[0]
                     levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]

@@ -59,7 +59,7 @@ class PlanarGeometry(NamedTuple):
     faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
     features: np.ndarray  # place of each point among those of its joint, by which it is known again, (n_points,)
     edges: np.ndarray  # corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
-    scales: np.ndarray  # length of edge a [m]; 1/length of a, of b, of normal blending [1/m]; cotangents of the inner
+    scales: np.ndarray  # length of edge a [m]; 1/length of a, of b, `blend` of share_of [1/m]; cotangents of the inner
     # angles at the corners of `edges`, (n_joints, 8)
     profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are plane
     sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
@@ -114,7 +114,7 @@ class Dampers(NamedTuple):
     gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
-    states: np.ndarray  # 0: open, 1: sticking, 2: slipping, (n_points,) int8
+    states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8
     masses: np.ndarray  # and moments of inertia; 0 of supports, (n_blocks, n_dof)
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
 
 MOST_SIDES = 50
+SHORTEST = 1e-6  # of the longest side: below it corners are one
 
 Sides = Annotated[int, Field(ge=2, le=MOST_SIDES)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
@@ -56,6 +57,9 @@ class ProfileShape(CaseModel):
             _in_order(getattr(self, key), key)
         for i, length in enumerate(self.lengths or ()):
             _in_order(length, "lengths", i)
+        sides = [pair(length) for length in self.lengths or ()]
+        if sides and min(low for low, _ in sides) < SHORTEST * max(high for _, high in sides):
+            raise KeyProblem(f"a side is shorter than {SHORTEST:g} of another one", "lengths")
         low, high = self.number
         if given > 1 and (low, high) != (given, given):
             several = f"{low} sides" if low == high else f"{low} to {high} sides"

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.gaps import gap_words, gaps_of_start
+from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
@@ -94,8 +95,17 @@ def taken_as_plane(properties: JointProperties) -> str | None:
     return f"limit analysis takes joint {', '.join(rough)} as plane: it knows no profile" if rough else None
 
 
+def gaps_left_open(model: Model) -> str | None:
+    """What is to be said of gaps of the start, which rigid blocks at rest do not close; None: there are none."""
+    gaps = gaps_of_start(model)
+    return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
+
+
 def start_structure(model: Model, properties: JointProperties) -> Structure:
-    """The structure with the joints of its first place, all of them plane: points at their ends are enough."""
+    """The structure with the joints of its first place, all of them plane: points at their ends are enough.
+
+    Points that are open carry nothing: where only a corner touches a face, the other end is far from anything.
+    """
     properties = properties._replace(layouts=(None,) * len(properties.layouts))
-    joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
-    return structure_of(model, joints)
+    built = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
+    return structure_of(model, only_points(built.joints, built.contacts.gaps <= 0.0))

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.errors import UsageError
+from dem_cli.interrupts import look
 from dem_cli.limit.cone import cone_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.program import (
@@ -28,9 +29,9 @@ from dem_cli.limit.program import (
     standing,
 )
 from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
+from dem_cli.output.record import FALLS
 
 OK = "ok"
-FALLS = "does not stand under its dead loads"
 LOCKED = "no load of this direction makes it fail"
 GIVEN_UP = "not converged"
 
@@ -102,6 +103,7 @@ def _first_good(
     """The first answer that passes; where none does, the last."""
     iterations = 0
     for options in TRIES:
+        look()
         found = solve(program, options)
         iterations += found.iterations
         judged = judge(program, found)._replace(iterations=iterations)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dem_cli.interrupts import look
 from dem_cli.limit.elastic import Direction, Elastic, State
 
 
@@ -142,6 +143,7 @@ class Increment:
         return max(float(np.abs(r).max(initial=0.0)) for r in rest)
 
     def _factorise(self, at: Iterate) -> bool:
+        look()
         problem = self.problem
         normal, one, two, opening, slip_one, slip_two = self.parts = np.split(at.x, 6)
         self.soft_n = opening + normal / problem.kn

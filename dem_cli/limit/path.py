@@ -9,7 +9,7 @@ that of the explicit solver (gaps, shear springs), which can go on from it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -49,10 +49,14 @@ class Path:
             return None
         return self.normal, self.shear, self.gaps, self.displacements
 
-    def begun_again(self) -> Path:
-        """A path of its own that goes on from where this one is."""
-        loads, reached, displacements = [*self.loads], [*self.reached], [*self.live_displacements]
-        return replace(self, loads=loads, reached=reached, live_displacements=displacements)
+    @property
+    def finished(self) -> bool:
+        """Whether the load stopped growing."""
+        return self.status == OK
+
+    def flat(self, last: int) -> bool:
+        """Whether the highest load is a plateau, reached in one of the last increments, and not a peak."""
+        return self.finished and self.highest >= len(self.loads) - last
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
@@ -77,13 +81,13 @@ def trace(
     """From gravity to the plateau of the load, 2D.
 
     friction  coefficient of every point [-], (n_points,)
-    plateau   relative growth of the load, from one increment to the next, that counts as none (None: as the settings)
+    plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
     effort    factorisations × points after which what was reached is returned (None: as the settings)
     progress  told the load and the displacement of every increment
     """
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
-    most = settings.path.effort if effort is None else effort
+    most = min(settings.path.effort, settings.path.most * max(problem.n_points, 1)) if effort is None else effort
     path = Path(FALLS)
 
     def spent() -> bool:
@@ -99,16 +103,9 @@ def trace(
         return path
     _keep(path, structure, problem, standing, at_rest, 0.0)
     path.status = UNFINISHED
-    best = path
-    for way in settings.path.ways:
-        tried = path.begun_again()
-        _follow(tried, structure, problem, standing, way, growth_of_plateau, spent, progress)
-        if tried.status == OK or tried.reached[-1] > best.reached[-1]:
-            best = tried
-        best.factorisations = problem.factorisations
-        if best.status == OK or spent():
-            break
-    return best
+    _follow(path, structure, problem, standing, growth_of_plateau, spent, progress)
+    path.factorisations = problem.factorisations
+    return path
 
 
 def _follow(
@@ -116,32 +113,30 @@ def _follow(
     structure: Structure,
     problem: Elastic,
     state: State,
-    way: tuple[float, float],
     plateau: float,
     stop: Callable[[], bool],
     progress: Callable[[float, float], None],
 ) -> None:
     """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
-    settings, (first, growth) = problem.settings.path, way
+    settings = problem.settings.path
     origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
     reached = last = 0.0
-    pace, calm = growth, 0
+    calm = 0
     while calm < 2 and reached < settings.furthest:
+        stride = (settings.growth - 1.0) * reached if reached else settings.first
         for share, folds in settings.attempts:
-            further = reached * pace * share if reached else first * share
+            further = reached + share * stride
             ahead = (further - reached) / last if last else 0.0
-            found = None
-            if further > reached:
-                found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
+            found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
             if found is not None and problem.residual(found, state) >= settings.accepted:
                 found = None
             if found is not None or stop():
                 break
         if found is None:
             return
-        grown = abs(found.load - state.load) / max(abs(found.load), 1e-12)
-        calm += 0 if not reached else 2 if grown < settings.calm * plateau else 1 if grown < plateau else -calm
-        pace = settings.slower if grown < settings.near else growth
+        if reached:
+            slope = (found.load - state.load) / max(abs(found.load), 1e-12) * reached / (further - reached)
+            calm += 2 if abs(slope) < settings.calm * plateau else 1 if abs(slope) < plateau else -calm
         _keep(path, structure, problem, found, state, further)
         state, reached, last = found, further, further - reached
         progress(path.loads[-1], reached)

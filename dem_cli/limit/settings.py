@@ -9,18 +9,18 @@ from dataclasses import dataclass
 class PathSettings:
     """The path of elastic, frictional joints from gravity to collapse: increments, plateau, effort."""
 
-    # Ways to go on, tried in turn: the first displacement, in elastic ones at the multiplier 1, and its growth from
-    # increment to increment. One that gets stuck in a fold is left for the next, which steps over it elsewhere.
-    ways: tuple[tuple[float, float], ...] = ((0.25, 2.0), (0.35, 2.0), (0.5, 4.0), (1.0, 2.0), (2.0, 4.0), (1.0, 8.0))
-    near: float = 0.01  # growth of the load in one increment, below which displacements grow by no more than
-    slower: float = 1.4  # that
-    # Where an increment fails: shares of its growth, and how many folds of the central path to go round.
-    attempts: tuple[tuple[float, int], ...] = ((1.0, 0), (0.5, 0), (1.4, 0), (0.5, 4), (1.0, 4), (2.0, 0), (0.7, 4))
+    first: float = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
+    growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
+    # Where an increment fails: shares of it, and how many folds of the central path to go round.
+    attempts: tuple[tuple[float, int], ...] = (
+        (1.0, 0), (0.4, 0), (0.15, 0), (2.2, 0), (0.05, 0), (0.02, 0), (0.4, 4), (0.05, 4), (1.0, 4), (5.0, 0),
+    )  # fmt: skip
     easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
+    most: int = 2500  # factorisations before giving up
     folds: int = 4  # to go round under dead loads
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
-    plateau: float = 1e-3  # relative growth of the load in one increment, twice in a row, that counts as none
+    plateau: float = 2e-3  # relative growth of the load over that of the displacement, twice in a row: none
     calm: float = 0.5  # share of the plateau's growth that is calm enough at once
     tau: float = 0.1  # of the first products, over the square of the largest normal force
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping

@@ -77,11 +77,18 @@ def structures(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
 
     Supports connect nothing: two walls on one base are two structures.
     """
-    label = np.where(fixed, -1, np.arange(len(fixed)))
+    label = np.arange(len(fixed))
     inner = joints[~fixed[joints].any(axis=1)]
     while True:
-        least = label[inner].min(axis=1)
-        before = label.copy()
-        np.minimum.at(label, inner.ravel(), np.repeat(least, 2))
-        if (label == before).all():
-            return label
+        lowest = label[inner].min(axis=1, initial=len(fixed))
+        smaller = label.copy()
+        np.minimum.at(smaller, inner.ravel(), np.repeat(lowest, 2))
+        smaller = smaller[smaller]
+        if np.array_equal(smaller, label):
+            return np.where(fixed, -1, label)
+        label = smaller
+
+
+def largest_structure(joints: np.ndarray, fixed: np.ndarray) -> int:
+    """How many free blocks the largest structure has (`structures`); joints: (n, 2) blocks."""
+    return int(np.bincount(structures(joints, fixed)[~fixed]).max(initial=0))

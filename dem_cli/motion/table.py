@@ -13,6 +13,7 @@ from dem_cli.motion.units import SI_FACTORS
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
 Period = tuple[NonNegative, Positive]  # period [s], acceleration [m/s2]
+MOST_CYCLES = 1_000_000  # of a harmonic motion
 PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("impulse",)}
 EC8_KEYS = ("soil", "ag")
 
@@ -89,6 +90,9 @@ class HarmonicTable(MotionTable):
         if (self.cycles is None) == (self.duration is None):
             found = "'cycles' and 'duration' are" if self.cycles else "neither 'cycles' nor 'duration' is"
             raise ValueError(f"{found} given; a harmonic motion has one of them")
+        if self.length * self.frequency > MOST_CYCLES:
+            message = f"{self.length * self.frequency:.3g} cycles are not allowed; at most {MOST_CYCLES:,}"
+            raise KeyProblem(message, "duration" if self.cycles is None else "cycles")
         if 2.0 * self.ramp > self.length * self.frequency * (1.0 + 1e-9):
             most = 0.5 * self.length * self.frequency
             raise KeyProblem(f"{self.ramp:g} is not allowed; must be at most half of all cycles, {most:g}", "ramp")

@@ -24,6 +24,7 @@ STAGES = (
     "shaking",
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
+FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 
 
 class ContactRecord(NamedTuple):

@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Protocol
 
+from dem_cli.output.record import FALLS
 from dem_cli.output.scalars import scalars
 
 Value = float | int | str | bool | None
+STRENGTH = "strength"  # what a safety analysis varies where it does not vary a key
+TOLD_BY = ("status", "safety_factor", "stands_at", "fails_at")  # quantities of references that expect a fall, or not
 
 
 class ReferenceTable(Protocol):
@@ -115,6 +118,17 @@ def from_summary(reference: Any) -> list[dict[str, Any]]:
         return []
     answers = reference if isinstance(reference, list) else [reference]
     return [{"quantity": "failure_load", "kind": "exact", **answer} for answer in answers]
+
+
+def unexpected_fall(summary: Mapping[str, Any], references: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether a structure falls with nothing on it but its given loads, and no reference of its case says so.
+
+    That is the status of any kind of analysis, or a safety analysis that proved failure at the strengths of the case.
+    references: verdicts; one that is about how the run ended has the last word.
+    """
+    fails_at = summary.get("fails_at") if summary.get("vary") == STRENGTH else None
+    falls = summary["status"] == FALLS or (fails_at is not None and fails_at <= 1.0)
+    return falls and not any(answer["quantity"] in TOLD_BY for answer in references)
 
 
 def _sort(value: Any) -> str:

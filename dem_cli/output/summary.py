@@ -68,12 +68,13 @@ def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
 
 
 def exit_code(summary: Mapping[str, Any]) -> int:
-    """What `dem run` returns: 0 solved, 1 outside a reference, 3 gave up, 130 interrupted."""
+    """What `dem run` returns: 0 solved, 1 outside a reference or does not stand, 3 gave up, 130 interrupted."""
     status = str(summary["status"])
     if status == "interrupted":
         return 130
     if status.startswith("not converged"):
         return 3
-    from dem_cli.output.reference import as_declared, from_summary
+    from dem_cli.output.reference import as_declared, from_summary, unexpected_fall
 
-    return 0 if all(map(as_declared, from_summary(summary.get("reference")))) else 1
+    answers = from_summary(summary.get("reference"))
+    return 1 if unexpected_fall(summary, answers) or not all(map(as_declared, answers)) else 0

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from dem_cli.errors import CaseProblem, SolverError
+from dem_cli.interrupts import Interrupts
 from dem_cli.pipeline.batches import BatchOptions, batch_of, finish
 from dem_cli.pipeline.completion import completed, stopped, with_names
-from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.pipeline.monitor_names import check_quantities, monitor_names, monitor_quantities
 from dem_cli.pipeline.recorder import Recorder
@@ -96,25 +96,25 @@ def execute(
     case, names = loaded.case, monitor_names(loaded.case.monitor)
     with loaded.located():
         check_quantities(case, names)
-    results = OutputFolder(destination.output, force=destination.force, recover=destination.recover)
-    with interrupts or Interrupts() as stops, results as folder:
-        with stops.shielded():
-            text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
-            writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
+    with (
+        interrupts or Interrupts(),
+        OutputFolder(destination.output, force=destination.force, recover=destination.recover) as folder,
+    ):
+        text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
+        writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
         with (
             abandoning(writer),
             loaded.located(),
             batch_of(case, text, folder, options or BatchOptions(), listener) as batch,
         ):
-            recorder = Recorder(writer, listener, stops)
-            found = solved(solve or load_solver(batch), case, model, recorder)
-            stops.ignore()
+            found = solved(solve or load_solver(batch), case, model, Recorder(writer, listener))
             listener.solved()
             if batch is not None:
                 found = with_names(found, names, quantities)
             summary = completed(found | writer.measured(found), loaded, model, started)
             writer.close(summary)
-            listener.written(folder.path)
+            if summary["status"] != "interrupted":
+                listener.written(folder.path)
             place = put_in_place(folder, summary, listener)
             if batch is not None:
                 finish(batch, summary, listener)

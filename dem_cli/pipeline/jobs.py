@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.errors import DemError, OutputError
+from dem_cli.interrupts import insist
 
 if TYPE_CHECKING:
     from dem_cli.case.overrides import Override
@@ -52,12 +53,13 @@ def _solved(
 def do_job(job: SweepJob) -> Summary:
     """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run.
 
-    Raises OutputError: a full disk is no fault of the run, which is done when there is room again.
+    Raises OutputError: a full disk is no fault of the run, which is done when there is room again. Raises
+    KeyboardInterrupt where it was stopped.
     """
     from dem_cli.sweep.run import failure
 
     try:
-        return _solved(job.path, job.overrides, job.folder, job.text)
+        summary = _solved(job.path, job.overrides, job.folder, job.text)
     except OutputError:
         raise
     except DemError as error:
@@ -65,4 +67,8 @@ def do_job(job: SweepJob) -> Summary:
     except Exception as error:  # a fault of the program in one run does not stop a thousand others
         import traceback
 
+        insist()  # which may be what a library made of an interrupt
         return failure(job, f"internal error: {type(error).__name__}: {error}", traceback.format_exc())
+    if summary["status"] == "interrupted":
+        raise KeyboardInterrupt
+    return summary

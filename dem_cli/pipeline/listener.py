@@ -15,7 +15,9 @@ class RunListener:
         """The solver has ended; its results are being completed."""
 
     def written(self, folder: Path) -> None:
-        """All files are complete in `folder`, which is about to get its final name; pictures may join them."""
+        """All files of a run that nobody interrupted are in `folder`, which is about to get its final name; pictures
+        may join them.
+        """
 
     def earlier_kept(self, folder: Path) -> None:
         """The run was interrupted: the earlier, complete results stay in `folder`, these go beside it."""

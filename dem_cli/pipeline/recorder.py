@@ -5,47 +5,43 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.interrupts import look
 from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
     from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
     from dem_cli.output.store import ResultWriter
-    from dem_cli.pipeline.interrupts import Interrupts
     from dem_cli.pipeline.listener import RunListener
 
 
 class Recorder(Observer):
-    """The observer of a run: keeps what comes, says where the run stands, lets nothing interrupt a write."""
+    """The observer of a run: keeps what comes, and says where the run stands."""
 
-    def __init__(self, writer: ResultWriter, listener: RunListener, interrupts: Interrupts):
-        self.writer, self.listener, self.interrupts = writer, listener, interrupts
+    def __init__(self, writer: ResultWriter, listener: RunListener):
+        self.writer, self.listener = writer, listener
 
     def frame(self, frame: Frame) -> None:
         """Into the files."""
-        with self.interrupts.shielded():
-            self.writer.frame(frame)
+        self.writer.frame(frame)
 
     def row(self, row: HistoryRow) -> None:
         """Into the files."""
-        with self.interrupts.shielded():
-            self.writer.row(row)
+        self.writer.row(row)
 
     def samples(self, samples: Samples) -> None:
         """Into the files."""
-        with self.interrupts.shielded():
-            self.writer.samples(samples)
+        self.writer.samples(samples)
 
     def structure(self, model: Model) -> None:
         """Into the files."""
-        with self.interrupts.shielded():
-            self.writer.structure(model)
+        self.writer.structure(model)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """Into the files."""
-        with self.interrupts.shielded():
-            self.writer.runs(rows)
+        self.writer.runs(rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """To the listener."""
+        """To the listener. Raises KeyboardInterrupt where one came."""
         self.listener.progress(stage, load, displacement, fraction)
+        look()

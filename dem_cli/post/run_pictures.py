@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dem_cli.errors import UsageError
+from dem_cli.interrupts import look
 from dem_cli.output.reader import Results, read
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.capacity import draw_capacity
@@ -31,11 +32,15 @@ ANIMATION = "collapse.gif"
 
 
 def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
-    """Draw every picture that the results in `folder` allow; returns the files written. An animation takes longer."""
+    """Draw every picture that the results in `folder` allow; returns the files written. An animation takes longer.
+
+    Raises KeyboardInterrupt between two.
+    """
     results = read(folder)
     written = []
     for name, draw in PICTURES.items():
         if has_data(name, results):
+            look()
             draw(results, output / name)
             written.append(output / name)
     if animate:

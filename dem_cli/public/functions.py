@@ -15,9 +15,9 @@ from dem_cli.case.overrides import override_of
 from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import text_of_tables
 from dem_cli.errors import UsageError
+from dem_cli.interrupts import Interrupts
 from dem_cli.pipeline.batches import BatchOptions, check
 from dem_cli.pipeline.execution import Destination, one_of_many, run_case
-from dem_cli.pipeline.interrupts import Interrupts
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.public.result import Result
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.case.reader import parse_toml
-from dem_cli.errors import UsageError
+from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import CONTACT_UNITS, STATES, Frame
@@ -53,6 +53,16 @@ class Result:
     def status(self) -> str:
         """How the run ended: "ok", "not converged", "interrupted", "running" of one that was killed, ..."""
         return self._results.status
+
+    @property
+    def exit_code(self) -> int:
+        """What `dem run` returns for it: 0 solved, 1 outside a reference or does not stand, 3 gave up, 130 interrupted.
+
+        Of a run that was killed 3.
+        """
+        from dem_cli.output.summary import exit_code
+
+        return exit_code(self.summary) if self.summary else SolverError.exit_code
 
     @property
     def kind(self) -> str:

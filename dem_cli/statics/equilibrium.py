@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
 
-FALLS = "does not stand under its dead loads"
-
 
 @dataclass(frozen=True)
 class Verdict:
@@ -55,13 +53,14 @@ def relax(
     max_steps: int | None = None,
     scale: float = 0.0,
     since: np.ndarray | None = None,
+    budget: Budget | None = None,
     elastic: bool = True,
 ) -> Verdict:
     """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
 
-    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where
-    they are now); scale: displacement that is elastic [m]; max_steps: None: that of the settings; elastic: joints show
-    their closure (engine/rigid_joints.py).
+    "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where they
+    are now); scale: displacement that is elastic [m]; max_steps: None: that of the settings; budget: what the steps are
+    taken from; elastic: joints show their closure (engine/rigid_joints.py).
     """
     relaxation = sim.settings.relaxation
     since = sim.places() if since is None else since
@@ -73,6 +72,8 @@ def relax(
     calm = 0
     for _ in range(max(1, max_steps // relaxation.chunk)):
         sim.advance(relaxation.chunk, slot.FIRE)
+        if budget is not None:
+            budget.spend(relaxation.chunk, f"at load multiplier {load * sim.live_scale:.5g}")
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < tolerance else 0
         if calm == relaxation.looks_at_rest:
@@ -91,7 +92,7 @@ def stand(sim: Simulation, budget: Budget) -> Verdict:
     relaxation = sim.settings.relaxation
     start, scale = sim.places(), measures.dead_scale(sim)
     _weigh_down(sim, budget)
-    verdict = relax(sim, 0.0, relaxation.gravity_tolerance, scale=scale, since=start, elastic=False)
+    verdict = relax(sim, 0.0, relaxation.gravity_tolerance, scale=scale, since=start, budget=budget, elastic=False)
     if verdict.state != "unknown":
         return verdict
     return settle_or_fail(sim, 0.0, budget, scale, relaxation.gravity_tolerance, start)
@@ -105,8 +106,9 @@ def settle_or_fail(
     tolerance: float | None = None,
     since: np.ndarray | None = None,
     plateau: bool = False,
+    most_steps: float = math.inf,
 ) -> Verdict:
-    """Constant load with combined damping until equilibrium or failure is proven.
+    """Constant load with combined damping until equilibrium or failure is proven; "unknown" after `most_steps`.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
@@ -138,6 +140,8 @@ def settle_or_fail(
         failing = motion.look()
         if failing is not None:
             return Verdict("failure", sim.unbalanced, *failing)
+        if done >= most_steps:
+            return Verdict("unknown", sim.unbalanced)
     raise AssertionError("a count has no end")
 
 

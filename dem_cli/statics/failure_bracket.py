@@ -7,8 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from dem_cli.engine.state import SavedState
-    from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.equilibrium import Verdict
+    from dem_cli.statics.rigid_limits import RigidLimits
+
+
+OK, NOT_CONVERGED, NO_FAILURE = "ok", "not converged", "no failure"
+EXISTS = "an equilibrium exists at this load"  # of a start that was asked for, which nothing says is reached
 
 
 @dataclass(frozen=True)
@@ -18,7 +22,7 @@ class LoadPass:
     kind: str  # "creep" | "start" | "load" | "impossible"
     steps: int
     load: float  # estimate of the creep, or the constant load
-    state: str  # "estimate" | "equilibrium" | "failure"
+    state: str  # "estimate" | "equilibrium" | "failure" | "unknown"
 
 
 @dataclass
@@ -28,21 +32,25 @@ class FailureLoad:
     low: float | None = None  # highest proven equilibrium
     high: float | None = None  # lowest proven failure
     scale: float = 1.0  # of users' multipliers over internal ones (Simulation.live_scale)
-    status: str = "not converged"  # "ok" | "not converged" | "no failure" | "does not stand"
+    status: str = NOT_CONVERGED  # OK | NOT_CONVERGED | NO_FAILURE | EXISTS | "does not stand"
     compliance: float = 0.0  # q·u per unit of internal multiplier while elastic [J]
     elastic: float = 0.0  # largest displacement per unit of internal multiplier while elastic [m]
     settled: float = 0.0  # largest displacement of a block under the dead loads alone [m]
     onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: SavedState | None = None  # state of the highest equilibrium
-    found: bool = False  # the bracket is as narrow as it was asked for
+    found: bool = False  # the load is known, as closely as asked for or `wide`
+    wide: bool = False  # the bracket is wider than asked for
     failing: Verdict | None = None
+    failed_state: SavedState | None = None  # of the lowest failure
     crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
     crept_state: SavedState | None = None
     limit: float = 0.0  # multiplier above which nothing was tried
     passes: list[LoadPass] = field(default_factory=list)
+    earlier: tuple[float, float] | None = None  # bracket of loads raised in larger steps, where that made a difference
+    undecided: list[float] = field(default_factory=list)  # loads at which neither was proved
     start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
-    limits: LimitLoads | None = None  # limit analysis that the start needed
+    limits: RigidLimits | None = None  # limit analysis of the same structure
 
     @property
     def carried(self) -> float:
@@ -61,6 +69,35 @@ class FailureLoad:
         """State of the highest equilibrium, where there is one."""
         assert self.held is not None
         return self.held
+
+    @property
+    def bound(self) -> float | None:
+        """Multiplier above which limit analysis proved equilibrium impossible, where it is known."""
+        return self.limits.bound if self.limits is not None else None
+
+    @property
+    def width(self) -> float | None:
+        """Width of the bracket, relative; None where one side is missing or nothing is carried."""
+        return None if self.high is None or not self.low else (self.high - self.low) / abs(self.low)
+
+    def begin_again(self, at_rest: SavedState) -> None:
+        """Forgets the bracket, but for its loads; at_rest: state under the dead loads alone."""
+        self.earlier = (self.carried, self.failed)
+        self.low, self.high, self.held = 0.0, None, at_rest
+        self.found, self.wide, self.status, self.undecided = False, False, NOT_CONVERGED, []
+        self.failing = self.failed_state = self.onset = None
+
+    def end_undecided(self, widest: float) -> None:
+        """The answer where the search ends before the bracket is narrow: both sides, if they are not too far apart.
+
+        widest: bracket, relative, that still is an answer. What limit analysis proved impossible is a side as well.
+        """
+        bound = self.bound
+        if bound is not None and (self.high is None or bound < self.high) and bound > (self.low or 0.0):
+            self.high, self.failing, self.failed_state = bound, None, None
+        self.wide = True
+        if self.width is not None and self.width <= widest:
+            self.found, self.status = True, OK
 
     @property
     def crept_beyond(self) -> bool:

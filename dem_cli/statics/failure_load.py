@@ -1,15 +1,17 @@
-"""The failure load: a start next to it or a creep that says where it is, then loads raised, each with its proof.
+"""The failure load from gravity: the load is raised in steps, each a proven equilibrium, until failure is proven.
 
-Where a static solver left a state next to failure (statics/warm_start.py), it is held a little below its load, and the
-load is raised from there. Else, and where that does not hold, it is raised from gravity:
+An estimate says where the steps have to be small. Limit analysis bounds it (statics/rigid_limits.py): what it proved
+impossible needs no proof by motion. Where a creep comes close to that bound, it is the estimate. Else the zero-dilation
+path is, a second history from gravity: where its load grows no more, failure shows after a short motion. Where the two
+differ, the load is raised once more in small steps.
 
-Equilibrium exists at every prescribed displacement, so nothing has to be guessed for the estimate: the
-live load is replaced by a prescribed rate of its own displacement q·u, and its multiplier is found as a
-reaction. The rate is halved several times and then set to zero; what is left is close to the failure load,
-but a joint that slides back and forth on that way may have lost strength. The answer therefore comes from
-the way that a tilting table takes: the load is raised from gravity in steps that shrink towards the
-estimate, every step a proven equilibrium, until failure is proven as well and the bracket is narrow enough. Where the
-creep ended in an equilibrium inside that bracket, that one is the highest.
+The creep: equilibrium exists at every prescribed displacement, so nothing has to be guessed for it. The live load is
+replaced by a prescribed rate of its own displacement q·u, and its multiplier is found as a reaction. The rate is halved
+several times and then set to zero. A joint that slides back and forth on that way may have lost strength; where the
+creep ends in an equilibrium inside the bracket, that one is the highest.
+
+A start next to failure that the case asks for (statics/warm_start.py) is held a little below its load, and the load is
+raised from there; one from limit analysis is an equilibrium that exists, and no more.
 """
 
 from __future__ import annotations
@@ -22,10 +24,12 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
+from dem_cli.model.scales import largest_structure
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import Verdict, check_finite, settle_or_fail
-from dem_cli.statics.failure_bracket import FailureLoad, LoadPass, SearchRange
-from dem_cli.statics.warm_start import GRAVITY, place
+from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
+from dem_cli.statics.trial_loads import TrialLoads
+from dem_cli.statics.warm_start import GRAVITY, LIMIT, place
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
@@ -48,41 +52,96 @@ class LoadSearch:
         self.resolution, self.settings, scale = wanted.resolution, sim.settings.load_search, sim.live_scale
         self.limit = self.settings.locked if wanted.max_load is None else wanted.max_load / scale
         self.longest = None if wanted.longest is None else wanted.longest / scale
-        self.plateau = False  # the load is known to grow no more with displacement
+        self.plateau = np.inf  # load from which on a path is known to grow no more with displacement
+        self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
+        self.first_step = sim.steps
         answer.scale, answer.limit = scale, self.limit * scale
 
     def run(self, start: WarmStart | None = None) -> None:
-        """The bracket; start: a state next to failure, instead of creep and loads raised from gravity.
+        """The bracket; start: a state next to failure that was asked for, instead of loads raised from gravity.
 
         Where it does not hold, these are the way after all; where joints have a profile, nothing is estimated first.
         Raises SolverError where the live load moves nothing, or where the budget ends.
         """
         sim, answer, settings = self.sim, self.answer, self.settings
-        answer.low, answer.held, answer.settled = 0.0, sim.save(), measures.largest_displacement(sim)
-        answer.compliance, answer.elastic = compliance(sim)
+        self.at_rest = sim.save()
+        answer.low, answer.held, answer.settled = 0.0, self.at_rest, measures.largest_displacement(sim)
+        if answer.bound is not None:
+            least = self.resolution * settings.least
+            self.impossible = max((1.0 + settings.beyond_impossible) * answer.bound / sim.live_scale, least)
+            if self.impossible <= least:  # the least live load moves it
+                self._raise_load(self._trials([least], least))
+                return
+        answer.compliance, answer.elastic = compliance(sim, self.budget)
         if answer.compliance <= 0.0:
             if sim.loads.live[sim.free].any():
                 raise SolverError(AGAINST)
             raise SolverError("the live load moves nothing: no free block has a live load")
         if start is not None and self._holds(start):
             low = answer.carried / sim.live_scale
-            if start.limits is not None and start.limits.associated.upper is not None:
-                above = (1.0 + settings.beyond_impossible) * start.limits.associated.upper / sim.live_scale
-                if above <= min(self.limit, (1.0 + max(self.resolution, settings.coarse)) * low):
-                    self._fail_above(above)
-                    return
-            self.plateau = start.plateau
-            self._raise_load(low, [], settings.one_step * self.resolution * low)
+            if start.kind == LIMIT:
+                answer.status, answer.high = EXISTS, answer.bound
+                return
+            self.plateau = start.load / sim.live_scale if start.plateau else np.inf
+            self._raise_load(self._trials([], settings.one_step * self.resolution * low))
         elif self.longest is not None or sim.play.moved.any():  # a creep would stop at the first microrotation
             first = settings.first_in_play if self.longest is None else self.longest
-            self._raise_load(0.0, [], first, np.inf if self.longest is None else self.longest)
+            self._raise_load(self._trials([], first, np.inf if self.longest is None else self.longest))
         else:
-            self.track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
-            estimate = self._creep(settings.reach * answer.compliance)
-            sim.restore(answer.standing)
-            estimate = min(estimate if estimate > 0.0 else settings.probe, self.limit)
-            levels = [share * estimate for share in settings.shares]
-            self._raise_load(0.0, levels, settings.first_step * self.resolution * estimate)
+            self._raise_to_estimate()
+
+    def run_again_in_small_steps(self, estimate: float) -> None:
+        """The bracket again, raised from gravity in small steps to an estimate (as users know it) and on.
+
+        Where histories differ the steps may decide: this is then the history that a failure load is stated for.
+        """
+        self.track.kept[:] = self.track.kept[:1]
+        self.answer.begin_again(self.at_rest)
+        load = estimate / self.sim.live_scale
+        levels = [float(share) * load for share in np.arange(1, self.settings.small_steps) / self.settings.small_steps]
+        self._raise_load(self._trials(levels, self.settings.first_step * self.resolution * load))
+
+    def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
+        """Loads to try from what is carried now."""
+        low, limit = self.answer.carried / self.sim.live_scale, min(self.limit, self.impossible)
+        return TrialLoads(self.settings, self.resolution, low, levels, step, longest, limit)
+
+    def _raise_to_estimate(self) -> None:
+        """The load raised from gravity, in steps that shrink towards an estimate of the failure load."""
+        answer, settings, sim = self.answer, self.settings, self.sim
+        self.track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
+        estimate = self._creep(settings.reach * answer.compliance)
+        sim.restore(answer.standing)
+        estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False
+        if self.impossible < np.inf:
+            estimate, expected = self._expected(min(estimate, self.impossible))
+        levels = [share * estimate for share in settings.shares]
+        if expected:
+            levels.append((1.0 - settings.short * self.resolution) * estimate)
+            levels.append((1.0 + settings.beyond * self.resolution) * estimate)
+        self._raise_load(self._trials(levels, settings.first_step * self.resolution * estimate))
+
+    def _expected(self, estimate: float) -> tuple[float, bool]:
+        """A better estimate, and whether the load is expected to fail there: at the bound, or where the path ends."""
+        limits = self.answer.limits
+        assert limits is not None
+        if estimate >= self.settings.likely * self.impossible:
+            return self.impossible, True
+        if self.too_large():
+            return estimate, False
+        path = limits.path
+        if path is None or not path.load or path.load <= 0.0:
+            return estimate, False
+        load = path.load / self.sim.live_scale
+        if not path.flat(self.sim.settings.warm_start.at_the_end):
+            return max(load, estimate), False
+        self.plateau = load
+        return load, True
+
+    def too_large(self) -> bool:
+        """Whether the path would take too many factorisations."""
+        sim = self.sim
+        return largest_structure(sim.joints.blocks, sim.model.fixed) > sim.settings.warm_start.large
 
     def _holds(self, start: WarmStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
@@ -102,13 +161,12 @@ class LoadSearch:
         self._keep(load)
         return True
 
-    def _fail_above(self, load: float) -> None:
+    def _fail_above(self, load: float) -> Verdict:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
         the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
         """
         sim, answer, relaxation = self.sim, self.answer, self.sim.settings.relaxation
-        self.track.observer.progress("failing", load * sim.live_scale, answer.peak_displacement, None)
-        before, start, ledger = sim.steps, sim.places(), measures.energy_sums(sim)
+        start, ledger = sim.places(), measures.energy_sums(sim)
         sim.use_combined_damping()
         sim.set_load(load)
         moved, released = 0.0, 0.0
@@ -120,10 +178,7 @@ class LoadSearch:
             now = measures.energy_sums(sim)
             given = now.given - ledger.given
             released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
-        answer.failing = Verdict("failure", sim.unbalanced, released)
-        self._passed("impossible", before, load, "failure")
-        answer.high, answer.status, answer.found = load * sim.live_scale, "ok", True
-        self.track.keep("collapse")
+        return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:
         """Internal multiplier to which a decelerating creep over about `distance` [J] settles: an estimate.
@@ -163,47 +218,41 @@ class LoadSearch:
                 self.answer.crept_state = sim.save()
                 return
 
-    def _raise_load(self, low: float, levels: list[float], step: float, longest: float = np.inf) -> None:
-        """From a proven equilibrium up, first to `levels`, then by growing steps, after failure back by halves."""
-        answer, settings, first_step = self.answer, self.settings, step
-        high: float | None = None
-        failed, jumped = answer.standing, False
-        while high is None or jumped or high - low > self._width(low):
-            if high is not None and high - low <= self._width(low):
-                load = high  # failed after a jump, which may break what a gentler step does not: again from close by
-            elif high is not None:
-                load = 0.5 * (low + high)
-            elif levels:
-                load = levels.pop(0)
-            else:
-                load, step = low + step, min(settings.growth * step, longest)
-            load = min(load, self.limit)
+    def _raise_load(self, trials: TrialLoads) -> None:
+        """Load after load, until the bracket is narrow enough, or as narrow as it can be made."""
+        answer = self.answer
+        while (load := trials.next()) is not None and not self._enough():
             verdict = self._settle(load)
             if verdict.state == "equilibrium":
-                if high is not None and load >= high:
-                    high, step = None, first_step
-                low, jumped = load, False if high is None else jumped
-                self._keep(low)
-                if low >= self.limit:
-                    answer.status = "no failure"
-                    return
+                trials.carries(load)
+                self._keep(load)
+            elif verdict.state == "failure":
+                trials.fails(load, for_certain=load >= self.impossible)
+                answer.high, answer.failing, answer.failed_state = load * answer.scale, verdict, self.sim.save()
             else:
-                jumped = load - low > settings.jump * self.resolution * max(abs(low), settings.least)
-                high, failed = load, self.sim.save()
-                answer.high, answer.failing = high * self.sim.live_scale, verdict
-        self._try_crept(low, high)
-        answer.status, answer.found = "ok", True
-        self.sim.restore(failed)
-        self.track.keep("collapse")
+                trials.leaves(load)
+            answer.undecided = [other * answer.scale for other in trials.undecided]
+        if trials.high is None and trials.low >= self.limit:
+            answer.status = NO_FAILURE
+        elif trials.closed:
+            self._try_crept(trials)
+            answer.status, answer.found = OK, True
+        else:
+            answer.end_undecided(self.settings.widest)
+        if answer.failed_state is not None:
+            self.sim.restore(answer.failed_state)
+            self.track.keep("collapse")
 
-    def _width(self, low: float) -> float:
-        """Width of the bracket that is asked for above a proven equilibrium."""
-        return self.resolution * max(abs(low), self.settings.least)
+    def _enough(self) -> bool:
+        """Whether a bracket that is known cost so much that it is not narrowed any more."""
+        answer, settings = self.answer, self.settings
+        known = bool(answer.low) and (answer.high is not None or answer.bound is not None)
+        return known and (self.sim.steps - self.first_step) * len(self.sim.joints.kn) > settings.effort
 
-    def _try_crept(self, low: float, high: float) -> None:
+    def _try_crept(self, trials: TrialLoads) -> None:
         """The equilibrium of the creep, where it is inside the bracket: closer to failure, if it holds as well."""
         answer = self.answer
-        if answer.crept is None or not low < answer.crept < high:
+        if answer.crept is None or trials.high is None or not trials.low < answer.crept < trials.high:
             return
         answer.held, held = answer.crept_state, answer.held
         if self._settle(answer.crept).state == "equilibrium":
@@ -213,12 +262,22 @@ class LoadSearch:
 
     def _settle(self, load: float) -> Verdict:
         """The verdict on a load, from the highest equilibrium so far."""
-        sim, answer = self.sim, self.answer
-        self.track.observer.progress("raising the load", load * sim.live_scale, answer.peak_displacement, None)
+        sim, answer, settings = self.sim, self.answer, self.settings
+        impossible = load >= self.impossible
+        doing = "failing" if impossible else "raising the load"
+        self.track.observer.progress(doing, load * sim.live_scale, answer.peak_displacement, None)
         sim.restore(answer.standing)
         before = sim.steps
-        verdict = settle_or_fail(sim, load, self.budget, answer.elastic * abs(load), plateau=self.plateau)
-        self._passed("load", before, load, verdict.state)
+        if impossible:
+            verdict = self._fail_above(load)
+        else:
+            most = max(settings.trial, settings.trial_per_point * len(sim.joints.kn))
+            tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
+            verdict = settle_or_fail(
+                sim, load, self.budget, answer.elastic * abs(load), tolerance,
+                plateau=load > self.plateau, most_steps=most,
+            )  # fmt: skip
+        self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:

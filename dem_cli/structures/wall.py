@@ -11,6 +11,7 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Stru
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 
+MOST_BLOCKS = 1_000_000
 NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or height are not made
 
 
@@ -94,6 +95,15 @@ class Wall(StructureBase):
         if self.course_heights:
             return np.concatenate([[0.0], np.cumsum(self.course_heights)])
         return np.arange(self.courses + 1) * self.block[1]
+
+    @model_validator(mode="after")
+    def _not_too_many(self) -> Wall:
+        lengths = self.course_lengths or (self.block[0],) * self.courses
+        count = sum(self.length / length for length in lengths)
+        if count > MOST_BLOCKS:
+            key = "course_lengths" if self.course_lengths else "courses"
+            raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", key)
+        return self
 
     @model_validator(mode="after")
     def _consistent(self) -> Wall:

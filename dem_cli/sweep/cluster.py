@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import secrets
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import SolverError, UsageError
+from dem_cli.interrupts import at_once, insist
 from dem_cli.sweep.identity import program
-from dem_cli.sweep.pool import WorkerDeath
+from dem_cli.sweep.pool import ASK, WorkerDeath
 from dem_cli.sweep.run import Summary, SweepJob
 
 CLUSTER_GONE = "the cluster went away; what was done is kept, run the same command again"
@@ -30,7 +32,8 @@ def connected(address: str, folder: Path) -> Iterator[Any]:
     except ImportError:
         raise UsageError("--scheduler needs Dask: pip install 'dem-cli[cluster]'") from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        with at_once():
+            client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise UsageError(f"--scheduler {address}: no Dask scheduler answers ({str(error).splitlines()[0]})") from None
     try:
@@ -87,6 +90,16 @@ def on_cluster(
         yield from _asked_for(client, do, [(number, jobs[number])], "-alone")
 
 
+def _completed(futures: Any) -> Iterator[Any]:
+    """Futures as they are done, with a look at interrupts between waits of our own."""
+    while not futures.is_empty():
+        batch = futures.next_batch(block=False)
+        yield from batch
+        insist()
+        if not batch:
+            time.sleep(ASK / 4)
+
+
 def _asked_for(
     client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[tuple[int, SweepJob]], suffix: str
 ) -> Iterator[tuple[int, Summary | WorkerDeath]]:
@@ -96,7 +109,7 @@ def _asked_for(
     numbers = {job.id + suffix: number for number, job in jobs}
     futures = client.map(do, [job for _, job in jobs], key=list(numbers), pure=False, batch_size=200) if jobs else []
     try:
-        for future in as_completed(futures, loop=client.loop):
+        for future in _completed(as_completed(futures, loop=client.loop)):
             if isinstance(future.exception() if future.status == "error" else None, KilledWorker):
                 yield numbers[future.key], WorkerDeath()
             elif future.cancelled():

@@ -181,7 +181,7 @@ def _change(table: Sweep, key: str, value: Any, path: KeyPath) -> KeyChange:
 def _bundled(table: Sweep, axis: str, name: Any, path: KeyPath) -> KeyChange:
     """All changes of a bundle."""
     bundles = table.bundle[axis]
-    if name not in bundles:
+    if not isinstance(name, str) or name not in bundles:
         raise _wrong(path, unknown_name("bundle", name, list(bundles)))
     place = ("sweep", "bundle", axis, name)
     changes = [_override(key, value, (*place, key)) for key, value in bundles[name].items()]

@@ -83,7 +83,7 @@ class PushoverAnalysis(LiveAnalysis):
     start: Literal["auto", "gravity", "path", "limit"] = Field(
         default="auto",
         description="how to come next to failure: gravity: raise the load step by step; path: static path of joints "
-        "that do not dilate; limit: forces of limit analysis; auto: by the number of blocks",
+        "that do not dilate; limit: forces of limit analysis, in equilibrium but maybe never reached; auto: gravity",
     )
     limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
-from dem_cli.output.reference import as_declared, error, verdicts
+from dem_cli.output.reference import as_declared, error, unexpected_fall, verdicts
 from dem_cli.output.scalars import plain
 from dem_cli.verify.case_selection import SHELVES
 
@@ -33,6 +33,8 @@ def record(path: Path, title: str, summary: Mapping[str, Any], references: Seque
     kept |= {"seconds": rounded(seconds), "references": [dict(answer, state=state(answer)) for answer in answers]}
     if status.startswith("not converged"):
         kept["error"] = "; ".join([status, *summary.get("warnings", ())])
+    elif unexpected_fall(summary, answers):
+        kept["error"] = f"{status}, which no [reference] expects"
     return plain(kept)
 
 

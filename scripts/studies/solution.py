@@ -14,6 +14,7 @@ import tomli_w
 from dem_cli import api
 from dem_cli.analyses import solve as solver
 from dem_cli.case.reader import LoadedCase
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 from dem_cli.output.vertices import placed_vertices
@@ -29,10 +30,10 @@ class Solution(NamedTuple):
     seen: RunKeeper
 
 
-def solve(loaded: LoadedCase) -> Solution:
+def solve(loaded: LoadedCase, settings: Settings = DEFAULT) -> Solution:
     """Solve a case that was read. Raises SolverError."""
     model, seen = api.build_model(loaded), RunKeeper()
-    return Solution(model, solver.solve(loaded.case, model, seen).summary, seen)
+    return Solution(model, solver.solve(loaded.case, model, seen, settings=settings).summary, seen)
 
 
 def from_file(path: Path, *overrides: str) -> LoadedCase:

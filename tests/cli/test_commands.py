@@ -81,7 +81,8 @@ def test_check_warns_on_stderr():
     result = dem("check", str(TEMPLATES / "wall.toml"), "--set", "materials.stone.density=2.1")
     assert result.exit_code == 0
     assert result.stderr == (
-        "warning: --set materials.stone.density: 2.1 kg/m3 is unusual for a building material, did you mean 2100?\n"
+        "warning: --set materials.stone.density: 2.1 kg/m3 is unusual for a building material, "
+        "did you mean 2100 (2.1 g/cm3)?\n"
     )
 
 

@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli import __version__
+from dem_cli.cli import internal_error
 from dem_cli.cli import main as shell
 from dem_cli.cli.main import COMMANDS, main
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
@@ -88,15 +89,16 @@ def test_no_arguments_print_the_help():
 def command(monkeypatch):
     """A function that makes `dem check` do something else."""
 
-    def install(body):
-        replaced = click.Command("check", callback=body)
+    def install(body, *words):
+        arguments = [click.Argument(["words"], nargs=-1, expose_value=False)]
+        replaced = click.Command("check", callback=body, params=arguments)
         real = shell.LazyGroup.get_command
         monkeypatch.setattr(
             shell.LazyGroup,
             "get_command",
             lambda self, ctx, name: replaced if name == "check" else real(self, ctx, name),
         )
-        return CliRunner().invoke(main, ["check"])
+        return CliRunner().invoke(main, ["check", *words])
 
     return install
 
@@ -130,11 +132,53 @@ def test_a_command_returns_its_exit_code(command, value, code):
     assert command(lambda: value).exit_code == code
 
 
-def test_a_slip_of_ours_is_not_hidden(command):
-    def body():
-        raise ZeroDivisionError
+def fault():
+    raise ZeroDivisionError("so many\nblocks")
 
-    assert isinstance(command(body).exception, ZeroDivisionError)
+
+def test_a_fault_of_ours_is_a_message_and_a_file(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DEM_TRACEBACK")
+    (tmp_path / "case.toml").write_text("title = 'é'", encoding="utf-8")
+    result = command(fault, "case.toml")
+    (file,) = tmp_path.glob("dem-internal-error-*.txt")
+    assert (result.exit_code, result.stdout) == (70, "")
+    assert result.stderr.splitlines() == [
+        "internal error: ZeroDivisionError: so many",
+        "This is a fault of dem, not of the case.",
+        f"Please send this file, which has the traceback and the case: {file}",
+    ]
+    text = file.read_text(encoding="utf-8")
+    assert text.startswith(f"dem {__version__}, Python ")
+    assert "\ncommand: dem check case.toml\n" in text
+    assert "in fault\n" in text
+    assert text.endswith("---- case.toml\ntitle = 'é'")
+
+
+def test_a_fault_of_ours_where_nothing_can_be_written(command, monkeypatch, tmp_path):
+    monkeypatch.delenv("DEM_TRACEBACK")
+    monkeypatch.setattr(internal_error.Path, "cwd", lambda: tmp_path / "gone")
+    monkeypatch.setattr(internal_error.tempfile, "gettempdir", lambda: str(tmp_path / "gone"))
+    result = command(fault)
+    assert result.exit_code == 70
+    assert "No report could be written (No such file or directory); DEM_TRACEBACK=1 shows" in result.stderr
+
+
+def test_the_traceback_of_a_fault_is_shown_on_request(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for value, shown in (("1", True), ("0", False)):
+        monkeypatch.setenv("DEM_TRACEBACK", value)
+        assert ("Traceback" in command(fault).stderr) is shown
+
+
+def test_want_of_memory_is_no_fault(command, monkeypatch):
+    def body():
+        raise MemoryError("unable to allocate 64 GiB")
+
+    monkeypatch.delenv("DEM_TRACEBACK")
+    result = command(body)
+    said = "error: not enough memory: unable to allocate 64 GiB; fewer blocks or frames need less\n"
+    assert (result.exit_code, result.stderr) == (3, said)
 
 
 def test_a_reader_that_goes_away_is_no_error():

@@ -12,7 +12,11 @@ from casefiles import CASES, read
 from click.testing import CliRunner
 from engine import Records, block, rectangle, scene, simulation, solve, tables
 
+from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.validate import problems
 from dem_cli.cli.main import main
+from dem_cli.contact.gaps import gaps_of_start
+from dem_cli.engine.kinematics import why_moving
 
 RESOLUTION = 0.005
 PAGE = json.loads((CASES.parent / "docs" / "data" / "imperfections.json").read_text(encoding="utf-8"))["rows"]
@@ -155,3 +159,74 @@ def test_a_case_without_errors_keeps_its_geometry():
     summary, _ = solve(CASES / "verification" / "wall_21.toml", "analysis.follow=0.0")
     assert not any("fixed geometry" in line for line in summary["skipped"])
     assert np.isclose(summary["failure_load"], 0.6, rtol=RESOLUTION)
+
+
+POST = (0.5, 2.0)  # [m]
+CLOSES = 1e-3 * math.hypot(*POST)  # 2.06 mm: the widest gap that counts as a joint
+
+
+def beam_on_posts(short: float, **analysis) -> dict:
+    """A beam on two posts, the right one shorter than the left one by so much [m]."""
+    width, height = POST
+    left, right = rectangle(0.0, 0.0, width, height), rectangle(3.5, 0.0, 3.5 + width, height - short)
+    posts = block("left", left), block("right", right)
+    beam = block("beam", rectangle(0.0, height, 3.5 + width, height + 0.6))
+    settings = {"kind": "pushover", "resolution": RESOLUTION, "follow": 0.0}
+    return tables(GROUND, *posts, beam, analysis=settings | analysis)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.3, 0.5, 0.7, 0.99])
+def test_a_beam_on_a_post_that_is_short_stands(share):
+    """The gap closes by an angle of up to 0.0006; the posts turn over at their width over their height, 0.25."""
+    case = beam_on_posts(share * CLOSES)
+    assert why_moving(*scene(case)) == f"a gap of {share * CLOSES:.3g} m between 'right' and 'beam' may close"
+    summary, _ = solve(case)
+    assert summary["status"] == "ok"
+    assert summary["warnings"] == []
+    assert summary["failure_load"] == pytest.approx(0.25, rel=RESOLUTION)
+
+
+@pytest.mark.parametrize("short", [1.01 * CLOSES, 0.01, 0.05])
+def test_a_gap_that_is_too_wide_to_close_is_named(short, tmp_path):
+    """By the run that says that the beam falls, by the check of the case and by limit analysis."""
+    words = f"a gap of {short:.3g} m between 'right' and 'beam'"
+    summary, _ = solve(beam_on_posts(short))
+    assert summary["status"] == "does not stand under its dead loads"
+    assert any(words in line and 'kinematics = "large"' in line for line in summary["warnings"])
+    assert solve(beam_on_posts(short, kinematics="large"))[0]["status"] == "ok"
+    path = tmp_path / "beam.toml"
+    path.write_text(tomli_w.dumps(beam_on_posts(short)), encoding="utf-8")
+    checked = CliRunner().invoke(main, ["check", str(path)])
+    assert any(line.split()[0] == "gaps" and words in line for line in checked.output.splitlines())
+    assert words in CliRunner().invoke(main, ["limit", str(path)]).output
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.7, 0.999, 1.001, 1.5])
+@pytest.mark.parametrize("small", [False, True])
+def test_what_holds_up_a_block_is_what_closes(share, small):
+    """Checks and solver have one rule, whatever other blocks there are: a block that hovers is refused or closes."""
+    case = tables(GROUND, block("hovers", rectangle(0.0, share * 2.5e-3, 1.5, 2.0 + share * 2.5e-3)))
+    if small:
+        case["block"].append(block("small", rectangle(3.0, 0.0, 3.05, 0.05)))
+    made = assembly(scene(case).case)
+    refused = problems(scene(case).case, made.model, made.blocks)
+    moving = why_moving(scene(case).case, made.model)
+    assert bool(refused) == (share > 1.0)
+    assert (moving is None) == (share > 1.0)
+    found = gaps_of_start(made.model)
+    assert found.widths == pytest.approx([share * 2.5e-3])
+    assert found.close.tolist() == [share <= 1.0]
+
+
+def test_gaps_that_are_named_and_gaps_that_are_not():
+    """Blocks side by side 10 mm apart are; 60 mm apart (5 % of a metre is named), touching, or under an angle, not."""
+    box = rectangle(0.0, 0.0, 0.8, 0.6)  # 1 m across
+    leaning = [[0.81, 0.0], [1.6, 0.0], [1.6, 0.6], [0.95, 0.6]]
+    for corners, widths in (
+        (rectangle(0.81, 0.0, 1.61, 0.6), [0.01]),
+        (rectangle(0.86, 0.0, 1.66, 0.6), []),
+        (rectangle(0.8, 0.0, 1.6, 0.6), []),
+        (leaning, []),
+    ):
+        model = scene(tables(GROUND, block("a", box), block("b", corners))).model
+        assert gaps_of_start(model).widths == pytest.approx(widths)

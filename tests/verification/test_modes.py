@@ -59,6 +59,7 @@ STONES = {
     "slender": (SLENDER,),
     "narrower above": STACK,
     "corner on corner": (block("a", rectangle(0, 0, 0.5, 1)), block("b", rectangle(0, 1, 0.5, 2))),
+    "2.5 mm off": (block("a", rectangle(0, 0, 0.5, 1)), block("b", rectangle(0.0025, 1, 0.5025, 2))),
 }
 
 

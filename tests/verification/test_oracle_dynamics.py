@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracle import bouncing, housner, newmark_slider, two_blocks
+from oracle import bouncing, housner, newmark_slider, rocking_frame, two_blocks
 from oracle.base_motion import Record, Sine, pulse, rectangle
 from oracle.housner import Block
 from reference import result
 from scipy.integrate import quad, solve_ivp
+from scipy.linalg import block_diag
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkinc
 
@@ -281,6 +282,62 @@ class TestTwoBlocks:
         mass = np.column_stack([momentum(q, e) for e in unit])
         drift = (momentum(q + h * v, v) - momentum(q - h * v, v)) / (2 * h)
         assert stack.accelerations(y) == pytest.approx(np.linalg.solve(mass, force - drift), rel=1e-5)
+
+
+@pytest.mark.parametrize("beam", [0.0, 0.4, 3.0])
+@pytest.mark.parametrize("aspect", [2.0, 6.9])
+class TestRockingFrame:
+    """Two columns and a beam as three bodies, without the formulas of the frame."""
+
+    def test_motion(self, aspect, beam):
+        """Kinetic energy is ½ M θ'², M = Σ m |∂r/∂θ|² + I, and what drives it Σ −m (g, a)·∂r/∂θ."""
+        column, a, start = Block(0.3, 0.3 * aspect), 0.7, 0.3
+        arms = [((0.5, 0.5), 1.0), ((0.5, 0.5), 1.0), ((1.0, 1.0), 2.0 * beam)]  # from the corner it stands on; mass
+        size = np.array([column.width, column.height])
+
+        def pull(_, y):
+            inertia, force = 2.0 * (size @ size) / 12.0, 0.0
+            for share, mass in arms:
+                x, z = np.array(share) * size
+                rise, shift = np.cos(y[0]) * x - np.sin(y[0]) * z, -np.sin(y[0]) * x - np.cos(y[0]) * z
+                inertia += mass * (x * x + z * z)
+                force -= mass * (column.gravity * rise + a * shift)
+            return [y[1], force / inertia]
+
+        body = rocking_frame.equivalent(column, beam)
+        angle, time = start * column.alpha, 0.3 / body.p
+        exact = solve_ivp(pull, (0.0, time), [angle, 0.0], rtol=1e-12, atol=1e-14).y[0, -1]
+        found = housner.rock(body, rectangle(a, 1.0), time, angle=angle)
+        assert exact > 0.0
+        assert found.angles[-1] == pytest.approx(exact, rel=1e-9)
+
+    def test_restitution(self, aspect, beam):
+        """Impulses at the two new pivots and at the two new places under the beam, all unknown, stop these points."""
+        b, h = 0.3, 0.3 * aspect
+        found = landed(b, h, max(beam, 1e-12))
+        assert found[2] == pytest.approx(rocking_frame.restitution(Block(b, h), beam), rel=1e-9)
+        assert found[5] == pytest.approx(found[2], rel=1e-9)
+        assert found[8] == pytest.approx(0.0, abs=1e-9)  # the beam does not turn
+
+
+def landed(b: float, h: float, beam: float) -> np.ndarray:
+    """Velocities (x, z, turn) of two columns of mass 1, 2 m apart, and of a beam of 2 `beam`, which turned about the
+    lower left corners of the columns at 1 rad/s, after landing on the right ones: pivots do not move.
+    """
+
+    def cross(arm):
+        return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]])  # velocity of a point: (x, z, turn) of its body
+
+    masses = [np.diag([1.0, 1.0, (b * b + h * h) / 12.0])] * 2 + [2.0 * beam * np.diag([1.0, 1.0, 1.0])]
+    before = np.concatenate([[-0.5 * h, 0.5 * b, 1.0]] * 2 + [[-h, b, 0.0]])
+    held = np.zeros((8, 9))  # velocities of the four places: pivots, then beam against columns
+    for k in (0, 1):
+        held[2 * k : 2 * k + 2, 3 * k : 3 * k + 3] = cross([0.5 * b, -0.5 * h])
+        held[4 + 2 * k : 6 + 2 * k, 3 * k : 3 * k + 3] = -cross([-0.5 * b, 0.5 * h])
+        held[4 + 2 * k : 6 + 2 * k, 6:] = cross([2.0 * k - 1.0, -0.1])
+    mass = block_diag(*masses)
+    system = np.block([[mass, -held.T], [held, np.zeros((8, 8))]])
+    return np.linalg.solve(system, np.concatenate([mass @ before, np.zeros(8)]))[:9]
 
 
 def quarter(block: Block, share: float) -> float:

@@ -11,7 +11,7 @@ from casefiles import CASES
 from oracle.housner import Block, rock
 from oracle.two_blocks import Rectangle
 from oracle.two_blocks import rock as rock_two
-from studies.rocking import ensembles, free_rocking, overturning, single_block, sliding
+from studies.rocking import defaults, ensembles, free_rocking, overturning, single_block, sliding
 
 CASE_FILES = CASES / "verification"
 
@@ -24,6 +24,25 @@ def test_free_rocking(aspect):
     assert abs(found["times"]) < 0.01
     assert abs(found["impacts"]) < 0.01
     assert found["swings"] >= 4
+
+
+@pytest.mark.parametrize("kind", defaults.KINDS)
+def test_auto_joints_are_stiff_enough(kind):
+    """Two of each kind, well-conditioned: peaks within 2 %, and no run doubts itself; docs/rocking.md has 30."""
+    for case in defaults.drawn(kind, 2, first=500):
+        found = single_block.solve(defaults.tables(case))
+        assert abs(defaults.error(case, found)) < 0.02, case
+        assert found.summary["warnings"] == []
+
+
+def test_slender_block_that_hardly_lifts_off():
+    """h/b 6.9, 1.19 g tan α: 0.12 α on joints of kn h/W = 1e5. A pulse 0.1 % stronger changes the peak by 1.4 %."""
+    case = defaults.slender_block()
+    assert case.peaks()[0] == pytest.approx(0.6808, abs=1e-4)
+    assert 0.01 < case.change() < 0.02
+    found = single_block.solve(defaults.tables(case))
+    assert abs(defaults.error(case, found)) < 0.02
+    assert defaults.error(case, single_block.solve(defaults.tables(case), settings=defaults.at(np.inf))) < -0.5
 
 
 @pytest.mark.parametrize("aspect", free_rocking.ASPECTS)

@@ -12,30 +12,14 @@ from typing import Any, TextIO
 
 from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.cli.words.modes import mode_rows
-from dem_cli.cli.words.reference import reference_rows
+from dem_cli.cli.words.numbers import load_text, metres, seconds
 from dem_cli.cli.words.safety import safety_rows
+from dem_cli.cli.words.sureness import sureness_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
 _LINE_EVERY = 10.0  # s
 _COMPILING = "compiling"
-
-
-def metres(value: float) -> str:
-    """A length with a readable unit: 1.2e-05 -> "12 µm"."""
-    for scale, unit in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
-        if abs(value) >= scale or unit == "µm":
-            return f"{value / scale:.3g} {unit}"
-    raise AssertionError("unreachable")
-
-
-def seconds(value: float) -> str:
-    """A duration as people say it."""
-    if value < 0.995:
-        return f"{1000 * value:.0f} ms"
-    if value < 120:
-        return f"{value:.1f} s" if value < 10 else f"{value:.0f} s"
-    return f"{value / 60:.0f} min" if value < 7200 else f"{value / 3600:.1f} h"
 
 
 class Progress:
@@ -113,7 +97,6 @@ def _new_bar(stream: TextIO) -> Any:
 
 MOST_PEAKS = 8  # of monitors, a line each
 MOST_TURNS = 6  # of a load path, in one line
-STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
 
 
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
@@ -129,7 +112,7 @@ def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each line of an answer of any kind, without warnings."""
     rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
     rows += safety_rows(summary)
-    return [*rows, *_sureness_rows(summary), *_cost_rows(summary)]
+    return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -138,19 +121,26 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("status", str(summary["status"])))
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
-        between = f"  (between {_load(bracket[0])} and {_load(bracket[1])})" if bracket and None not in bracket else ""
-        rows.append(("failure load", f"{_load(load)}{between}"))
+        between = (
+            f"  (between {load_text(bracket[0])} and {load_text(bracket[1])})"
+            if bracket and None not in bracket
+            else ""
+        )
+        rows.append(("failure load", f"{load_text(load)}{between}"))
+    if summary.get("equilibrium_load") is not None:
+        bound = "" if bracket is None or bracket[1] is None else f"; not above {load_text(bracket[1])}"
+        rows.append(("equilibrium at", f"{load_text(summary['equilibrium_load'])}{bound}"))
     if summary.get("failure_mode"):
         rows.append(("failure mode", str(summary["failure_mode"])))
     if summary.get("onset_of_displacements") is not None:
-        rows.append(("first motion", f"{_load(summary['onset_of_displacements'])}, more than joints deform"))
+        rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:
-        text = ", ".join(f"{metres(turn['displacement'])} at {_load(turn['load'])}" for turn in turns[:MOST_TURNS])
+        text = ", ".join(f"{metres(turn['displacement'])} at {load_text(turn['load'])}" for turn in turns[:MOST_TURNS])
         rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")
     if reached:
-        where = f"{reached['time']:.4g} s" if "time" in reached else f"load {_load(reached['load'])}"
+        where = f"{reached['time']:.4g} s" if "time" in reached else f"load {load_text(reached['load'])}"
         where += f", displacement {metres(reached['displacement'])}"
         rows.append(("reached", f"{reached['stage']}, {where}"))
     return rows
@@ -183,31 +173,6 @@ def _measure(value: float | None, unit: str) -> str:
     return metres(value) if unit == "m" else f"{value:.3g} {unit}"
 
 
-def _load(value: float | None) -> str:
-    return "–" if value is None else f"{value:.4f}" if abs(value) < 100 else f"{value:.6g}"
-
-
-def _sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    rows = []
-    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
-    parts = []
-    if load and bracket and None not in bracket:
-        parts.append(f"±{50 * (bracket[1] - bracket[0]) / abs(load):.2g} %")
-    if summary.get("energy_closure") is not None:
-        parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
-    if parts:
-        rows.append(("how sure", ", ".join(parts)))
-    start = summary.get("start") or {}
-    if start.get("kind") in STARTS and start.get("load") is not None:
-        rows.append(("started from", f"{STARTS[start['kind']]} at {_load(start['load'])}, {seconds(start['seconds'])}"))
-    limits = summary.get("limit_analysis") or {}
-    known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
-    if known:
-        text = ", ".join(f"{_load(limits[key])} {key.replace('_', '-')}" for key in known)
-        rows.append(("limit analysis", text))
-    return rows + reference_rows(summary)
-
-
 def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     counts = [f"{summary[key]:,} {key}" for key in ("blocks", "joints", "steps") if summary.get(key) is not None]
     time_text = seconds(summary["solve_seconds"]) if summary.get("solve_seconds") is not None else ""
@@ -221,18 +186,18 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
     if limits["associated"] is not None:
         low, high = limits["associated_bounds"]
         how = f"between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
-        rows.append(("associated", f"{_load(limits['associated'])}  ({how})"))
+        rows.append(("associated", f"{load_text(limits['associated'])}  ({how})"))
     if limits.get("non_associated") is not None:
         how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
         final = limits.get("non_associated_final_load")
         if final is not None and final < 0.98 * limits["non_associated"]:
-            how = f"highest load of a path that drops to {_load(final)} then, {how}"
-        rows.append(("non-associated", f"{_load(limits['non_associated'])}  ({how})"))
+            how = f"highest load of a path that drops to {load_text(final)} then, {how}"
+        rows.append(("non-associated", f"{load_text(limits['non_associated'])}  ({how})"))
     if limits.get("non_associated_at_least") is not None:
         how = f"{limits['non_associated_status']}, {seconds(limits['non_associated_seconds'])}"
-        rows.append(("non-associated", f"at least {_load(limits['non_associated_at_least'])}  ({how})"))
+        rows.append(("non-associated", f"at least {load_text(limits['non_associated_at_least'])}  ({how})"))
     if limits.get("rigid_wall") is not None:
-        rows.append(("hand check", f"{_load(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
+        rows.append(("hand check", f"{load_text(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
     if limits["heads"] == "frictionless":
         rows.append(("head joints", "without friction"))
     rows += _cost_rows(summary)

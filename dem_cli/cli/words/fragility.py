@@ -26,8 +26,9 @@ def _study(summary: Mapping[str, Any]) -> Rows:
         sure = summary.get("confidence")
         text = f"{median:.4g} ({median * unit:.3g} m/s²), dispersion {summary['dispersion']:.2g}"
         if sure:
-            low, high = sure["median"]
+            (low, high), (least, most) = sure["median"], sure["dispersion"]
             text += f"; {100 * sure['level']:.0f} % confidence {low:.4g} to {high:.4g}"
+            text += f", of the dispersion {least:.2g} to {most:.2g}"
         rows.append(("median", text))
     found = [value for value in summary["collapse_intensities"] if value is not None]
     if found:

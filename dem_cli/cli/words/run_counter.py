@@ -8,7 +8,7 @@ from collections import deque
 from types import TracebackType
 from typing import Any, TextIO
 
-from dem_cli.cli.words.console import seconds
+from dem_cli.cli.words.numbers import seconds
 
 LINE_EVERY = 10.0  # s, where there is no terminal
 RECENT = 200  # runs from which the speed is taken

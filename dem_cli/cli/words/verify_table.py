@@ -10,7 +10,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from dem_cli.cli.words.console import seconds
+from dem_cli.cli.words.numbers import seconds
 from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.records import Record, on_shelves
 from dem_cli.verify.verdict_words import VERDICTS, allowed, judgement, off, share, shown

@@ -23,15 +23,10 @@ from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.output.record import Observer
 
-# Increments of the fine path: the first displacement and its growth, and the growth of the load that counts as none.
-# Shares of the growth (and folds to go round) where an increment fails are small as well.
-# Where joints slide in another order, another load is reached: increments must be small enough for it to settle.
-FINE_WAYS = ((0.25, 1.25), (0.2, 1.15), (0.3, 1.4))
-FINE_ATTEMPTS = ((1.0, 0), (0.92, 0), (0.84, 0), (1.0, 4), (0.92, 4), (1.3, 0), (1.3, 4), (2.0, 0))
-FINE = replace(
-    DEFAULT_LIMIT,
-    path=replace(DEFAULT_LIMIT.path, ways=FINE_WAYS, attempts=FINE_ATTEMPTS, slower=FINE_WAYS[0][1], plateau=1e-4),
-)
+# The fine path. Where joints slide in another order, another load is reached: increments must be small enough for it to
+# settle, and end only where the load grows next to nothing.
+FINE_GROWTH = 1.1
+FINE = replace(DEFAULT_LIMIT, path=replace(DEFAULT_LIMIT.path, growth=FINE_GROWTH, plateau=2e-4, most=10_000))
 
 
 @dataclass

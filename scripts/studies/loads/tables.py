@@ -7,7 +7,7 @@ from typing import Any
 
 from dem_cli.bench.table import percent
 from studies.loads.criteria import ABOVE, AGREES, error, problems
-from studies.loads.methods import FINE_WAYS, CaseLoads, MethodLoad
+from studies.loads.methods import FINE_GROWTH, CaseLoads, MethodLoad
 from studies.template import table as markdown
 
 # Why a case does not do what is demanded; what is listed here is known, not excused.
@@ -32,7 +32,7 @@ def values(table: Mapping[str, Any]) -> dict[str, Any]:
     wrong = [f"* `{row.name}`: {text}" for row in rows for text in problems(row)]
     wrong += [f"* `{name}`: {KNOWN[name]}" for name in KNOWN if any(row.name == name for row in rows)]
     return {
-        "growth": FINE_WAYS[0][1], "agrees": 100 * AGREES, "above": 100 * ABOVE,
+        "growth": FINE_GROWTH, "agrees": 100 * AGREES, "above": 100 * ABOVE,
         "loads": markdown(loads, map(loads_of, rows)), "times": markdown(times, map(times_of, rows)),
         "wrong": "\n".join(wrong or ["Nothing."]),
     }  # fmt: skip

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from studies.rocking import ensembles, free_rocking, overturning, sliding
+from studies.rocking import defaults, ensembles, free_rocking, overturning, sliding
 
 FINE = {"output": {"rate": 2000.0}}
 PAIRS = 240  # of a block and a record
-SOFT = 1e5  # kn h / W of "auto" joints in time histories
+SOFT = 1e5  # kn h / W, as "auto" joints of time histories have at least
 MARGINS = (0.5, 0.35, 0.25, 0.18, 0.125)
 ENERGY = {"none": {"none": True}, "0.35 of critical": {"contact_fraction": 0.35}, "housner": {"restitution": "housner"}}
 SEEDS = range(5)
@@ -54,5 +54,6 @@ PARTS: dict[str, Callable[[], Iterator[Any]]] = {
     "stacks": lambda: (sliding.stack(name, output={"rate": 5000.0}) for name in sliding.STACKS),
     "bounces": _bounces,
     "energy": _energy,
+    "defaults": defaults.rows,
     "pairs": lambda: iter(ensembles.compared(range(PAIRS))),
 }

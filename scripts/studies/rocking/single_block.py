@@ -12,6 +12,7 @@ from oracle.base_motion import Record
 from oracle.housner import Block
 
 from dem_cli.case.reader import LoadedCase
+from dem_cli.engine.settings import DEFAULT, Settings
 from studies import solution
 from studies.polygons import rectangle
 from studies.solution import from_file, from_tables
@@ -57,9 +58,9 @@ class Response(NamedTuple):
         return np.array(times), np.array(sizes)
 
 
-def solve(case: dict[str, Any], *overrides: str) -> Response:
+def solve(case: dict[str, Any], *overrides: str, settings: Settings = DEFAULT) -> Response:
     """Runs a case that is a table."""
-    return response(from_tables(case, *overrides))
+    return response(from_tables(case, *overrides), settings)
 
 
 def solve_file(path: Path, *overrides: str) -> Response:
@@ -67,9 +68,9 @@ def solve_file(path: Path, *overrides: str) -> Response:
     return response(from_file(path, *overrides))
 
 
-def response(loaded: LoadedCase) -> Response:
+def response(loaded: LoadedCase, settings: Settings = DEFAULT) -> Response:
     """Runs a case that was read."""
-    _, summary, seen = solution.solve(loaded)
+    _, summary, seen = solution.solve(loaded, settings)
     return Response(seen.times, seen.values, summary)
 
 

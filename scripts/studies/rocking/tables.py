@@ -9,7 +9,7 @@ import numpy as np
 from oracle.housner import Block
 
 from dem_cli.bench.table import percent
-from studies.rocking import ensembles, free_rocking, overturning
+from studies.rocking import defaults, ensembles, free_rocking, overturning
 from studies.template import minus
 from studies.template import table as markdown
 
@@ -26,6 +26,7 @@ def values(table: Mapping[str, Any]) -> dict[str, Any]:
         "count": len(errors), "missed": len(errors) - len(found), "worst": percent(max(found)).lstrip("+"),
         "bounds": _bounds(table["bounds"]), "pairs": _pairs(table["pairs"]), "slides": _slides(table["slides"]),
         "stacks": _stacks(table["stacks"]), "bounces": _bounces(table["bounces"]), "energy": _energy(table["energy"]),
+        **_defaults(table["defaults"]),
     }  # fmt: skip
 
 
@@ -83,6 +84,37 @@ def _pairs(rows: Sequence[Row]) -> str:
             percent(said["median_size"]).lstrip("+"), "{} of {}".format(*said["higher"]), f"{said['signs']:.2f}",
         ))  # fmt: skip
     return markdown(head, cells)
+
+
+def _defaults(rows: Sequence[Row]) -> dict[str, Any]:
+    """Table of drawn cases; the worst errors among them, and the block that is none of them."""
+    drawn = [row for row in rows if row["kind"] in defaults.KINDS]
+    names = {name: f"ε = {name}" for name in defaults.TURNS} | {"before": "kn h/W = 1e5", "default": "default"}
+    head = ("", "h/b", "height", "beam", "moved by", "swings", "largest peak", "changes by", *names.values(),
+            "steps: kn h/W = 1e5, default", "moves on softer joints")  # fmt: skip
+    cells = [
+        (row["kind"], f"{row['aspect']:.1f}", f"{row['height']:.2f} m", f"{row['beam']:.2f}" if row["beam"] else "–",
+         _drive(row), str(row["swings"]), f"{row['peak']:.3f} α", percent(row["change"]).lstrip("+"),
+         *(percent(row["errors"][name]) for name in names), f"{row['steps']['before']:,}, {row['steps']['default']:,}",
+         "–" if row["tilt"] else percent(row["moved"]).lstrip("+"))
+        for row in drawn
+    ]  # fmt: skip
+    errors = [percent(max(abs(row["errors"][name]) for row in drawn)).lstrip("+") for name in names]
+    worst = (*[""] * 7, "**worst**", *errors, "", "")
+    slender = next(row for row in rows if row["kind"] == "slender")
+    return {
+        "defaults": markdown(head, [*cells, worst]),
+        "slender": {"peak": slender["peak"], "change": percent(slender["change"]).lstrip("+")}
+        | {name: percent(found) for name, found in slender["errors"].items()}
+        | {"moved": percent(slender["moved"]).lstrip("+")},
+        "more": f"{sum(r['steps']['default'] for r in drawn) / sum(r['steps']['before'] for r in drawn):.0f}",
+    }
+
+
+def _drive(row: Row) -> str:
+    if row["tilt"]:
+        return f"tilt of {row['tilt']:.2f} α"
+    return f"{row['shape']}, {row['strength']:.2f} g tan α, ω/p = {row['speed']:.1f}"
 
 
 def _slides(rows: Sequence[Row]) -> str:

@@ -18,9 +18,10 @@ progress, remarks and errors go to stderr. Exit codes are the same everywhere:
 | code | means |
 | --- | --- |
 | 0 | solved, done, all within tolerance |
-| 1 | solved, but outside a `[reference]`; or some runs of many failed |
+| 1 | solved, but outside a `[reference]`, or it does not stand and none expects that; or some runs of many failed |
 | 2 | a wrong case file or wrong arguments; nothing was run |
-| 3 | the solver gave up; it says why, and what it has is kept |
+| 3 | the solver gave up, or memory or disk did; it says why, and what it has is kept |
+| 70 | a fault of the program; a file to send, with traceback and case, is left (`DEM_TRACEBACK=1` shows it too) |
 | 130 | interrupted; what is finished is kept |
 
 Made from the program itself by `scripts/docs --write`; do not edit.

@@ -16,6 +16,7 @@ from typing import Any
 
 from studies import storage
 from studies.stress import invariance, proportions, shaking, steady_state, stiffness, tables
+from studies.stress.random_structures import page as random_structures
 from studies.stress.verdicts import WRONG, StressRecord
 from studies.study import StudyRunner
 from studies.template import filled
@@ -95,7 +96,7 @@ class StressStudy(StudyRunner):
         said = {name: (axis.__doc__ or "").strip() for name, axis in self.sections.items()}
         about = {one.axis: said[name] for name, found in records.items() for one in found}
         every = [record for found in records.values() for record in found]
-        return filled("stress/page.md.j2", **tables.values(every, about))
+        return filled("stress/page.md.j2", **tables.values(every, about)) + random_structures.section()
 
 
 def records_of(rows: Any) -> list[StressRecord]:

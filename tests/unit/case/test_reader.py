@@ -52,9 +52,11 @@ def test_doubts(case_file):
     text = WALL.replace("2000.0", "2.0").replace("0.6", "31.0")
     loaded = load_case(case_file("gravity = 981.0\n" + text))
     assert list(loaded.warnings) == [
-        "case.toml:3:11: materials.stone.density: 2 kg/m3 is unusual for a building material, did you mean 2000?",
-        "case.toml:5:12: joints.dry.friction: 31 is unusual for tan(phi); an angle is given as friction_angle_deg",
-        "case.toml:1:11: gravity: 981 m/s2 is unusual; on Earth it is 9.81",
+        "case.toml:3:11: materials.stone.density: 2 kg/m3 is unusual for a building material, "
+        "did you mean 2000 (2 g/cm3)?",
+        "case.toml:5:12: joints.dry.friction: 31 is unusual for tan(phi), phi = 88.2 deg; "
+        "an angle is given as friction_angle_deg",
+        "case.toml:1:11: gravity: 981 m/s2 is unusual for gravity (9.81 on Earth), did you mean 9.81 (981 cm/s2)?",
     ]
 
 
@@ -127,3 +129,25 @@ def test_thousands_of_blocks_are_read_quickly(case_file):
     case = load_case(case_file(WALL + blocks)).case
     assert len(case.block) == 3000
     assert time.process_time() - start < 3.0
+
+
+ENDLESS = ["x = " + 5000 * "[" + 5000 * "]", "x" + 3000 * ".x" + " = 1", "x = " + 900 * "{a=" + 900 * "}"]
+
+
+@pytest.mark.parametrize("text", ENDLESS, ids=["lists", "keys", "tables"])
+def test_nesting_without_end(text, case_file):
+    with pytest.raises(CaseError, match=r"case.toml:1:1: not valid TOML: lists or tables are nested too deeply"):
+        load_case(case_file(f"{text}\n{WALL}"))
+
+
+def test_digits_without_end(case_file):
+    with pytest.raises(CaseError, match=r"case.toml:1:1: not valid TOML: a number has too many digits"):
+        load_case(case_file(f"seed = {5000 * '1'}\n{WALL}"))
+    with pytest.raises(CaseError, match=r"seed: a number of so many digits is not allowed; numbers are at most 1e\+30"):
+        load_case(case_file(f"seed = {4000 * '1'}\n{WALL}"))
+
+
+@pytest.mark.parametrize("value", ["1" * 5000, "[" * 3000 + "]" * 3000], ids=["digits", "lists"])
+def test_overrides_without_end(value, case_file):
+    with pytest.raises(CaseError, match=r"--set gravity: .* is not allowed; must be a number"):
+        load_case(case_file(WALL), [f"gravity={value}"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from dem_cli.ensembles.lognormal import bootstrap, fit
+from dem_cli.ensembles.lognormal import fit
 
 
 def bounds(seed: int, step: float = 0.05, n: int = 20, dispersion: float = 0.15):
@@ -45,14 +45,3 @@ def test_nothing_fell_or_all_fell_at_once_says_nothing():
 def test_never_collapsed_records_raise_the_median():
     lower, upper = bounds(1)
     assert fit(np.append(lower, [2.0] * 10), np.append(upper, [np.inf] * 10)).median > fit(lower, upper).median
-
-
-def test_a_band_is_the_same_for_the_same_seed_and_narrower_with_more_records():
-    at = np.array([1.2, 1.3])
-    few, many = bounds(2, n=10), bounds(2, n=160)
-    bands = [bootstrap(lower[:, None], upper[:, None], at, 0.9, 7, 60) for lower, upper in (few, few, many)]
-    assert np.array_equal(bands[0].low, bands[1].low)
-    widths = [band.median[1] - band.median[0] for band in bands[1:]]
-    assert widths[1] < 0.5 * widths[0]
-    assert bands[2].median[0] < 1.3 < bands[2].median[1]
-    assert (bands[2].low < bands[2].high).all()

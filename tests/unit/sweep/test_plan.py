@@ -75,6 +75,8 @@ def test_a_bundle_changes_several_keys_and_is_combined_over_its_names():
     chosen = values(bundle=bundles, run=[{"brick": "big"}])
     assert chosen == [{"brick": "big"}]
     assert "did you mean 'small'" in problem(bundle=bundles, run=[{"brick": "smal"}])
+    for nested in ({"x": 1}, [["small"]]):  # no name can be one
+        assert "unknown bundle" in problem(bundle=bundles, run=[{"brick": nested}])
 
 
 @settings(deadline=None)  # the first one imports scipy

@@ -1,0 +1,80 @@
+"""Check of joint stiffness in a time history: the same run on softer joints, and how far its peaks move.
+
+Only joints of "auto" stiffness are the program's choice, and only these are checked. What elastic joints change shrinks
+with their compliance: peaks that hold on joints ten times as soft hold on stiffer ones all the more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.dynamics.rocking_stiffness import RockingStiffness
+from dem_cli.engine.settings import Settings
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
+from dem_cli.ensembles.variants import Variant
+
+if TYPE_CHECKING:
+    from dem_cli.dynamics.history import TimeHistory
+    from dem_cli.engine.job import Job
+    from dem_cli.motion.motion import Motion
+
+MOST_LISTED = 3  # monitors that a warning names
+WHY = (
+    "such motion hangs on chance (repeats = 20 shows its share) or on the stiffness of the joints, which only a given "
+    "kn says"
+)
+
+
+def checked(
+    history: TimeHistory, motions: Sequence[Motion], chosen: RockingStiffness, collapsed: bool, settings: Settings
+) -> dict[str, Any]:
+    """Keys of the summary about a run on "auto" joints; what is to be doubted goes to the warnings of its job.
+
+    settings: those without the choice.
+    """
+    job, rocking = history.job, settings.rocking
+    found: dict[str, Any] = {"joint_stiffness": chosen.ratio, "elastic_turn": chosen.turn, "softer_joints_move": None}
+    softer = chosen.softer(rocking.softer)
+    if chosen.turn > rocking.doubtful:
+        job.warnings.append(chosen.doubt)
+    elif softer.work > rocking.work:
+        job.skipped.append("a second run on softer joints: too long")
+    else:
+        run = _run(job, motions, softer.applied(settings))
+        factor = f"on joints {rocking.softer:g} times as soft"
+        if run is None or run.collapsed is None:
+            job.skipped.append(f"a second run {factor}: {'it does not stand' if run is None else run.how}")
+        elif run.collapsed != collapsed:
+            job.warnings.append(f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}")
+        elif not collapsed:
+            moved = change(history.peaks, np.array(run.peaks))
+            found["softer_joints_move"] = float(moved.max()) if len(moved) else None
+            job.warnings += _doubts(job, factor, moved, rocking.moved)
+    return found
+
+
+def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """How far peaks differ, over the larger of both; 0 where there is none."""
+    larger = np.maximum(one, other)
+    return np.abs(other - one) / np.where(larger > 0.0, larger, 1.0)
+
+
+def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
+    """The same structure under the same motion; None where it does not stand."""
+    same = Variant(job.case, job.model, 0, settings.statistics.largest_draw)
+    rested = RestedStructure(same, motions, ProgressOnly(job.clock), settings)
+    return rested.shaken(motions) if rested.stands else None
+
+
+def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> list[str]:
+    """Peaks that moved by more than allowed, the worst first, in one sentence."""
+    worst = [i for i in np.argsort(-moved, kind="stable") if moved[i] > allowed]
+    if not worst:
+        return []
+    monitors = job.case.monitor
+    names = [f"{monitors[i].quantity} of '{monitors[i].place}' by {moved[i]:.1%}" for i in worst[:MOST_LISTED]]
+    more = f" and {len(worst) - MOST_LISTED} more" if len(worst) > MOST_LISTED else ""
+    return [f"{factor} peaks move, {', '.join(names)}{more}: {WHY}"]

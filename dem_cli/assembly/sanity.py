@@ -1,0 +1,112 @@
+"""Sanity of an assembled case: loads off their block or on fixed ones, joints too soft to stand on, units of sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.assembly.assemble import joint_table
+from dem_cli.case.plausibility import BlockSizes, size_doubts
+from dem_cli.case.wording import show
+from dem_cli.errors import CaseProblem
+from dem_cli.geometry.rotation import cross
+from dem_cli.model.blocks import Block
+from dem_cli.model.model import Model
+from dem_cli.model.places import undeformed
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
+SINKS = 0.5  # of the smallest edge: a block that is so far in another one is about to come out on its other side
+STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
+
+
+def problems(case: Case, model: Model) -> list[CaseProblem]:
+    """What can only be a mistake: point loads far outside the structure, joints that cannot carry it."""
+    return [*_far_loads(case, model), *_soft_joints(case, model)]
+
+
+def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
+    """What may be meant, and most often is not; `blocks` in the order of the model."""
+    return [*size_doubts(_sizes(model, blocks)), *_odd_loads(case, model)]
+
+
+def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
+    free = np.flatnonzero(~model.fixed).tolist()
+    corners = undeformed(model)[np.isin(model.vertex_blocks, free)]
+    sizes = np.sqrt(model.shapes.volumes[free])
+    return BlockSizes(
+        [model.block_ids[i] for i in free],
+        [blocks[i].path for i in free],
+        sizes.tolist(),
+        model.thickness[free].tolist(),
+        float(np.median(sizes)) if len(free) else 0.0,
+        float(np.hypot(*np.ptp(corners, axis=0))) if len(free) else 0.0,
+    )
+
+
+def _odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Loads on blocks that cannot move, and at points outside of their block."""
+    for i, load in enumerate(case.load):
+        block = model.numbers[load.block]
+        if model.fixed[block]:
+            message = f"block {show(load.block)} is fixed: a load on it changes nothing"
+            yield CaseProblem(("load", i, "block"), message)
+        elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[block]:
+            message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}: an arm that turns it"
+            yield CaseProblem(("load", i, "at"), message)
+
+
+def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Loads at points further from their block than the structure is large."""
+    low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
+    for i, load in enumerate(case.load):
+        away = _away(case, model, i)
+        if away > np.hypot(*(high - low)):
+            message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}; "
+            message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
+            yield CaseProblem(("load", i, "at"), message)
+
+
+def _away(case: Case, model: Model, i: int) -> float:
+    """How far a load acts from its block [m]; 0 on it and within."""
+    load = case.load[i]
+    if load.at is None:
+        return 0.0
+    topology, number = model.topology, model.numbers[load.block]
+    own = model.part_blocks[topology.face_parts] == number
+    start, end = undeformed(model)[topology.ends[own]].swapaxes(0, 1)
+    along, to_point = end - start, np.array(load.at) - start
+    share = np.clip((to_point * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    distance = np.hypot(*(to_point - share[:, None] * along).T)
+    outside = cross(along, to_point) < 0.0
+    parts = topology.face_parts[own]
+    within = any(not outside[parts == part].any() for part in np.unique(parts))
+    return 0.0 if within else float(distance.min())
+
+
+def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Joints of a given kn on which the blocks that have them sink too far under their own weight.
+
+    A lower estimate: their whole weight on joints as long as they are wide together, in median smallest edges.
+    """
+    names, by_material = joint_table(case)
+    corners = undeformed(model)
+    for k, name in enumerate(names):
+        kn = case.joints[name].kn
+        having = (by_material == k).any(axis=1)[model.block_material] & ~model.fixed
+        if kn == "auto" or not having.any():
+            continue
+        width = float(np.ptp(corners[having[model.vertex_blocks], 0]))
+        weight = float(np.hypot(*model.dead_loads[having, :2].sum(axis=0)))
+        edge = float(np.median(model.shapes.edges[having]))
+        sinks = weight / (width * float(model.thickness[having].mean()) * kn)
+        if sinks > SINKS * edge:
+            units = [unit for unit, factor in STIFFNESS_UNITS.items() if sinks <= 0.01 * SINKS * edge * factor]
+            hint = f"; did you mean {show(kn)} {' or '.join(units)}?" if units else ""
+            message = f"{show(kn)} Pa/m is too soft: blocks would sink {sinks:.3g} m into each other under their own "
+            message += f"weight, {sinks / edge:.2g} smallest edges (at most {SINKS:g}){hint}"
+            yield CaseProblem(("joints", name, "kn"), message)

@@ -1,0 +1,50 @@
+"""How sure a failure load is, in words: bracket, second histories, bound by limit analysis, energy, reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from dem_cli.cli.words.numbers import load_text, seconds
+from dem_cli.cli.words.reference import reference_rows
+
+STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
+
+
+def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of each line on how an answer was reached and how well it is known."""
+    rows = []
+    parts = _of_load(summary)
+    if summary.get("energy_closure") is not None:
+        parts.append(f"energy closes to {abs(summary['energy_closure']):.1g}")
+    if parts:
+        rows.append(("how sure", ", ".join(parts)))
+    start = summary.get("start") or {}
+    if start.get("kind") in STARTS and start.get("load") is not None:
+        rows.append(
+            ("started from", f"{STARTS[start['kind']]} at {load_text(start['load'])}, {seconds(start['seconds'])}")
+        )
+    limits = summary.get("limit_analysis") or {}
+    known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
+    if known:
+        text = ", ".join(f"{load_text(limits[key])} {key.replace('_', '-')}" for key in known)
+        rows.append(("limit analysis", text))
+    return rows + reference_rows(summary)
+
+
+def _of_load(summary: Mapping[str, Any]) -> list[str]:
+    """What the bracket says, and what other methods say beside it."""
+    load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
+    if not load or not bracket or None in bracket:
+        return []
+    within = f"±{50 * (bracket[1] - bracket[0]) / abs(load):.2g} %"
+    spread = summary.get("load_range")
+    if spread:
+        between = f"histories from {load_text(spread['lowest'])} to {load_text(spread['highest'])}"
+        return [f"{within} under this history", between]
+    if summary.get("unique"):
+        return [within, "no other load is possible"]
+    others = (summary.get("histories") or [])[1:]
+    if any(history["finished"] for history in others):
+        return [within, "a second history agrees"]
+    return [f"{within} under this history"]

@@ -1,0 +1,82 @@
+"""Gaps of the start: which of them close like joints and which stay open; one rule for checks, solvers and messages.
+
+A gap of at most CLOSING_GAP of the smaller part is a joint that has yet to close: what lies over it is held up, and on
+the way to failure geometry moves. A wider one is meant to be there: nothing rests on it, and where the geometry of the
+start is kept it stays open. Up to NOTICED_GAP a run says so, with the blocks and the width.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from dem_cli.contact.detect import find_joints
+from dem_cli.contact.edges import edges_of, overlap_lengths
+from dem_cli.contact.joints import Faces
+from dem_cli.contact.start import TOUCHING_GAP
+from dem_cli.geometry.rotation import cross
+from dem_cli.model.model import Model
+from dem_cli.model.places import undeformed
+from dem_cli.model.scales import smallest_edge
+
+CLOSING_GAP = 1e-3  # of the size of the smaller part
+NOTICED_GAP = 0.05  # of the same: wider ones are no joints that anybody forgot to close
+STEEPEST = 0.1  # sine of the angle between faces that look at each other
+
+
+class StartGaps(NamedTuple):
+    """Pairs of blocks that face each other across a gap, the narrowest first."""
+
+    blocks: np.ndarray  # (n, 2)
+    widths: np.ndarray  # where they are nearest [m], negative: overlap, (n,)
+    close: np.ndarray  # whether the gap closes like a joint, (n,) bool
+
+    def where(self, kept: np.ndarray) -> Self:
+        """Those of a mask (n,) bool."""
+        return type(self)(*(field[kept] for field in self))
+
+
+def joined(separation: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Whether parts touch, or have a gap that closes like a joint, (n,) bool.
+
+    separation: of two parts [m], (n,); sizes: of the smaller one [m], (n,).
+    """
+    return separation <= CLOSING_GAP * sizes
+
+
+def joint_reach(model: Model) -> float:
+    """Distance within which all parts are that `joined` may say yes to [m]."""
+    free = ~model.fixed[model.part_blocks]
+    return CLOSING_GAP * float((model.parts.sizes[free] if free.any() else model.parts.sizes).max())
+
+
+def gaps_of_start(model: Model) -> StartGaps:
+    """The gaps of the undeformed structure that close, and those that are narrow enough to be named."""
+    sizes, corners = model.parts.sizes, undeformed(model)
+    typical = float(np.median(sizes[~model.fixed[model.part_blocks]])) if not model.fixed.all() else 0.0
+    faces = find_joints(model, corners, max(joint_reach(model), NOTICED_GAP * typical))
+    scale = sizes[faces.parts].min(axis=1)
+    apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)
+    close = joined(faces.separation, scale)
+    kept = apart & (close | _facing(model, faces, corners, scale) & (faces.separation <= NOTICED_GAP * scale))
+    blocks, widths, close = model.part_blocks[faces.parts[kept]], faces.separation[kept], close[kept]
+    order = np.argsort(widths, kind="stable")
+    _, first = np.unique(np.sort(blocks[order], axis=1), axis=0, return_index=True)
+    nearest = order[np.sort(first)]  # one for each two blocks
+    return StartGaps(blocks[nearest], widths[nearest], close[nearest])
+
+
+def _facing(model: Model, faces: Faces, corners: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Faces that look at each other over a length, nearly parallel, (n,) bool; 2D. scale: sizes of the parts [m]."""
+    edges = edges_of(model, faces)
+    along, across = corners[edges[:, 1]] - corners[edges[:, 0]], corners[edges[:, 3]] - corners[edges[:, 2]]
+    parallel = np.abs(cross(along, across)) <= STEEPEST * np.hypot(*along.T) * np.hypot(*across.T)
+    return parallel & (overlap_lengths(edges, corners) > CLOSING_GAP * scale)
+
+
+def gap_words(model: Model, gaps: StartGaps) -> str:
+    """How many gaps, and the narrowest with its blocks: "a gap of 0.002 m between 'post' and 'beam'"."""
+    a, b = (model.block_ids[i] for i in gaps.blocks[0])
+    between = f"{gaps.widths[0]:.3g} m between '{a}' and '{b}'"
+    return f"a gap of {between}" if len(gaps.widths) == 1 else f"{len(gaps.widths)} gaps, the narrowest {between}"

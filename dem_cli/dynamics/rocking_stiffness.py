@@ -1,0 +1,156 @@
+"""Stiffness of "auto" joints in time histories: so stiff that blocks rock as rigid ones, within a budget of steps.
+
+What elastic joints change of rocking goes with one number: the angle ε [rad] by which blocks turn on them when their
+weight acts sideways. For one block of b × h it is 2 ρ g (h/b)²/kn, which is also the rotation at which it lifts off
+over the angle at which it falls, (p/ω)² of rocking and elastic frequency, and one over the factor of buckling under
+its own weight. Columns of many drums, frames and pinnacles on walls have theirs: one linear solution finds it.
+docs/rocking.md, Default settings, has the errors.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.frequencies import System, highest_of, springs_of
+from dem_cli.engine.properties import joint_properties
+from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.engine.viscous import element_numbers
+from dem_cli.kernels.records import Joints
+from dem_cli.model.model import Model
+from dem_cli.model.scales import mean_weight, origin_of, own_weights, smallest_edge
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+
+class RockingStiffness(NamedTuple):
+    """What was chosen for "auto" joints, and why."""
+
+    ratio: float  # kn·h/W
+    turn: float  # ε, by which blocks turn under their weight sideways [rad]; 0 where nothing is "auto"
+    work: float  # steps of one run times what each costs, in contact points
+    automatic: bool  # False: all stiffnesses are given
+
+    def softer(self, factor: float) -> RockingStiffness:
+        """The same on softer joints."""
+        return RockingStiffness(self.ratio / factor, self.turn * factor, self.work / math.sqrt(factor), self.automatic)
+
+    def applied(self, settings: Settings) -> Settings:
+        """Settings with which "auto" joints have it."""
+        return replace(settings, stiffness=replace(settings.stiffness, dynamics=self.ratio))
+
+    @property
+    def doubt(self) -> str:
+        """Words for joints that had to stay too soft."""
+        return (
+            f"joints are softer than rocking asks for: blocks turn by {self.turn:.1g} rad when their weight acts "
+            "sideways, and peaks may be off by more than 2 %; stiffer joints would take too many steps, or digits"
+        )
+
+
+def rocking_stiffness(
+    case: Case, model: Model, duration: float, many: bool = False, settings: Settings = DEFAULT
+) -> RockingStiffness:
+    """The softest joints on which blocks turn by no more than wanted; softer where a run of `duration` [s] on these
+    would take too many steps, but never softer than settings.stiffness.dynamics.
+
+    many: it is one of an ensemble, in which steps count for more and records differ by more.
+    """
+    softest, rocking = settings.stiffness.dynamics, settings.rocking
+    automatic = [table.kn == "auto" for table in case.joints.values()]
+    if not any(automatic) or model.fixed.all():
+        return RockingStiffness(softest, 0.0, 0.0, any(automatic))
+    joints, mine = _joints(case, model, softest, np.array(automatic))
+    if not len(joints.kn):
+        return RockingStiffness(softest, 0.0, 0.0, True)
+    turn = turn_sideways(model, _rigid(joints, ~mine), settings)
+    work, step = _work(case, model, joints, duration, settings)
+    wanted = turn / (rocking.turn_of_many if many else rocking.turn)
+    most = rocking.work_of_many if many else rocking.work
+    shortest = max(case.analysis.time_step or 0.0, duration / (rocking.share * case.analysis.max_steps))
+    seen = rocking.round_off / _round_off(model, joints)
+    affordable = min((most / work) ** 2, (step / shortest) ** 2, seen) if work else 1.0
+    factor = max(1.0, min(wanted, affordable))
+    return RockingStiffness(factor * softest, turn / factor, work * math.sqrt(factor), True)
+
+
+def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) -> float:
+    """Largest rotation of a block [rad] when all dead forces are turned to the side; to first order, on springs.
+
+    Joints act that gravity presses together, as if they could pull. Blocks that are held by too few points to be at
+    rest do not count.
+    """
+    d = model.dimension
+    found = springs_of(model, joints, settings=settings.frequency)
+    roots = np.sqrt(found.masses)
+    dead = model.dead_loads[found.blocks]
+    still = _solved(found, dead.ravel() / roots)
+    points = len(joints.kn)
+    normal = -np.sqrt(joints.kn) * (found.rows @ still).reshape(points, d)[:, 0]
+    forces = np.add.reduceat(normal, joints.starts[:-1])
+    pressed = forces > settings.rocking.pressed * mean_weight(dead, dead, d)
+    found = springs_of(model, joints, pressed[joints.owners], settings.frequency)
+    largest = 0.0
+    for axis in range(d - 1):
+        sideways = np.zeros_like(dead)
+        sideways[:, axis] = np.sqrt((dead[:, :d] ** 2).sum(axis=1))
+        moved = (_solved(found, sideways.ravel() / roots) / roots).reshape(dead.shape)
+        turns = np.abs(moved[:, d:]).max(axis=1)
+        largest = max(largest, float(turns[turns < settings.rocking.mechanism].max(initial=0.0)))
+    return largest
+
+
+def _solved(found: System, forces: np.ndarray) -> np.ndarray:
+    """Displacements times √M under forces over √M; what nothing holds moves very far."""
+    matrix = found.matrix
+    shift = found.settings.zero * float(matrix.diagonal().max(initial=0.0)) or 1.0
+    if len(forces) <= found.settings.dense:
+        return np.linalg.solve(matrix.toarray() + shift * np.eye(len(forces)), forces)
+    from scipy.sparse import eye_array
+    from scipy.sparse.linalg import spsolve
+
+    return spsolve((matrix + shift * eye_array(len(forces))).tocsc(), forces)
+
+
+def _joints(case: Case, model: Model, ratio: float, automatic: np.ndarray) -> tuple[Joints, np.ndarray]:
+    """Joints of the start, and which of their points are of "auto" stiffness."""
+    properties = joint_properties(case, model, ratio)
+    rest = bodies_at_rest(model, origin_of(model))
+    joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
+    return joints, automatic[properties.between(model, joints.blocks)][joints.owners]
+
+
+def _rigid(joints: Joints, points: np.ndarray) -> Joints:
+    """The same with some points so stiff that they do not count: theirs was given."""
+    if not points.any():
+        return joints
+    factor = np.where(points, 1e3 * max(1.0, float(joints.kn.max() / joints.kn[points].min())), 1.0)
+    return joints._replace(kn=factor * joints.kn, ks=factor * joints.ks)
+
+
+def _round_off(model: Model, joints: Joints) -> float:
+    """What the last digit of a place does to the force on a block, over its weight; the largest of all."""
+    free = ~model.fixed
+    d = model.dimension
+    places = model.vertices + (model.centroids - origin_of(model))[model.vertex_blocks]
+    farthest = float(np.abs(places[free[model.vertex_blocks]]).max())
+    weights = np.full(model.n_blocks, math.inf)
+    weights[free] = own_weights(model.dead_loads[free], model.live_loads[free], d)
+    lightest = weights[joints.blocks].min(axis=1)[joints.owners]
+    return float(np.finfo(float).eps * farthest * (joints.kn / lightest).max())
+
+
+def _work(case: Case, model: Model, joints: Joints, duration: float, settings: Settings) -> tuple[float, float]:
+    """Steps of a run times what each costs in contact points, and the step [s], by the joints of the start."""
+    highest = highest_of(springs_of(model, joints, settings=settings.frequency))
+    if highest == 0.0:
+        return 0.0, math.inf
+    table = case.damping
+    elements = element_numbers(table.maxwell or ()) if table is not None else element_numbers(())
+    step = case.analysis.margin * 2.0 / (highest * math.sqrt(1.0 + float(elements[:, 0].sum())))
+    return duration / step * (len(joints.kn) + settings.rocking.points_per_step), step

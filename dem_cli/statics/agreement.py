@@ -1,0 +1,92 @@
+"""Agreement of methods: what other histories and the bound by limit analysis say beside a failure load.
+
+Joints that slide without dilating leave the failure load to the history of loading: several loads may be true. Where
+the bound by limit analysis is reached and nothing slides, the load is the only one. Else a second history from
+gravity, by another method, says whether the first one can be trusted; where they differ by more than the resolution, a
+run says so.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from dem_cli.statics.failure_bracket import FailureLoad
+
+RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
+
+
+class History(NamedTuple):
+    """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
+
+    method: str  # RAISED, IN_LARGE_STEPS, PATH or CREEP
+    load: float
+    finished: bool  # False: at least this load
+
+    def summary(self) -> dict[str, Any]:
+        """What summary.json says of it."""
+        return self._asdict()
+
+
+def unique(search: FailureLoad, resolution: float) -> bool:
+    """Whether the failure load is the bound of a mechanism in which nothing slides, on which no history depends."""
+    bound, high, limits = search.bound, search.high, search.limits
+    if bound is None or high is None or limits is None:
+        return False
+    return bound <= high + resolution * abs(high) and not limits.slides
+
+
+def histories(search: FailureLoad) -> list[History]:
+    """All ways to failure that were tried, that of the answer first."""
+    found = [] if search.low is None else [History(RAISED, search.low, search.found and not search.wide)]
+    if search.earlier is not None:
+        found.append(History(IN_LARGE_STEPS, search.earlier[0], True))
+    limits = search.limits
+    if limits is not None and limits.followed and limits.path is not None and limits.path.load is not None:
+        found.append(History(PATH, limits.path.load, limits.path.finished))
+    if search.crept_beyond and search.crept is not None:
+        found.append(History(CREEP, search.crept * search.scale, False))
+    return found
+
+
+def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
+    """The range of loads at which histories end, where they differ by more than the resolution; None: they agree."""
+    if not search.found or search.high is None:
+        return None
+    low, high = search.carried, search.high
+    margin = resolution * max(abs(low), abs(high))
+    apart = [
+        other
+        for other in histories(search)[1:]
+        if other.load > high + margin or (other.finished and other.load < low - margin)
+    ]
+    if not apart:
+        return None
+    loads = [low, *(other.load for other in apart)]
+    others = ", ".join(
+        f"{'' if other.finished else 'at least '}{other.load:.5g} by {_BY[other.method]}" for other in apart
+    )
+    why = f"{low:.5g} raised from gravity in steps, {others}"
+    return {"lowest": min(loads), "highest": max(loads), "why": why}
+
+
+def _at_least(history: History) -> str:
+    return "" if history.finished else "at least "
+
+
+_BY = {IN_LARGE_STEPS: "larger steps", PATH: "the zero-dilation path", CREEP: "a creep that came to rest"}
+
+
+def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
+    """Words of warning where histories differ, or where the bracket is wider than asked for."""
+    said = []
+    if spread is not None:
+        share = (
+            f"{100.0 * (spread['highest'] - spread['lowest']) / abs(search.carried):.2g} %" if search.carried else ""
+        )
+        said.append(f"how much this structure carries depends on the way it is loaded, by {share}: {spread['why']}")
+    if search.found and search.wide and search.width is not None:
+        said.append(
+            f"reached from gravity: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket of "
+            f"{100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
+        )
+    return said

@@ -1,0 +1,146 @@
+"""Rigid-block limits of a structure: the associated bound and the zero-dilation path, each found when first asked for.
+
+The bound is rigorous: above it no forces inside the friction cones are in equilibrium, whatever the history. The path
+is a second history from gravity (limit/path.py), by another method than the explicit solver's.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.joints import only_points
+from dem_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dem_cli.engine.job import Job
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.limit.analysis import LimitLoads
+    from dem_cli.limit.associated import LimitLoad
+    from dem_cli.limit.matrices import Structure
+    from dem_cli.limit.path import Path
+
+
+class RigidLimits:
+    """The associated load and the path of the blocks of a simulation; multipliers as users know them.
+
+    why_not   why limit analysis does not apply: geometry that moves, profiles, a law without a friction cone, no loads
+    gaps      of all contact points at the start [m], (n_points,); what is open there carries nothing
+    touching  points without a gap, (n_points,) bool
+    seconds   wall time of the associated load and of the path, as far as they were asked for
+    """
+
+    def __init__(self, job: Job, sim: Simulation) -> None:
+        self.job, self.sim = job, sim
+        self.why_not: str | None = None
+        self.seconds: dict[str, float] = {}
+        self.gaps = sim.first_gaps
+        self.touching = sim.first_gaps <= 0.0
+        if sim.kinematics != "fixed" or sim.properties.profiled:
+            self.why_not = "geometry moves on the way to failure"
+        elif not (sim.loads.dead[sim.free].any() and sim.loads.live[sim.free].any()):
+            self.why_not = "there are no dead loads beside the live ones"
+
+    @cached_property
+    def _matrices(self) -> tuple[Structure, np.ndarray] | None:
+        """Structure and friction of its points; None where limit analysis does not apply."""
+        if self.why_not is not None:
+            return None
+        self.job.clock.imported("dem_cli.limit.analysis")
+        from dem_cli.limit.cone import friction_of
+        from dem_cli.limit.matrices import structure_of
+
+        joints = only_points(self.sim.joints, self.touching)
+        try:
+            return structure_of(self.sim.model, joints), friction_of(joints, self.sim.law)
+        except UsageError as error:
+            self.why_not = str(error)
+            return None
+
+    @cached_property
+    def associated(self) -> LimitLoad | None:
+        """The associated limit load; None where limit analysis does not apply."""
+        if self._matrices is None:
+            return None
+        from dem_cli.limit.associated import limit_load
+
+        self.job.clock.progress("limit analysis", 0.0, 0.0, None)
+        begun = time.perf_counter()
+        found = limit_load(*self._matrices, self.job.settings.limit.associated)
+        self.seconds["associated"] = time.perf_counter() - begun
+        return found
+
+    @cached_property
+    def without_head_friction(self) -> LimitLoad | None:
+        """The associated limit load without friction in head joints; None where limit analysis does not apply."""
+        if self._matrices is None:
+            return None
+        from dem_cli.limit.associated import limit_load
+        from dem_cli.limit.cone import friction_of
+
+        begun = time.perf_counter()
+        structure = self._matrices[0]
+        friction = friction_of(structure.joints, self.sim.law, heads_frictionless=True)
+        found = limit_load(structure, friction, self.job.settings.limit.associated)
+        self.seconds["safe"] = time.perf_counter() - begun
+        return found
+
+    @property
+    def bound(self) -> float | None:
+        """Multiplier above which nothing is in equilibrium; None: not known, or there is none."""
+        return self.associated.upper if self.associated is not None else None
+
+    @cached_property
+    def slides(self) -> bool:
+        """Whether friction takes part in the mechanism of the bound; without it the history of sliding says nothing."""
+        found = self.associated
+        if self._matrices is None or found is None or found.upper is None:
+            return True
+        structure, friction = self._matrices
+        motion = structure.compatibility @ found.velocities.ravel()[structure.free]
+        taken = float((friction * found.normal * np.abs(motion[1 :: structure.model.dimension])).sum())
+        return taken > self.job.settings.warm_start.slides * abs(found.upper)
+
+    @cached_property
+    def path(self) -> Path | None:
+        """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
+        if self._matrices is None:
+            return None
+        from dem_cli.limit.path import trace
+
+        settings, clock = self.job.settings, self.job.clock
+        plateau = min(settings.warm_start.flat * self.job.case.analysis.resolution, settings.limit.path.plateau)
+        begun = time.perf_counter()
+        found = trace(
+            *self._matrices, plateau,
+            progress=lambda load, _: clock.progress("following the path to failure", load, 0.0, None),
+            settings=settings.limit,
+        )  # fmt: skip
+        self.seconds["path"] = time.perf_counter() - begun
+        return found
+
+    def on_points(self, values: np.ndarray, otherwise: np.ndarray | float = 0.0) -> np.ndarray:
+        """Values of the points that touch at the start among all points, (n_points, ...); otherwise: of the others."""
+        shape = (len(self.touching), *values.shape[1:])
+        whole = np.broadcast_to(otherwise, shape).copy()
+        whole[self.touching] = values
+        return whole
+
+    @property
+    def followed(self) -> bool:
+        """Whether the path was asked for."""
+        return "path" in self.seconds
+
+    def loads(self) -> LimitLoads | None:
+        """What was found so far, for `limit_analysis` of summary.json."""
+        if self._matrices is None or self.associated is None:
+            return None
+        from dem_cli.limit.analysis import LimitLoads
+
+        path = self.path if self.followed else None
+        return LimitLoads(
+            *self._matrices, self.associated, path, self.seconds["associated"], self.seconds.get("path")
+        )  # fmt: skip

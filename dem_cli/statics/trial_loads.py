@@ -1,0 +1,88 @@
+"""Trial loads: which load to try next on the way to a bracket of the failure load.
+
+Up in steps until one fails, back by halves until the bracket is narrow, and round loads that stay undecided: one that
+happens to lie within 1e-4 of the failure load creeps for ever.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from dem_cli.engine.static_settings import LoadSearchSettings
+
+
+@dataclass
+class TrialLoads:
+    """What is proved so far, and what to try next; internal multipliers."""
+
+    settings: LoadSearchSettings
+    resolution: float  # width of the bracket, relative
+    low: float  # highest load that is carried
+    levels: list[float]  # to be tried first, upwards
+    step: float  # from the last of them on
+    longest: float = float("inf")  # step of the load that is never exceeded
+    limit: float = float("inf")  # load above which nothing is tried
+    high: float | None = None  # lowest load that fails
+    undecided: list[float] = field(default_factory=list)  # between them
+    jumped: bool = False  # the failure came after a jump, which may break what a gentler step does not
+
+    def __post_init__(self) -> None:
+        self._first_step = self.step
+
+    @property
+    def width(self) -> float:
+        """Width of the bracket that is asked for."""
+        return self.resolution * max(abs(self.low), self.settings.least)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the bracket is as narrow as asked for."""
+        return self.high is not None and self.high - self.low <= self.width
+
+    def next(self) -> float | None:
+        """The load to try next; None where the bracket is narrow enough, or cannot be made any narrower."""
+        if self.high is None:
+            return self._upwards()
+        if self.closed:
+            return self.high if self.jumped else None
+        if not self.undecided:
+            return 0.5 * (self.low + self.high)
+        if len(self.undecided) > self.settings.most_undecided:
+            return None
+        aside = self.settings.aside * self.width * 2.0 ** (len(self.undecided) - 1)
+        below, above = min(self.undecided) - aside, max(self.undecided) + aside
+        nearest = 0.1 * aside  # the rest of the bracket is not worth a trial
+        if below - self.low > nearest:
+            return below
+        return above if self.high - above > nearest else None
+
+    def _upwards(self) -> float | None:
+        if self.low >= self.limit or len(self.undecided) > self.settings.most_undecided:
+            return None
+        reached = max([self.low, *self.undecided])
+        self.levels = [load for load in self.levels if load > reached]
+        if self.levels:
+            return min(self.levels.pop(0), self.limit)
+        load = reached + self.step
+        self.step = min(self.settings.growth * self.step, self.longest)
+        return min(load, self.limit)
+
+    def carries(self, load: float) -> None:
+        """The load is carried; where it had failed after a jump, the search goes on upwards."""
+        if self.high is not None and load >= self.high:
+            self.high, self.step, self.jumped = None, self._first_step, False
+        self.low = load
+        self.undecided = [other for other in self.undecided if other > load]
+
+    def fails(self, load: float, for_certain: bool = False) -> None:
+        """The load fails; for_certain: whatever the step to it."""
+        far = self.settings.jump * self.resolution * max(abs(self.low), self.settings.least)
+        self.high, self.jumped = load, not for_certain and load - self.low > far
+        self.undecided = [other for other in self.undecided if other < load]
+
+    def leaves(self, load: float) -> None:
+        """Neither was proved in as many steps as a trial may take."""
+        if self.high is not None and load >= self.high:
+            self.jumped = False  # it failed before
+        else:
+            self.undecided = sorted([*self.undecided, load])

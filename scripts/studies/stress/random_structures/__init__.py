@@ -1,0 +1,1 @@
+"""Random structures: a generator, rigorous bounds of their failure loads, every method of the program against them."""

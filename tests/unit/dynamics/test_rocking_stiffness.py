@@ -1,0 +1,161 @@
+"""Stiffness of "auto" joints in time histories: the angle that it goes by, and what bounds it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import engine
+import pytest
+from engine import block, rectangle, scene, tables
+
+from dem_cli.analyses.estimate import describe
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
+from dem_cli.engine.properties import joint_properties
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.model.scales import smallest_edge
+
+KN, DENSITY, G = 1e9, 2000.0, 9.81
+GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)
+ROCKING = DEFAULT.rocking
+
+
+def drums(n: int, b: float, h: float, left: float = 0.0, foot: float = 0.0) -> list[dict]:
+    return [block(f"d{left:g}-{i}", rectangle(left, foot + i * h, left + b, foot + (i + 1) * h)) for i in range(n)]
+
+
+def turn(*blocks: dict) -> float:
+    """ε of blocks on joints of KN."""
+    case, model = scene(tables(GROUND, *blocks, density=DENSITY, joints={"dry": {"friction": 0.7, "kn": KN}}))
+    properties = joint_properties(case, model)
+    return turn_sideways(model, joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints)
+
+
+def chosen(*blocks: dict, duration: float = 10.0, many: bool = False, kn="auto", settings=DEFAULT, **analysis):
+    shaken = {"analysis": {"kind": "time-history", "duration": duration, **analysis}, "motion": {"kind": "none"}}
+    joints = {"dry": {"friction": 0.7, "kn": kn}}
+    case, model = scene(tables(GROUND, *blocks, density=DENSITY, joints=joints, **shaken))
+    return rocking_stiffness(case, model, duration, many, settings)
+
+
+def of_drums(n: int, b: float, h: float) -> float:
+    """Sum of the rotations of all joints, each moment over kn b³/4: two springs of kn b/2 at the ends of the joint."""
+    weight = DENSITY * G * b * h
+    return sum(weight * h * (n - j) ** 2 / 2 for j in range(n)) / (KN * b**3 / 4)
+
+
+@pytest.mark.parametrize("aspect", [0.3, 2.0, 10.0])
+def test_one_block(aspect):
+    """2 ρ g (h/b)²/kn."""
+    assert turn(*drums(1, 0.4, 0.4 * aspect)) == pytest.approx(2.0 * DENSITY * G * aspect**2 / KN, rel=1e-6)
+
+
+@pytest.mark.parametrize("n", [2, 8, 20])
+def test_columns_of_drums(n):
+    assert turn(*drums(n, 0.5, 0.4)) == pytest.approx(of_drums(n, 0.5, 0.4), rel=1e-4)
+
+
+def test_columns_side_by_side_do_not_hold_each_other():
+    """Their head joints carry nothing, and open."""
+    assert turn(*drums(5, 0.5, 0.4), *drums(5, 0.5, 0.4, left=0.5)) == pytest.approx(of_drums(5, 0.5, 0.4), rel=1e-3)
+
+
+def test_a_pinnacle_on_a_wall_counts():
+    wall = block("wall", rectangle(0.0, 0.0, 8.0, 3.0))
+    one = of_drums(1, 0.3, 1.8)
+    assert turn(wall, *drums(1, 0.3, 1.8, left=2.0, foot=3.0)) == pytest.approx(one, rel=0.02)
+
+
+def test_what_nothing_holds_does_not_count():
+    assert turn(*drums(1, 0.5, 1.0), block("up", rectangle(5.0, 0.5, 6.0, 1.0))) == pytest.approx(
+        of_drums(1, 0.5, 1.0), rel=1e-3
+    )
+
+
+@pytest.mark.parametrize("aspect", [2.0, 7.0])
+def test_the_wanted_turn_is_met(aspect):
+    found = chosen(*drums(1, 0.5, 0.5 * aspect))
+    assert found.turn == pytest.approx(ROCKING.turn, rel=1e-6)
+    # kn h/W counts W over √(b h) for a joint, here over b
+    assert found.ratio == pytest.approx(2.0 * aspect**2 / ROCKING.turn / math.sqrt(aspect), rel=1e-6)
+    assert chosen(*drums(1, 0.5, 0.5 * aspect), many=True).turn == pytest.approx(ROCKING.turn_of_many, rel=1e-6)
+
+
+def test_never_softer_than_the_least():
+    assert chosen(block("slab", rectangle(0.0, 0.0, 8.0, 0.5))).ratio == DEFAULT.stiffness.dynamics
+
+
+def test_given_stiffness_is_not_touched():
+    found = chosen(*drums(1, 0.5, 3.0), kn=1e8)
+    assert not found.automatic
+    assert found.applied(DEFAULT) == DEFAULT
+
+
+def test_bounds():
+    """The user's time step, max_steps, and work; a turn beyond the doubtful one is said."""
+    blocks = drums(4, 0.5, 1.0)
+    free = chosen(*blocks)
+    steps = free.work / (8 + ROCKING.points_per_step)
+    for found, most in (
+        (chosen(*blocks, time_step=10.0 * 10.0 / steps), steps / 10.0),
+        (chosen(*blocks, max_steps=int(steps / 5.0)), steps / 10.0),
+        (chosen(*blocks, settings=replace(DEFAULT, rocking=replace(ROCKING, work=free.work / 10.0))), steps / 10.0),
+    ):
+        assert found.work / (8 + ROCKING.points_per_step) == pytest.approx(most, rel=1e-4)
+        assert found.turn == pytest.approx(100.0 * free.turn, rel=1e-3)  # the step goes with √kn
+    with_work = replace(DEFAULT, rocking=replace(ROCKING, work=1.0))
+    assert chosen(*blocks, settings=with_work).ratio == DEFAULT.stiffness.dynamics
+
+
+def test_round_off_bounds_it():
+    """Far from the origin among blocks: digits of places are forces."""
+    far = block("far", rectangle(900.0, -1.0, 901.0, 0.0), fixed=True)
+    column, other = drums(4, 0.5, 1.0), drums(1, 0.5, 0.5, left=900.2)
+    near, away = chosen(*column, duration=0.5), chosen(*column, far, *other, duration=0.5)
+    assert away.ratio < 0.1 * near.ratio
+
+
+def run(kn, *blocks: dict, settings=DEFAULT, **more):
+    watched = {"monitor": [{"block": blocks[-1]["id"], "quantity": "rotation"}], "damping": {"restitution": "housner"}}
+    joints = {"dry": {"friction": 5.0, "kn": kn}}
+    case = tables(GROUND, *blocks, density=DENSITY, joints=joints, **watched, **more)
+    return engine.solve(case, settings=settings)[0]
+
+
+PULSE = {"motion": {"kind": "pulse", "shape": "sine", "amplitude": 3.0, "frequency": 1.0}}
+SHORT = {"analysis": {"kind": "time-history", "duration": 1.5}}
+
+
+def test_a_run_says_what_it_chose_and_how_far_its_peaks_move():
+    found = run("auto", *drums(1, 0.5, 2.0), **PULSE, **SHORT)
+    assert found["elastic_turn"] == pytest.approx(ROCKING.turn)
+    assert 0.0 <= found["softer_joints_move"] < ROCKING.moved
+    assert found["warnings"] == []
+    assert "elastic_turn" not in run(1e9, *drums(1, 0.5, 2.0), **PULSE, **SHORT)
+
+
+def test_ensembles_and_estimates_choose_alike():
+    """ε = 1e-5 in a fragility, 1e-6 in a single run: its step, which `dem check` knows, is √10 as long."""
+    blocks = drums(1, 0.5, 2.0)
+    levels = {"unit_acceleration": 3.0, "intensities": [0.5, 1.0]}
+    case = tables(GROUND, *blocks, joints={"dry": {"friction": 5.0}}, **PULSE, **SHORT)
+    many = {"kind": "fragility", "duration": 1.5} | levels
+    single, ensemble = (engine.solve({**case, "analysis": a})[0]["time_step"] for a in (SHORT["analysis"], many))
+    assert ensemble == pytest.approx(single * (ROCKING.turn_of_many / ROCKING.turn) ** 0.5, rel=1e-6)
+    assert dict(describe(*scene(case)))["time step"].startswith(f"{single:.3g} s")
+
+
+def test_a_run_on_joints_that_had_to_stay_soft_says_so():
+    soft = replace(DEFAULT, rocking=replace(ROCKING, work=1.0))
+    found = run("auto", *drums(1, 0.5, 4.0), settings=soft, **PULSE, **SHORT)
+    assert found["elastic_turn"] > ROCKING.doubtful
+    assert "joints are softer than rocking asks for" in found["warnings"][0]
+
+
+def test_a_peak_that_hangs_on_stiffness_is_doubted():
+    """Of a block that does not lift off all there is to see is how far its joint gives."""
+    gentle = {"motion": {"kind": "pulse", "shape": "sine", "amplitude": 0.5, "frequency": 1.0}}
+    found = run("auto", *drums(1, 0.5, 2.0), **gentle, **SHORT)
+    assert found["softer_joints_move"] == pytest.approx(1.0 - 1.0 / ROCKING.softer, rel=0.01)
+    assert any("peaks move, rotation of 'd0-0' by 90.0%" in text for text in found["warnings"])
