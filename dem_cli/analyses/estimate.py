@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.properties import joint_properties, law_of
@@ -42,9 +43,9 @@ def describe(case: Case, model: Model) -> Rows:
         return _shaking(case, model)
     tilting = getattr(case.analysis, "pattern", None) == "tilt"
     scale = 1.0 if tilting else live_scale(model)
-    properties = joint_properties(case, model, _ratio(case, model))
 
-    def simulation(kinematics: str) -> Simulation:
+    def simulation(kinematics: str, ratio: float) -> Simulation:
+        properties = joint_properties(case, model, ratio)
         sim = Simulation(model, law_of(case), properties, kinematics, scale, tilting, DEFAULT)
         sim.use(1.0)  # masses at the limit of stability
         return sim
@@ -52,7 +53,9 @@ def describe(case: Case, model: Model) -> Rows:
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
     moving = why_moving(case, model) if moving is None else moving
-    sim = simulation("fixed" if moving is None else "large")
+    sim = simulation("fixed" if moving is None else "large", _ratio(case, model))
+    needed = ratio_of(sim) if moving is None else needed_ratio(sim, getattr(case.analysis, "resolution", None))
+    sim = sim if needed == ratio_of(sim) else simulation(sim.kinematics, needed)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),

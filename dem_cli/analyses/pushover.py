@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -194,16 +195,14 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, p
     until, frames = job.case.analysis.follow, job.case.output.frames
     load = search.carried / sim.live_scale
     by_load = _by_load(job)
-    automatic = any(joint.kn == "auto" for joint in job.case.joints.values())
-    change = job.stiffness(sim.kinematics) / job.stiffness("large") if automatic else 1.0  # of how far joints give
-    elastic, compliance = change * search.elastic, change * search.compliance
-    ratio, softer = job.stiffness("large"), 1.0
-    if not by_load:
-        ratio, softer = post_peak.softness(job.case, elastic, load, sim.smallest, until, job.settings)
+    ratio = (
+        None if by_load else post_peak.softness(ratio_of(sim), search.elastic, load, sim.smallest, until, job.settings)
+    )
     falling = job.simulation("large", ratio)
+    softer = ratio_of(sim) / ratio_of(falling) if ratio_of(falling) > 0.0 else 1.0
     falling.count_from(sim.steps)
-    fast = compliance * softer / sim.settings.post_peak.steps
-    rate = min(fast, compliance / elastic * until / sim.settings.post_peak.fewest)
+    fast = search.compliance * softer / sim.settings.post_peak.steps
+    rate = min(fast, search.compliance / search.elastic * until / sim.settings.post_peak.fewest)
     try:
         if by_load:
             impossible = search.failed / sim.live_scale

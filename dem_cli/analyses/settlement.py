@@ -64,7 +64,7 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     motion = _motions(case, sim)
     reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
     largest = float(np.abs(motion * reach).max())
-    elastic = max(measures.largest_displacement(sim), 1e-9 * sim.smallest)
+    elastic = max(measures.largest_elastic(sim), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (settlement.per_step * elastic), settlement.fewest) / settlement.rows)), 1)
     every = max(settlement.rows // max(case.output.frames - 2, 1), 1)
     sim.use_combined_damping()

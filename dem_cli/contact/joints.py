@@ -33,6 +33,7 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
+    rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", (n_named,) bool
 
     @property
     def profiled(self) -> bool:
@@ -53,6 +54,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         normal=np.zeros(n_points),
         slip=np.zeros(n_points),
         memory=np.zeros((n_points, n_memory)),
+        closure=np.zeros(n_points),
         stale=np.zeros(n_joints + 1, np.int8),
     )
 

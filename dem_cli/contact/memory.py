@@ -39,7 +39,7 @@ def _loaded(of: JointArrays) -> np.ndarray:
 
 
 def _copy(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
-    for name in ("shear", "normal", "slip", "memory"):
+    for name in ("shear", "normal", "slip", "memory", "closure"):
         getattr(new.contacts, name)[target] = getattr(old.contacts, name)[source]
     new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
@@ -57,6 +57,7 @@ def _adopt(narrow: NarrowPhase, old: JointArrays, new: JointArrays, orphans: np.
                 distance = ((joints.points[candidates] - old.joints.points[source]) ** 2).sum(axis=1)
                 heir = candidates[[distance.argmin()]]
                 _copy(old, new, heir, np.array([source]))
-                deeper = max(-contacts.gaps[heir[0]] - memory.normal[source] / old.joints.kn[source], 0.0)
+                carries = memory.normal[source] / old.joints.kn[source] - memory.closure[source]
+                deeper = max(-contacts.gaps[heir[0]] - carries, 0.0)
                 joint = int(np.searchsorted(joints.starts, heir[0], side="right")) - 1
                 narrow.sink(new.geometry, joint, deeper)

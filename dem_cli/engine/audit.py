@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.engine import measures
+from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.measures import closure, free_falls
 from dem_cli.model.scales import WEIGHTLESS, own_weights
 
@@ -25,7 +26,12 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > doubts.overlap:
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
-    said += _weightless(sims[0]) + _shear(sims[0]) + _leaning(case, sims[0], found.get("displacement_at_failure"))
+    said += (
+        _leaning_automatically(case, sims[0])
+        + _weightless(sims[0])
+        + _shear(sims[0])
+        + _leaning(case, sims[0], found.get("displacement_at_failure"))
+    )
     if found.get("status") == "not converged":
         said.append(_advice(case, sims[0], found.get("failure_load_bracket", [None, None])))
     return said
@@ -52,6 +58,20 @@ def _shear(sim: Simulation) -> list[str]:
         "lowered the load by some per cent"
         for name, ratio in zip(properties.names, ratios)
         if not low * (1 - 1e-9) <= ratio <= high * (1 + 1e-9)
+    ]
+
+
+def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
+    """Where even "auto" joints as stiff as round-off allows let a structure lean by what counts."""
+    if sim.kinematics == "fixed":
+        return []
+    resolution = getattr(case.analysis, "resolution", None)
+    allowed = sim.settings.doubts.buckles if sim.takes_back else resolution
+    if allowed is None or sim.leans <= allowed:
+        return []
+    return [
+        f'"auto" joints are as stiff as round-off allows (kn·h/W {ratio_of(sim):.2g}), and the structure leans over '
+        f"them all the same: that alone may lower its load by {min(sim.leans, 1.0):.0%}; do not trust this run"
     ]
 
 

@@ -35,6 +35,7 @@ class DynamicSimulation(Simulation):
         self.real, self.dt = False, 1.0
         self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
         super().__init__(model, law, properties, "large", settings=settings)
+        self.takes_back = False  # springs that press at the start go on pressing
 
     @property
     def n_damped(self) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
+from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
@@ -49,13 +50,28 @@ class Job:
         return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
 
     def stiffness(self, kinematics: str) -> float:
-        """kn·h/W of "auto" joints in a static analysis."""
+        """kn·h/W of "auto" joints in a static analysis, at least."""
         stiffness = self.settings.stiffness
         return stiffness.fixed if kinematics == "fixed" else stiffness.statics
 
-    def simulation(self, kinematics: str, ratio: float | None = None) -> Simulation:
-        """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings)."""
+    def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
+        """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings).
+
+        Where geometry moves they stand for rigid ones (engine/rigid_joints.py) and are stiffer if the structure leans
+        too far on them; elastic: they are the springs that they are.
+        """
         ratio = self.stiffness(kinematics) if ratio is None else ratio
+        sim, resolution = self._compiled(kinematics, ratio), getattr(self.case.analysis, "resolution", None)
+        if kinematics == "fixed" or elastic:
+            sim.takes_back = False
+            return sim
+        needed = needed_ratio(sim, resolution)
+        sim = sim if needed == ratio_of(sim) else self._compiled(kinematics, needed)
+        sim.leans = leaning(sim)
+        sim.shown = shown_closure(sim, resolution)
+        return sim
+
+    def _compiled(self, kinematics: str, ratio: float) -> Simulation:
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(
             lambda: Simulation(

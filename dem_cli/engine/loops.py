@@ -20,7 +20,7 @@ def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
         forces = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
         return make_advance(of_bodies(forces), drift_centroids)
     make = make_profiled_forces if profiled else make_planar_forces
-    return make_advance(make(law.function, law.bonded), drift_corners)
+    return make_advance(make(law.function, law.bonded, rigid=True), drift_corners)
 
 
 @cache

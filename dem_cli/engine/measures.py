@@ -29,6 +29,12 @@ def largest_displacement(sim: Simulation) -> float:
     return float(np.sqrt((displacements(sim)[sim.free] ** 2).sum(axis=1)).max(initial=0.0))
 
 
+def largest_elastic(sim: Simulation) -> float:
+    """Largest displacement of a centroid that the joints show by themselves, or did before it was taken back [m]."""
+    shown = displacements(sim) - sim.taken_back[:, : sim.model.dimension]
+    return float(np.sqrt((shown[sim.free] ** 2).sum(axis=1)).max(initial=0.0))
+
+
 def live_displacement(sim: Simulation) -> float:
     """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
     d = sim.model.dimension

@@ -53,7 +53,8 @@ def joint_properties(
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
     layouts = tuple(_layout(table, case.seed) for table in tables)
-    return JointProperties(names, by_material, kn, ks, columns, intact, layouts)
+    rigid = np.array([table.kn == "auto" for table in tables])
+    return JointProperties(names, by_material, kn, ks, columns, intact, layouts, rigid)
 
 
 def _law(table: StiffJoint) -> Law:

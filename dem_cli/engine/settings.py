@@ -39,6 +39,11 @@ class AutomaticStiffness:
     statics: float = 1e6  # where geometry moves
     dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
+    # Share of its load that leaning over its joints may cost a structure that moves: where failed loads are tried again
+    # from close by, so that only the last step of the load counts (far from 0.8: it falls by itself), and elsewhere.
+    leaning: float = 0.1
+    leaning_at_once: float = 0.002
+    noise: float = 0.3  # unbalanced force that round-off may leave in stiffer joints, in tolerances of an equilibrium
 
 
 @dataclass(frozen=True)
@@ -103,6 +108,17 @@ class RelaxationSettings:
 
 
 @dataclass(frozen=True)
+class ReliefSettings:
+    """Elastic closure of "auto" joints, which is taken back where blocks are at rest (engine/rigid_joints.py)."""
+
+    shown: float = 0.005  # of it, that geometry may show in a state that counts as an equilibrium, at most
+    of_resolution: float = 0.25  # of the resolution of a load, that what is shown may cost
+    gain: float = 0.5  # of what is shown: where more is left after a round, another one would not end it either
+    sliding: float = 1e-3  # of the shear stiffness: points go back without sliding where that is possible
+    singular: float = 1e-12  # of the stiffness of a block, that holds what no joint holds: a mechanism is not elastic
+
+
+@dataclass(frozen=True)
 class DoubtSettings:
     """From where on a run warns about its own answer."""
 
@@ -116,6 +132,7 @@ class DoubtSettings:
     above: float = 0.005  # of the associated load, that a failure load may lie above it
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by
     beyond: float = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
+    buckles: float = 0.3  # of its load, that leaning over "auto" joints costs a structure; it falls by itself at 0.8
     governs: float = 0.05  # share of numerical damping in all that is lost
 
 
@@ -127,6 +144,7 @@ class Settings:
     detection: DetectionSettings = field(default_factory=DetectionSettings)
     clearance: ClearanceSettings = field(default_factory=ClearanceSettings)
     relaxation: RelaxationSettings = field(default_factory=RelaxationSettings)
+    relief: ReliefSettings = field(default_factory=ReliefSettings)
     proof: ProofSettings = field(default_factory=ProofSettings)
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)

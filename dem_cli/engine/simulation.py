@@ -71,6 +71,11 @@ class Simulation:
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = play_of_start(self.tracking, self.bodies, settings.clearance)
         self.first_places = self.places()
+        # Closure of "auto" joints is taken back at rest (engine/rigid_joints.py):
+        self.takes_back = kinematics == "large" and not law.bonded and bool(properties.rigid.any())
+        self.taken_back = np.zeros((model.n_blocks, model.dead_loads.shape[1]))  # all of it, since the start [m, rad]
+        self.leans = 0.0  # share of its load that leaning over such joints would cost, if it is known
+        self.shown = settings.relief.shown  # share of the closure of rigid joints that geometry may show at rest
 
     @property
     def n_damped(self) -> int:
@@ -263,6 +268,15 @@ class Simulation:
         arms = self.bodies.positions[blocks] - about
         self.bodies.positions[blocks] = about + turned_as_one(arms, angle)
         self.bodies.orientations[blocks] += angle
+
+    def shift(self, motion: np.ndarray) -> None:
+        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]; 2D. Forces stay."""
+        bodies, d = self.bodies, self.model.dimension
+        bodies.positions[:] += motion[:, :d]
+        bodies.orientations[:] += motion[:, d:]
+        bodies.corners[:] = world_corners(self.shape, bodies.positions, bodies.orientations)
+        self.taken_back += motion
+        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * np.abs(motion[:, d])
 
     def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
         """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""

@@ -29,7 +29,9 @@ class LoadSearchSettings:
     """The search of the failure load: probes, creep to an estimate, loads raised, failures tried again."""
 
     probes: int = 4  # small loads tried for the compliance, each a tenth of the last
-    probe_steps: int = 20_000  # for the equilibrium under one of them
+    probe_steps: int = 20_000  # for the equilibrium under one of them, at least
+    probe_steps_per_depth: int = 10  # times the square of the courses: a stack of 100 finds it after 51,000
+    most_probe_steps: int = 200_000
     reach: float = 15.0  # displacement of the creep, in elastic displacements at multiplier 1
     first_phase: int = 1000  # steps of the first phase of the creep
     phases: int = 5  # how often the rate is halved after it

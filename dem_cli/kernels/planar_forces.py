@@ -17,11 +17,14 @@ from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
 from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
 
 
-def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False, meets: bool = False) -> Callable:
+def make_planar_forces(
+    law: Callable, bonded: bool = False, keeps: bool = False, meets: bool = False, rigid: bool = False
+) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
+    rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, in statics.
     """
     press = make_press(law, bonded)
 
@@ -31,7 +34,7 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False,
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
         kns, kss, parameters, frames, levers = joints.kn, joints.ks, joints.law, joints.frames, joints.levers
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale = contacts.slip, contacts.memory, contacts.stale
+        slips, memory, stale, closures = contacts.slip, contacts.memory, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         friction_work = 0.0
@@ -46,7 +49,8 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False,
             )
             first = np.uint64(starts[joint])
             second = first + np.uint64(1)
-            if apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
+            wrong = apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint)
+            if wrong:
                 if stale[joint] == 0 and (overlap > 0.0 or normals[first] + normals[second] > 0.0):
                     stale[joint] = 1
                     stale[-1] = 1
@@ -58,6 +62,8 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False,
             gaps[second] = gap_high
             if meets and not bonded:
                 gap_low, gap_high = meeting(gap_low, opened_low), meeting(gap_high, opened_high)
+            if rigid and not wrong:
+                gap_low, gap_high = gap_low - closures[first], gap_high - closures[second]
             on_low = bonded or gap_low < 0.0 or normals[first] != 0.0
             on_high = bonded or gap_high < 0.0 or normals[second] != 0.0
             if not (on_low or on_high):
@@ -110,4 +116,5 @@ def make_planar_forces(law: Callable, bonded: bool = False, keeps: bool = False,
             add_at(forces, b, d, torque_b, 1.0)
         return friction_work
 
-    return named(planar_forces, law, "bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "")
+    flags = ("bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "", "rigid" if rigid else "")
+    return named(planar_forces, law, *flags)

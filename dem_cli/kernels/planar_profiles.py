@@ -54,12 +54,17 @@ def _end(twice_inside, blend, corner_a, corner_b, ta, ts, on_side):
 
 
 def make_profiled_forces(
-    law: Callable, bonded: bool = False, keeps: bool = False, places: bool = False, meets: bool = False
+    law: Callable,
+    bonded: bool = False,
+    keeps: bool = False,
+    places: bool = False,
+    meets: bool = False,
+    rigid: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
-    loop keeps gaps, frames, levers and points up to date, for detection and records.
+    loop keeps gaps, frames, levers and points up to date, for detection and records. rigid: as in planar_forces.py.
     """
     press = make_press(law, bonded)
 
@@ -73,6 +78,7 @@ def make_profiled_forces(
         kns, kss, parameters = joints.kn, joints.ks, joints.law
         gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
         slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, geometry.sunk
+        closures = contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         lost = 0.0
@@ -134,6 +140,7 @@ def make_profiled_forces(
             for p in range(first, last + 1):
                 point = np.uint64(p)
                 share, side, corner_a, corner_b = 1.0, tb, a0, b1
+                faces = not wrong
                 if p == first:
                     gap, share, side, corner_b = gap_low, share_low, side_low, corner_low
                 elif p == last:
@@ -143,7 +150,7 @@ def make_profiled_forces(
                     gap = _outside(corner_b, a0, ta)
                     along = _along(a0, corner_b, ta)
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
-                        gap = max(gap, 0.0)
+                        gap, faces = max(gap, 0.0), False
                 depth = gap
                 gap += offset
                 if wrong:
@@ -153,6 +160,8 @@ def make_profiled_forces(
                 opened = gap - before
                 if meets and not bonded:
                     gap = meeting(gap, opened)
+                if rigid and faces:
+                    gap -= closures[point]
                 if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
@@ -183,8 +192,8 @@ def make_profiled_forces(
                 add_at(forces, b, d, torque_b, 1.0)
         return lost
 
-    flags = ("bonded" if bonded else "", "keeps" if keeps else "", "places" if places else "", "meets" if meets else "")
-    return named(profiled_forces, law, *flags)
+    flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid}
+    return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 
 @inline

@@ -77,6 +77,8 @@ class Contacts(NamedTuple):
     normal: np.ndarray  # normal force, compression positive [N], (n_points,)
     slip: np.ndarray  # accumulated slip path [m], (n_points,)
     memory: np.ndarray  # whatever the law remembers, then what the dampers do, (n_points, n_memory)
+    closure: np.ndarray  # overlap that a point needs for the force that it was last at rest with: the normal force is
+    # kn × (closure − gap) [m], (n_points,); 0: kn × −gap, an elastic joint (engine/rigid_joints.py)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
 
 

@@ -55,30 +55,40 @@ def stiffness_scale(model: Model) -> float:
     return weight / (joint * smallest_edge(model))
 
 
+def levels(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """Joints between each block and the supports; −1: it hangs on none. joints: (n, 2) blocks; (n_blocks,) int64."""
+    level, at = np.where(fixed, 0, -1), 0
+    while True:
+        a, b = level[joints].T
+        new = np.concatenate([joints[(a == at) & (b < 0), 1], joints[(b == at) & (a < 0), 0]])
+        if not len(new):
+            return level
+        at += 1
+        level[new] = at
+
+
 def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
     """How many joints lie between the supports and the block furthest from them; joints: (n, 2) blocks."""
-    near, reached = 0, fixed.copy()
-    while True:
-        a, b = reached[joints].T
-        new = np.concatenate([joints[a & ~b, 1], joints[b & ~a, 0]])
-        if not len(new):
-            return near
-        reached[new] = True
-        near += 1
+    return int(levels(joints, fixed).max(initial=0))
 
 
-def largest_structure(joints: np.ndarray, fixed: np.ndarray) -> int:
-    """How many free blocks the largest structure has whose blocks hang together by joints; joints: (n, 2) blocks.
+def structures(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """Which connected structure each block belongs to, by the number of its first block; −1: a support, (n_blocks,).
 
-    Supports join nothing: two walls on one ground are two structures.
+    Supports connect nothing: two walls on one base are two structures.
     """
-    inner = joints[~fixed[joints].any(axis=1)]
     label = np.arange(len(fixed))
+    inner = joints[~fixed[joints].any(axis=1)]
     while True:
         lowest = label[inner].min(axis=1, initial=len(fixed))
         smaller = label.copy()
         np.minimum.at(smaller, inner.ravel(), np.repeat(lowest, 2))
         smaller = smaller[smaller]
         if np.array_equal(smaller, label):
-            return int(np.bincount(label[~fixed]).max(initial=0))
+            return np.where(fixed, -1, label)
         label = smaller
+
+
+def largest_structure(joints: np.ndarray, fixed: np.ndarray) -> int:
+    """How many free blocks the largest structure has (`structures`); joints: (n, 2) blocks."""
+    return int(np.bincount(structures(joints, fixed)[~fixed]).max(initial=0))

@@ -23,26 +23,30 @@ def compliance(sim: Simulation, budget: Budget | None = None) -> tuple[float, fl
     load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     before, places, saved = measures.live_displacement(sim), sim.places(), sim.save()
     load, value, largest = load_search.probe_in_play if sim.play.moved.any() else load_search.probe, 0.0, 0.0
+    steps = min(load_search.probe_steps_per_depth * sim.depth**2, load_search.most_probe_steps)
+    steps = max(steps, load_search.probe_steps)
     for _ in range(load_search.probes):
-        verdict = relax(sim, load, relaxation.tolerance, load_search.probe_steps, budget=budget)
+        verdict = relax(sim, load, relaxation.tolerance, steps, budget=budget)
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load
         sim.restore(saved)
         if verdict.state == "equilibrium":
             break
         load /= 10.0
-    return _compliance_in_play(sim, (value, largest), budget) if sim.play.moved.any() else (value, largest)
+    return _compliance_in_play(sim, (value, largest), steps, budget) if sim.play.moved.any() else (value, largest)
 
 
-def _compliance_in_play(sim: Simulation, first: tuple[float, float], budget: Budget | None) -> tuple[float, float]:
+def _compliance_in_play(
+    sim: Simulation, first: tuple[float, float], steps: int, budget: Budget | None
+) -> tuple[float, float]:
     """The same where any load may roll blocks over sides of a profile: the step of it that moves them least."""
     load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     saved, found, load = sim.save(), first, load_search.probe_in_play
     for _ in range(load_search.doublings):
-        if relax(sim, load, relaxation.tolerance, load_search.probe_steps, budget=budget).state != "equilibrium":
+        if relax(sim, load, relaxation.tolerance, steps, budget=budget).state != "equilibrium":
             break
         before, places = measures.live_displacement(sim), sim.places()
-        if relax(sim, 2.0 * load, relaxation.tolerance, load_search.probe_steps, budget=budget).state != "equilibrium":
+        if relax(sim, 2.0 * load, relaxation.tolerance, steps, budget=budget).state != "equilibrium":
             break
         value = (measures.live_displacement(sim) - before) / load
         largest = float(np.abs(sim.places() - places).max()) / load

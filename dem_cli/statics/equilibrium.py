@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.measures import free_falls
+from dem_cli.engine.rigid_joints import relieved
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.statics.failure_test import FailureTest, displaced
@@ -63,12 +64,13 @@ def relax(
     scale: float = 0.0,
     since: np.ndarray | None = None,
     budget: Budget | None = None,
+    elastic: bool = True,
 ) -> Verdict:
     """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
 
     "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where they
     are now); scale: displacement that is elastic [m]; max_steps: None: that of the settings; budget: what the steps are
-    taken from.
+    taken from; elastic: joints show their closure (engine/rigid_joints.py).
     """
     relaxation = sim.settings.relaxation
     since = sim.places() if since is None else since
@@ -85,7 +87,7 @@ def relax(
         check_finite(sim)
         calm = calm + 1 if sim.unbalanced < tolerance else 0
         if calm == relaxation.looks_at_rest:
-            if _rests(sim, tolerance, slot.FIRE):
+            if _rests(sim, tolerance, slot.FIRE) and (elastic or relieved(sim)):
                 break
             calm = 0
     sim.rest()
@@ -100,7 +102,7 @@ def stand(sim: Simulation, budget: Budget) -> Verdict:
     relaxation = sim.settings.relaxation
     start, scale = sim.places(), measures.dead_scale(sim)
     _weigh_down(sim, budget)
-    verdict = relax(sim, 0.0, relaxation.gravity_tolerance, scale=scale, since=start, budget=budget)
+    verdict = relax(sim, 0.0, relaxation.gravity_tolerance, scale=scale, since=start, budget=budget, elastic=False)
     if verdict.state != "unknown":
         return verdict
     return settle_or_fail(sim, 0.0, budget, scale, relaxation.gravity_tolerance, start)
@@ -140,6 +142,9 @@ def settle_or_fail(
             if calm == relaxation.looks_at_rest and not _rests(sim, tolerance, slot.HOLD_LOAD):
                 calm = 0
             if calm == relaxation.looks_at_rest:
+                if not relieved(sim):
+                    calm = 0
+                    continue
                 return _at_rest(sim, since, scale)
         check_finite(sim)
         failing = motion.look()

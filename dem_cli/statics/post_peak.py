@@ -18,7 +18,6 @@ from dem_cli.kernels import records as slot
 from dem_cli.statics.equilibrium import check_finite, relax, settle_or_fail
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
     from dem_cli.engine.simulation import Simulation
 
 
@@ -32,22 +31,20 @@ class CurvePeak(NamedTuple):
 
 
 def softness(
-    case: Case, elastic: float, load: float, edge: float, until: float, settings: Settings = DEFAULT
-) -> tuple[float, float]:
-    """kn·h/W for "auto" joints in a collapse, and how much softer that is than in the failure search.
+    ratio: float, elastic: float, load: float, edge: float, until: float, settings: Settings = DEFAULT
+) -> float:
+    """kn·h/W for "auto" joints in a collapse.
 
     As stiff as the elastic displacement at failure asks, unless the way would take more than the most steps.
-    elastic: largest elastic displacement per unit of multiplier in the search [m]; edge: smallest edge [m];
-    until: displacement to be followed [m].
+    ratio: kn·h/W in the search; elastic: largest elastic displacement per unit of multiplier there [m]; edge: smallest
+    edge [m]; until: displacement to be followed [m].
     """
-    post_peak, stiffness = settings.post_peak, settings.stiffness
+    post_peak = settings.post_peak
     softer = max(
         post_peak.elastic * edge / (elastic * max(load, settings.load_search.probe)),
         post_peak.steps * until / (elastic * post_peak.most),
     )
-    ratio = min(max(stiffness.statics / softer, post_peak.softest), post_peak.stiffest)
-    automatic = any(joint.kn == "auto" for joint in case.joints.values())
-    return ratio, (stiffness.statics / ratio if automatic else 1.0)
+    return min(max(ratio / softer, post_peak.softest), post_peak.stiffest)
 
 
 def follow(

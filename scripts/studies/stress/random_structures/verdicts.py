@@ -26,12 +26,14 @@ FAULTS = (ABOVE, BELOW, STANDS_OR_FALLS, CRASHED, ASSOCIATED, SILENT)  # what mu
 
 
 def reported(summary: Mapping[str, Any], load: float) -> bool:
-    """Whether a run says itself that another method may come to such a load: in its range, or below a bound left open."""
+    """Whether a run says itself that another method may come to such a load: in its range, or below an open bound."""
     span = summary.get("load_range")
     inside = span and span["lowest"] * (1.0 - RESOLUTION) <= load <= span["highest"] * (1.0 + RESOLUTION)
     low, _ = summary.get("failure_load_bracket") or (None, None)
     bound = (summary.get("limit_analysis") or {}).get("associated")
-    left_open = summary.get("unique") is False and None not in (low, bound) and low <= load <= bound * (1.0 + RESOLUTION)
+    left_open = (
+        summary.get("unique") is False and None not in (low, bound) and low <= load <= bound * (1.0 + RESOLUTION)
+    )
     return bool(inside or left_open)
 
 

@@ -1,0 +1,88 @@
+"""Rigid joints by augmented Lagrangian contact: elastic closure of "auto" joints is taken back where blocks rest.
+
+The stiffness of an "auto" joint is a means and no property: it says how the solver finds forces, not how far a block
+sinks. Where geometry moves, sinking is not harmless all the same: blocks lean over their joints, the weight gets a
+lever, and the load is lost by that (P-Δ; engine/automatic_stiffness.py says how much). Joints that are so stiff that
+nothing is lost make the way through gaps long and the last digits of coordinates felt. So the closure is taken back
+instead, wherever the structure is at rest (Uzawa's iteration): a point keeps its force N at a gap g of next to none,
+
+    N = kn (c − g),    c ← g + N/kn,
+
+and the blocks go back by the elastic displacements u that they had, found at once from K u = Bᵀ kn d, d being the
+closure of the points that press and K their stiffness, with next to none along the joints: what slid elastically goes
+back as well. Forces stay; what is left is the change of the levers, some per cent of the first, so that each round
+leaves a small share of the lean of the one before: an equilibrium is one of rigid blocks, whatever kn.
+
+Not where joints bond, whose forces hang on their gaps, nor where kn is given. Reference: Simo and Laursen 1992, An
+augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.compatibility import compatibility
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+
+
+def relieved(sim: Simulation) -> bool:
+    """Whether rigid joints show no closure; else it is taken back, and the structure has to come to rest again."""
+    points = rigid_points(sim)
+    shown = unrelieved(sim, points)
+    if shown <= sim.shown:
+        return True
+    take_back(sim, points)
+    return unrelieved(sim, points) > sim.settings.relief.gain * shown
+
+
+def rigid_points(sim: Simulation) -> np.ndarray:
+    """Numbers of the points that press and whose stiffness is no property of theirs."""
+    if not sim.takes_back:
+        return np.zeros(0, int)
+    named = sim.properties.between(sim.model, sim.joints.blocks)
+    return np.flatnonzero(sim.properties.rigid[named][sim.joints.owners] & (sim.contacts.normal > 0.0))
+
+
+def unrelieved(sim: Simulation, points: np.ndarray) -> float:
+    """Share of the elastic closure of these points that geometry shows: root of the energies, 0 to 1 and some more."""
+    normal, kn = sim.contacts.normal[points], sim.joints.kn[points]
+    whole = float((normal**2 / kn).sum())
+    return float(np.sqrt((kn * sim.measured().gaps[points] ** 2).sum() / whole)) if whole > 0.0 else 0.0
+
+
+def take_back(sim: Simulation, points: np.ndarray) -> None:
+    """Moves blocks at rest to where they were without the closure of these points.
+
+    Forces stay to the last digit: what cannot go back at one point without closing another one stays for now.
+    """
+    closed = np.zeros(len(sim.joints.kn))
+    closed[points] = -sim.measured().gaps[points]
+    sim.shift(_motion_that_opens(sim, closed))
+    gaps = sim.measured().gaps
+    closure = np.minimum(gaps, 0.0)  # of open points: they stay open
+    closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
+    sim.contacts.closure[:] = closure
+
+
+def _motion_that_opens(sim: Simulation, by: np.ndarray) -> np.ndarray:
+    """Displacements of all blocks that open the points that press by so much [m], (n_blocks, n_dof)."""
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import splu
+
+    d, joints, relief = sim.model.dimension, sim.joints, sim.settings.relief
+    stiffness = np.column_stack([joints.kn, *[relief.sliding * joints.ks] * (d - 1)])
+    stiffness[sim.contacts.normal <= 0.0] = 0.0
+    wanted = np.zeros_like(stiffness)
+    wanted[:, 0] = by
+    motion = compatibility(sim.model, joints)
+    weighted = motion.T @ diags(stiffness.ravel())
+    matrix = (weighted @ motion).tocsc()
+    diagonal = matrix.diagonal()
+    matrix += diags(relief.singular * np.where(diagonal > 0.0, diagonal, diagonal.max(initial=0.0)))
+    moved = np.zeros_like(sim.bodies.velocities)
+    moved[sim.free] = splu(matrix).solve(weighted @ wanted.ravel()).reshape(len(sim.free), -1)
+    return moved
