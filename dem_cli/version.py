@@ -1,3 +1,3 @@
 """Version of dem; what a version promises stands in docs/versions.md."""
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
