@@ -60,7 +60,8 @@ class LoadSearchSettings:
     small_steps: int = 50  # to an estimate on which histories differ
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
-    trial_per_point: int = 100  # steps × number of contact points
+    trial_per_point: int = 100  # steps × number of contact points, and
+    trial_per_depth: int = 400  # times the square of the courses, where geometry moves: stacks sway as long as that
     most_undecided: int = 5  # trials, before the bracket stays as wide as it is
     aside: float = 0.45  # of the bracket: how far from an undecided load the next trial is
     effort: float = 2e10  # steps × contact points, about 200 s: from there on a bracket that is known is not narrowed

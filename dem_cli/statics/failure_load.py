@@ -273,6 +273,8 @@ class LoadSearch:
             verdict = self._fail_above(load)
         else:
             most = max(settings.trial, settings.trial_per_point * len(sim.joints.kn))
+            if sim.kinematics == "large":
+                most = max(most, settings.trial_per_depth * sim.depth**2)
             tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
             verdict = settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
