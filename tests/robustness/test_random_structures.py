@@ -197,3 +197,6 @@ def test_records_are_kept_and_not_done_again(tmp_path, capsys, monkeypatch):
     assert f"2: {verdicts.ABOVE}: default: 0.53000 > 0.52000 (+1.92%)" in said.err
     monkeypatch.setattr(page.storage, "read", lambda name: {"structures": [made_up()]})
     assert "| wall | 1 | 0 |" in page.section()
+    known = made_up(failure_load=0.519) | {"lowest": 0.52}
+    monkeypatch.setattr(page.storage, "read", lambda name: {"structures": [known]})
+    assert "| wall | 1 | 1 | 0.19% |" in page.section()  # 0.519 of 0.52

@@ -101,11 +101,10 @@ def kinds(rows: Sequence[Row]) -> list[list[str]]:
 
 
 def worst(rows: Sequence[Row]) -> str:
-    """Largest distance of the default run's bracket from a load that is known."""
+    """Largest distance of the default run's failure load from one that is known."""
+    loads = [(row, row["answers"][DEFAULT].get("failure_load")) for row in rows if is_known(row)]
     errors = [
-        verdicts.apart(found, (row["lowest"], row["associated"]))
-        for row in rows
-        if is_known(row) and (found := verdicts.bracket(row["answers"][DEFAULT]))
+        verdicts.apart((load, load), (row["lowest"], row["associated"])) for row, load in loads if load is not None
     ]
     return f"{max(errors):.2%}" if errors else ""
 

@@ -130,7 +130,8 @@ def unsaid(row: Mapping[str, Any]) -> Iterator[Finding]:
         widest = max(gap for *_, gap in pairs)
         named = ", ".join(f"{name} {load:.5g}" for name, load in loads.items())
         of_default = sum(known.get(DEFAULT, ())) / 2.0
-        saying = [name for name, load in loads.items() if name != DEFAULT and speaks(row, name, of_default)]
+        others = [name for name in loads if known[name] != known.get(DEFAULT)]
+        saying = [name for name in others if speaks(row, name, of_default)]
         yield SILENT, f"{named}: up to {widest:.2%} apart" + (f"; said by {', '.join(saying)} alone" if saying else "")
 
 
