@@ -13,8 +13,8 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.edges import edges_of, overlap_lengths
-from dem_cli.contact.joints import Faces
-from dem_cli.contact.start import TOUCHING_GAP
+from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.geometry.rotation import cross
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -65,6 +65,24 @@ def gaps_of_start(model: Model) -> StartGaps:
     _, first = np.unique(np.sort(blocks[order], axis=1), axis=0, return_index=True)
     nearest = order[np.sort(first)]  # one for each two blocks
     return StartGaps(blocks[nearest], widths[nearest], close[nearest])
+
+
+def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
+    """Joints that touch at one end and are open at the other, by a small angle: blocks sit down on them; widest there.
+
+    An end that is open by more than STEEPEST of the length of its joint is far from anything: a corner on a face.
+    """
+    smallest = smallest_edge(model)
+    built = joints_of_start(model, bodies_at_rest(model), properties, smallest)
+    joints, gaps = built.joints, built.contacts.gaps
+    if not len(joints.blocks):
+        return StartGaps(joints.blocks, gaps, gaps > 0.0)
+    first, last = joints.starts[:-1], joints.starts[1:] - 1
+    length = np.sqrt(((joints.points[last] - joints.points[first]) ** 2).sum(axis=1))
+    nearest, widest = np.minimum.reduceat(gaps, first), np.maximum.reduceat(gaps, first)
+    wedge = (nearest <= 0.0) & (widest > TOUCHING_GAP * smallest) & (widest <= STEEPEST * length)
+    order = np.flatnonzero(wedge)[np.argsort(widest[wedge], kind="stable")]
+    return StartGaps(joints.blocks[order], widest[order], np.ones(len(order), bool))
 
 
 def _facing(model: Model, faces: Faces, corners: np.ndarray, scale: np.ndarray) -> np.ndarray:

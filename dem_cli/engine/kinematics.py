@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.contact.gaps import gap_words, gaps_of_start
+from dem_cli.contact.gaps import gap_words, gaps_of_start, wedges_of_start
+from dem_cli.engine.properties import joint_properties
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
 
@@ -32,7 +33,10 @@ def why_moving(case: Case, model: Model) -> str | None:
         return "imperfections of blocks leave gaps that may close"
     gaps = gaps_of_start(model)
     gaps = gaps.where(gaps.close)
-    return f"{gap_words(model, gaps)} may close" if len(gaps.widths) else None
+    if len(gaps.widths):
+        return f"{gap_words(model, gaps)} may close"
+    wedges = wedges_of_start(model, joint_properties(case, model))
+    return f"{gap_words(model, wedges)} may close at one end" if len(wedges.widths) else None
 
 
 def open_gaps_doubt(model: Model) -> str | None:

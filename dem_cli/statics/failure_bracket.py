@@ -88,6 +88,12 @@ class FailureLoad:
         self.found, self.wide, self.status, self.undecided = False, False, NOT_CONVERGED, []
         self.failing = self.failed_state = self.onset = None
 
+    def ends_beyond_its_path(self, resolution: float) -> bool:
+        """Whether a search that started from the path carries more than its plateau: blocks that wedged."""
+        path = self.limits.path if self.limits is not None and self.start.get("kind") == "path" else None
+        load = None if path is None or not path.finished else path.load
+        return self.found and load is not None and self.carried > (1.0 + 2.0 * resolution) * load
+
     def end_undecided(self, widest: float) -> None:
         """The answer where the search ends before the bracket is narrow: both sides, if they are not too far apart.
 

@@ -240,6 +240,8 @@ class LoadSearch:
             answer.status, answer.found = OK, True
         else:
             answer.end_undecided(self.settings.widest)
+        if answer.ends_beyond_its_path(self.resolution):
+            answer.status, answer.found = EXISTS, False
         if answer.failed_state is not None:
             self.sim.restore(answer.failed_state)
             self.track.keep("collapse")
