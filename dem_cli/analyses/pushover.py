@@ -173,7 +173,7 @@ def _of_the_start(job: Job) -> LimitLoads | None:
     """Limit analysis of the geometry of the start, where that of the run moves; None, with a word, without any."""
     from dem_cli.limit.analysis import limit_loads, taken_as_plane
 
-    properties = joint_properties(job.case, job.model, job.settings.stiffness.fixed)
+    properties = joint_properties(job.case, job.model, job.stiffness("fixed"))
     if note := taken_as_plane(properties):
         job.warnings.append(note)
     try:

@@ -20,15 +20,31 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.model.scales import levels, stiffness_scale, structures
+from dem_cli.model.scales import levels, origin_of, smallest_edge, stiffness_scale, structures
 
 if TYPE_CHECKING:
+    from dem_cli.engine.settings import AutomaticStiffness
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.model.model import Model
 
 
 def ratio_of(sim: Simulation) -> float:
     """kn·h/W of its "auto" joints; 0: it has none."""
     return float(sim.properties.kn[sim.properties.rigid].max(initial=0.0) / stiffness_scale(sim.model))
+
+
+def stiffest(model: Model, stiffness: AutomaticStiffness) -> float:
+    """kn·h/W of joints that only have to be stiff, where geometry is that of the start.
+
+    A weight sinks by h/(kn·h/W); coordinates of a structure of size L tell 2e-16 L apart.
+    """
+    free = ~model.fixed
+    size = float(
+        (np.abs(model.centroids[free] - origin_of(model)).max(axis=1) + model.shapes.radii[free]).max(initial=0.0)
+    )
+    if size == 0.0:
+        return stiffness.fixed
+    return min(stiffness.fixed, stiffness.digits * smallest_edge(model) / (np.finfo(float).eps * size))
 
 
 def needed_ratio(sim: Simulation, resolution: float | None = None) -> float:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
-from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
+from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure, stiffest
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
@@ -52,7 +52,7 @@ class Job:
     def stiffness(self, kinematics: str) -> float:
         """kn·h/W of "auto" joints in a static analysis, at least."""
         stiffness = self.settings.stiffness
-        return stiffness.fixed if kinematics == "fixed" else stiffness.statics
+        return stiffest(self.model, stiffness) if kinematics == "fixed" else stiffness.statics
 
     def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
         """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings).

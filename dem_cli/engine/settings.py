@@ -35,7 +35,8 @@ from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP
 class AutomaticStiffness:
     """kn·h/W of "auto" joints: normal stiffness [Pa/m] times smallest edge over mean weight per joint area."""
 
-    fixed: float = 1e10  # where geometry is that of the start: the stiffness drops out
+    fixed: float = 1e10  # where geometry is that of the start, and stiffness drops out
+    digits: float = 1e-4  # there too, a weight sinks by the last digit of a coordinate over this
     statics: float = 1e6  # where geometry moves
     dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
