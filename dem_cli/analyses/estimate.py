@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of
+from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.properties import joint_properties, law_of
@@ -53,7 +53,8 @@ def describe(case: Case, model: Model) -> Rows:
     wanted = case.analysis.kinematics
     moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
     moving = why_moving(case, model) if moving is None else moving
-    sim = simulation("fixed" if moving is None else "large", _ratio(case, model))
+    kinematics = "fixed" if moving is None else "large"
+    sim = simulation(kinematics, _ratio(case, model, kinematics))
     needed = ratio_of(sim) if moving is None else needed_ratio(sim, getattr(case.analysis, "resolution", None))
     sim = sim if needed == ratio_of(sim) else simulation(sim.kinematics, needed)
     return [
@@ -84,13 +85,13 @@ def _shaking(case: Case, model: Model) -> Rows:
     ]
 
 
-def _ratio(case: Case, model: Model) -> float:
+def _ratio(case: Case, model: Model, kinematics: str) -> float:
     """kn·h/W of "auto" joints at the start of the run."""
     if case.analysis.kind == "settlement":
         from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
 
         return of_settlement(model, DEFAULT.stiffness.settlement_overlap)
-    return DEFAULT.stiffness.statics
+    return static_ratio(model, kinematics, DEFAULT.stiffness)
 
 
 def _blocks(model: Model, gravity: float) -> Rows:

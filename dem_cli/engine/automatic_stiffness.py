@@ -33,11 +33,14 @@ def ratio_of(sim: Simulation) -> float:
     return float(sim.properties.kn[sim.properties.rigid].max(initial=0.0) / stiffness_scale(sim.model))
 
 
-def stiffest(model: Model, stiffness: AutomaticStiffness) -> float:
-    """kn·h/W of joints that only have to be stiff, where geometry is that of the start.
+def static_ratio(model: Model, kinematics: str, stiffness: AutomaticStiffness) -> float:
+    """kn·h/W of "auto" joints of a static analysis; where geometry moves it may have to be more (`needed_ratio`).
 
-    A weight sinks by h/(kn·h/W); coordinates of a structure of size L tell 2e-16 L apart.
+    Where it is that of the start, joints only have to be stiff: a weight sinks by h/(kn·h/W), and coordinates of a
+    structure of size L tell 2e-16 L apart.
     """
+    if kinematics != "fixed":
+        return stiffness.statics
     free = ~model.fixed
     size = float(
         (np.abs(model.centroids[free] - origin_of(model)).max(axis=1) + model.shapes.radii[free]).max(initial=0.0)

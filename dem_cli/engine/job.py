@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine import measures
 from dem_cli.engine.audit import warnings as doubts
-from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure, stiffest
+from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure, static_ratio
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
@@ -51,8 +51,7 @@ class Job:
 
     def stiffness(self, kinematics: str) -> float:
         """kn·h/W of "auto" joints in a static analysis, at least."""
-        stiffness = self.settings.stiffness
-        return stiffest(self.model, stiffness) if kinematics == "fixed" else stiffness.statics
+        return static_ratio(self.model, kinematics, self.settings.stiffness)
 
     def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
         """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings).

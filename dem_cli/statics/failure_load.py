@@ -241,7 +241,7 @@ class LoadSearch:
         else:
             answer.end_undecided(self.settings.widest)
         if answer.ends_beyond_its_path(self.resolution):
-            answer.status, answer.found = EXISTS, False
+            answer.status, answer.found, answer.high = EXISTS, False, answer.bound
         if answer.failed_state is not None:
             self.sim.restore(answer.failed_state)
             self.track.keep("collapse")
