@@ -166,7 +166,7 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
             f"the failure load {search.carried:.5g} is above the associated limit load {bound:.5g}, "
             "which rigid blocks cannot exceed: do not trust this run"
         )
-    return loads.summary()
+    return {key: value for key, value in loads.summary().items() if not key.endswith("seconds")}
 
 
 def _of_the_start(job: Job) -> LimitLoads | None:

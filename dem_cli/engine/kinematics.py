@@ -35,7 +35,7 @@ def why_moving(case: Case, model: Model) -> str | None:
     gaps = gaps.where(gaps.close)
     if len(gaps.widths):
         return f"{gap_words(model, gaps)} may close"
-    wedges = wedges_of_start(model, joint_properties(case, model))
+    wedges = wedges_of_start(model, joint_properties(case, model, ratio=1.0))  # whatever the stiffness
     return f"{gap_words(model, wedges)} may close at one end" if len(wedges.widths) else None
 
 

@@ -26,7 +26,7 @@ title = "Column of three"
 density = 2000.0
 
 [joints.dry]
-friction = 3.0
+friction = 5.0
 
 [[structure]]
 kind = "column"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 from pathlib import Path
@@ -42,7 +43,7 @@ def test_the_notebook(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     found = run_all(cells(), "python.ipynb")
     assert found["loads"][0] == pytest.approx(0.3, rel=2e-3)
-    assert sorted(found["loads"]) == found["loads"]
+    assert all(after >= 0.998 * before for before, after in itertools.pairwise(found["loads"]))  # the resolution
     assert len(plt.get_fignums()) == 3
     plt.close("all")
     assert (tmp_path / "shaken" / "summary.json").is_file()

@@ -56,7 +56,7 @@ def test_threads_of_the_libraries_change_nothing(tmp_path):
         folder = tmp_path / threads
         command = [sys.executable, "-m", "dem_cli", "run", CASES / "verification" / "wall_2.toml", "-q", "-o", folder]
         names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS")
-        options = ["--set", "analysis.follow=0.0", "--set", "analysis.limit=true"]
+        options = ["--set", "analysis.follow=0.0", "--set", "analysis.limit=true", "--set", "analysis.start=path"]
         subprocess.run([*command, *options], check=True, env=os.environ | dict.fromkeys(names, threads))
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
         assert summary["start"]["kind"] == "path"

@@ -40,8 +40,6 @@ def run(stem: str, folder: Path, seed: str) -> dict[str, Any]:
     environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
     subprocess.run(command, env=environment, check=True, capture_output=True)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    limits = summary.get("limit_analysis") or {}
-    summary["limit_analysis"] = {key: value for key, value in limits.items() if not key.endswith("seconds")}
     found: dict[str, Any] = {f"summary {key}": value for key, value in summary.items() if key not in TIMES}
 
     def collect(name: str, item: Any) -> None:

@@ -40,10 +40,7 @@ def temporary(tmp_path, monkeypatch):
 
 
 def timeless(summary):
-    """Without what a clock says."""
-    limits = summary.get("limit_analysis") or {}
-    kept = {key: value for key, value in limits.items() if not key.endswith("seconds")}
-    return {key: value for key, value in summary.items() if key not in TIMES} | {"limit_analysis": kept}
+    return {key: value for key, value in summary.items() if key not in TIMES}
 
 
 def names(folder):
