@@ -10,7 +10,10 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from engine import solve
+from engine import scene, solve
+
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.limit.analysis import limit_loads
 
 FROM_GRAVITY = {  # highest load held and lowest that failed; associated load
     "open06": (0.4657, 0.4680, 0.66891),
@@ -38,6 +41,18 @@ def test_loads_reached_from_gravity(name):
     apart = [load for load in others if not low * 0.998 <= load <= high * 1.002]
     assert bool(summary["load_range"]) == bool(apart)
     assert bool(apart) == any("methods differ" in text for text in summary["warnings"])
+
+
+ALONG_PATHS = {"open06": 0.4664, "load00": 0.6733, "wall10": 0.4007, "butt02": 1.1731}  # with increments of 1.1
+
+
+@pytest.mark.parametrize("name", ALONG_PATHS)
+def test_a_path_ends_at_its_first_plateau(name):
+    """With increments that doubled the wall with an opening went on to 0.518."""
+    made = scene(HISTORIES / f"{name}.toml")
+    limits = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case))
+    assert limits.non_associated.finished
+    assert limits.non_associated.load == pytest.approx(ALONG_PATHS[name], rel=7e-3 if name == "wall10" else 1e-3)
 
 
 def stones(case: dict, count: int) -> dict:
