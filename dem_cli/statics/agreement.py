@@ -33,7 +33,7 @@ def unique(search: FailureLoad, resolution: float) -> bool:
     bound, high, limits = search.bound, search.high, search.limits
     if bound is None or high is None or limits is None:
         return False
-    return bound <= high + resolution * abs(high) and not limits.slides
+    return bool(bound <= high + resolution * abs(high)) and not limits.slides
 
 
 def histories(search: FailureLoad) -> list[History]:
@@ -67,7 +67,7 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
     loads = [low, *(other.load for other in apart)]
     others = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
     why = f"{low:.5g} raised from gravity in steps, {others}"
-    return {"lowest": min(loads), "highest": max(loads), "why": why}
+    return {"lowest": float(min(loads)), "highest": float(max(loads)), "why": why}
 
 
 def _at_least(history: History) -> str:

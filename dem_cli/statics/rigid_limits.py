@@ -102,7 +102,7 @@ class RigidLimits:
         structure, friction = self._matrices
         motion = structure.compatibility @ found.velocities.ravel()[structure.free]
         taken = float((friction * found.normal * np.abs(motion[1 :: structure.model.dimension])).sum())
-        return taken > self.job.settings.warm_start.slides * abs(found.upper)
+        return bool(taken > self.job.settings.warm_start.slides * abs(found.upper))
 
     @cached_property
     def path(self) -> Path | None:

@@ -16,8 +16,8 @@ Answer = dict[str, Any]
 DEFAULT = "default"
 STARTS = ("gravity", "path", "limit")  # analysis.start
 KEPT = (
-    "status", "failure_load", "failure_load_bracket", "equilibrium_load", "load_range", "unique", "start", "steps",
-    "warnings",
+    "status", "failure_load", "failure_load_bracket", "equilibrium_load", "load_range", "unique", "kinematics", "start",
+    "steps", "warnings",
 )  # fmt: skip
 
 
@@ -28,7 +28,7 @@ def answers(tables: Tables, max_steps: int | None = None) -> dict[str, Answer]:
     for start in STARTS:
         same = found[DEFAULT].get("start", {})
         if start == same.get("kind") and not same.get("note"):  # the same run, to the last bit
-            found[start] = {key: found[DEFAULT].get(key) for key in KEPT if key in found[DEFAULT]} | {"seconds": 0.0}
+            found[start] = {**found[DEFAULT], "seconds": 0.0}
         else:
             found[start] = answer(tables, f"analysis.start={start}", *limit)
     return found
@@ -40,6 +40,7 @@ def answer(tables: Tables, *overrides: str) -> Answer:
     try:
         summary = solve(from_tables(tables, *overrides)).summary
         kept = {key: summary[key] for key in KEPT if key in summary}
+        kept["bound"] = (summary.get("limit_analysis") or {}).get("associated")
     except DemError as error:
         kept = {"status": f"refused: {error}"}
     except Exception as error:  # whatever it is, it is a bug that the table must show
