@@ -16,6 +16,7 @@ raised from there; one from limit analysis is an equilibrium that exists, and no
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,13 +94,21 @@ class LoadSearch:
     def run_again_in_small_steps(self, estimate: float) -> None:
         """The bracket again, raised from gravity in small steps to an estimate (as users know it) and on.
 
-        Where histories differ the steps may decide: this is then the history that a failure load is stated for.
+        Where histories differ the steps may decide: this is then the history that a failure load is stated for. Where
+        the budget ends first, the bracket stays that of the larger steps.
         """
-        self.track.kept[:] = self.track.kept[:1]
+        known, rows = replace(self.answer), [*self.track.kept]
+        self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
         load = estimate / self.sim.live_scale
         levels = [float(share) * load for share in np.arange(1, self.settings.small_steps) / self.settings.small_steps]
-        self._raise_load(self._trials(levels, self.settings.first_step * self.resolution * load))
+        try:
+            self._raise_load(self._trials(levels, self.settings.first_step * self.resolution * load))
+        except (SolverError, KeyboardInterrupt) as stopped:
+            vars(self.answer).update(vars(known))
+            self.track.kept[:] = rows
+            if isinstance(stopped, KeyboardInterrupt):
+                raise
 
     def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
         """Loads to try from what is carried now."""
