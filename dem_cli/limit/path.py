@@ -17,7 +17,7 @@ import numpy as np
 from dem_cli.limit.elastic import Elastic, State
 from dem_cli.limit.interior import Increment
 from dem_cli.limit.matrices import Structure
-from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 
 OK = "ok"
 FALLS = "not converged: no state under dead loads was found"  # no proof that there is none
@@ -126,8 +126,8 @@ def _follow(
     settings = problem.settings.path
     origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
     reached = last = 0.0
-    calm = 0
-    while calm < 2 and reached < settings.furthest:
+    calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
+    while not _is_plateau(settings, reached, calm_since, abs(slope) / plateau) and reached < settings.furthest:
         stride = (settings.growth - 1.0) * reached if reached else settings.first
         for share, folds in settings.attempts:
             further = reached + share * stride
@@ -141,12 +141,23 @@ def _follow(
             return
         if reached:
             slope = (found.load - state.load) / max(abs(found.load), 1e-12) * reached / (further - reached)
-            calm += 2 if abs(slope) < settings.calm * plateau else 1 if abs(slope) < plateau else -calm
+            calm_since = min(calm_since, reached) if abs(slope) < plateau else np.inf
         _keep(path, structure, problem, found, state, further)
         state, reached, last = found, further, further - reached
         progress(path.loads[-1], reached)
-    if calm >= 2:
+    if _is_plateau(settings, reached, calm_since, abs(slope) / plateau):
         path.status = OK
+
+
+def _is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
+    """Whether a load that grows no more since a displacement has come to its plateau.
+
+    slope: of the last increment, in those that count as none. Early on, while joints still open and close one after
+    the other, a load may rest and rise again: there it has to last. Later the first plateau counts.
+    """
+    if reached >= settings.lasting * since:
+        return True
+    return since >= settings.early and (slope < settings.calm or reached > settings.growth**1.5 * since)
 
 
 def _at_rest(problem: Elastic) -> State:

@@ -20,8 +20,10 @@ class PathSettings:
     most: int = 2500  # factorisations before giving up
     folds: int = 4  # to go round under dead loads
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
-    plateau: float = 2e-3  # relative growth of the load over that of the displacement, twice in a row: none
-    calm: float = 0.5  # share of the plateau's growth that is calm enough at once
+    plateau: float = 2e-3  # relative growth of the load over that of the displacement that is none, ...
+    lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
+    early: float = 2.0  # ... or, from this displacement on, in two increments,
+    calm: float = 0.5  # or in one of less than this share
     tau: float = 0.1  # of the first products, over the square of the largest normal force
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
