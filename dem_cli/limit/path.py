@@ -127,7 +127,7 @@ def _follow(
     origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
     reached = last = 0.0
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
-    while not _is_plateau(settings, reached, calm_since, abs(slope) / plateau) and reached < settings.furthest:
+    while not is_plateau(settings, reached, calm_since, abs(slope) / plateau) and reached < settings.furthest:
         stride = (settings.growth - 1.0) * reached if reached else settings.first
         for share, folds in settings.attempts:
             further = reached + share * stride
@@ -145,11 +145,11 @@ def _follow(
         _keep(path, structure, problem, found, state, further)
         state, reached, last = found, further, further - reached
         progress(path.loads[-1], reached)
-    if _is_plateau(settings, reached, calm_since, abs(slope) / plateau):
+    if is_plateau(settings, reached, calm_since, abs(slope) / plateau):
         path.status = OK
 
 
-def _is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
+def is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
     """Whether a load that grows no more since a displacement has come to its plateau.
 
     slope: of the last increment, in those that count as none. Early on, while joints still open and close one after

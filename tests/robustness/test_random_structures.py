@@ -15,7 +15,7 @@ from studies.stress.random_structures.admissible import LoadedBodies, associated
 from dem_cli import api
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
-SEEDS = range(12)  # of development; those of the page start at 1000
+SEEDS = range(12)  # of development; those of the page start at 2000
 
 
 @pytest.fixture(scope="module")

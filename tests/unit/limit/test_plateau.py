@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.limit.path import _is_plateau
+from dem_cli.limit.path import is_plateau
 from dem_cli.limit.settings import PathSettings
 
 SETTINGS = PathSettings()
@@ -23,4 +23,4 @@ SETTINGS = PathSettings()
     ],
 )
 def test_plateau(since, reached, slope, ended):
-    assert _is_plateau(SETTINGS, reached, since, slope) is ended
+    assert is_plateau(SETTINGS, reached, since, slope) is ended
