@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,10 +15,12 @@ from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure, structure_of
-from dem_cli.limit.path import Path, trace
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
+
+if TYPE_CHECKING:
+    from dem_cli.limit.path import Path
 
 Progress = Callable[[float, float], None]
 
@@ -81,6 +83,8 @@ def limit_loads(
     seconds = time.perf_counter() - begun
     if associated_only or associated.status in (FALLS, LOCKED) or not structure.dead.any():
         return LimitLoads(structure, friction, associated, None, seconds, None)
+    from dem_cli.limit.path import trace  # with SciPy's solvers
+
     path = trace(structure, friction, progress=progress, settings=settings)
     return LimitLoads(structure, friction, associated, path, seconds, time.perf_counter() - begun - seconds)
 
