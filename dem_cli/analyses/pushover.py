@@ -121,8 +121,9 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     apart = load_range(search, resolution)
     if path is None or path.load is None or apart is None or not path.finished:
         return
-    if abs(path.load - search.carried) > resolution * path.load and search.start["kind"] == GRAVITY:
-        load_search.run_again_in_small_steps(min(path.load, search.carried))
+    some = search.carried > job.settings.load_search.least * search.scale
+    if some and abs(path.load - search.carried) > resolution * path.load and search.start["kind"] == GRAVITY:
+        load_search.run_again_in_small_steps(search.carried)
 
 
 def _changed(load: float, rigid: float, lowered: float) -> list[str]:

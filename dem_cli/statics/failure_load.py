@@ -139,9 +139,9 @@ class LoadSearch:
         if self.too_large():
             return estimate, False
         path = limits.path
-        if path is None or not path.load or path.load <= 0.0:
+        load = (path.load or 0.0) / self.sim.live_scale if path is not None else 0.0
+        if path is None or load <= self.settings.least:
             return estimate, False
-        load = path.load / self.sim.live_scale
         if not path.flat(self.sim.settings.warm_start.at_the_end):
             return max(load, estimate), False
         self.plateau = load
@@ -299,7 +299,7 @@ class LoadSearch:
         limits = self.answer.limits
         if limits is not None and self.impossible < np.inf and not limits.slides:
             return Ahead(reach=self.settings.unslid)  # there is an equilibrium, however softly something rests there
-        if limits is None or not limits.followed or limits.path is None:
+        if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
             return Ahead(load > self.plateau)
         return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load))
 
