@@ -35,6 +35,10 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "export": "Write results in other formats.",
     "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }
+# Matrices here are small: threads of NumPy's linear algebra wait in a loop, an eighth of the CPU time of a short run.
+for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # read when NumPy is imported
+    os.environ.setdefault(_threads, "1")
+
 INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 

@@ -38,6 +38,17 @@ def test_help_imports_nothing_but_click():
     assert all(f"  {name} " in result.stdout for name in COMMANDS)
 
 
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads of a process are counted in /proc")
+def test_linear_algebra_does_not_keep_other_cores_busy():
+    code = (
+        "import os, dem_cli.cli.main, numpy; numpy.ones((400, 400)) @ numpy.ones((400, 400))\n"
+        "print(len(os.listdir('/proc/self/task')))"
+    )
+    free = {name: value for name, value in ENVIRONMENT.items() if not name.endswith("_NUM_THREADS")}
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, env=free)
+    assert result.stdout.split() == ["1"]
+
+
 def test_help_is_quick():
     times = []
     for _ in range(5):  # the best of several: other programs run on this machine too
