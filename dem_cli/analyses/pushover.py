@@ -12,7 +12,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
-from dem_cli.statics import post_peak
+from dem_cli.statics import post_peak, softer_joints
 from dem_cli.statics.agreement import doubts, histories, load_range, unique
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
@@ -40,6 +40,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     resolution = case.analysis.resolution
     job.warnings += doubts(search, resolution, load_range(search, resolution))
     if search.status == OK:
+        found |= softer_joints.checked(job, sim, search, resolution)
         found |= _mechanism(sim, search, track)
         if case.analysis.follow > 0.0:
             falling, peak = _fall(job, sim, search)

@@ -70,6 +70,13 @@ class Job:
         sim.shown = shown_closure(sim, resolution)
         return sim
 
+    def softer(self, sim: Simulation, times: float) -> Simulation:
+        """The same as a simulation whose geometry moves, on "auto" joints that are so many times as soft."""
+        softer = self._compiled("large", ratio_of(sim) / times)
+        softer.takes_back, softer.leans = sim.takes_back, leaning(softer)
+        softer.shown = shown_closure(softer, getattr(self.case.analysis, "resolution", None))
+        return softer
+
     def _compiled(self, kinematics: str, ratio: float) -> Simulation:
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(

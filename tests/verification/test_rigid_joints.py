@@ -105,6 +105,17 @@ def test_ten_times_the_stiffness_is_the_same_structure():
     assert loads[0] == pytest.approx(loads[1], rel=RESOLUTION)
 
 
+@pytest.mark.parametrize(("ratio", "load", "holds"), [(1e4, 0.6436, False), (1e6, 0.6457, True)])
+def test_a_load_that_hangs_on_the_stiffness_says_so(ratio, load, holds):
+    """21 blocks, 0.6460 if rigid: on joints of kn·h/W = 1e4 0.4 % are lost, more than the resolution."""
+    settings = replace(DEFAULT, stiffness=replace(DEFAULT.stiffness, statics=ratio))
+    path = CASES / "verification" / "wall_21_mu070.toml"
+    summary, _ = solve(path, "analysis.kinematics=large", "analysis.follow=0", settings=settings)
+    assert summary["failure_load"] == pytest.approx(load, abs=2e-4)
+    assert summary["softer_joints_hold"] is holds
+    assert any("on joints 10 times as soft" in warning for warning in summary["warnings"]) is not holds
+
+
 @pytest.mark.parametrize(
     ("name", "exact"),
     [("wall_21_mu070", 0.64596), ("arch_21_mu040", 0.05216), ("column_14", 0.163265)],
