@@ -61,15 +61,18 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
-    """How the structure fails, with the frames before and after, where failure was shown by motion."""
-    failing = search.failed_state
-    sim.restore(search.standing)
+    """How the structure fails, with the frames before and after, where failure was shown by motion.
+
+    Before is where that motion began: the highest equilibrium may be one of the creep, which had gone further.
+    """
+    before, failing = search.failed_from or search.standing, search.failed_state
+    sim.restore(before)
     track.frame("loading")
     if failing is None:
         return {}
     sim.restore(failing)
     track.frame("collapse")
-    return describe(sim, search.standing)
+    return describe(sim, before)
 
 
 def _search(job: Job) -> tuple[FailureLoad, Simulation]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dem_cli.assembly.assemble import joint_table
-from dem_cli.case.plausibility import BlockSizes, size_doubts
+from dem_cli.case.plausibility import SHAKES, BlockSizes, size_doubts
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry.rotation import cross
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
 SINKS = 0.5  # of the smallest edge: a block that is so far in another one is about to come out on its other side
+HEAVY = 0.05  # dead loads over the weight: so much matters to what pushes
+LIGHT = 1e-3  # live loads over the weight that are most likely in another unit
 STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
 
 
@@ -31,7 +34,7 @@ def problems(case: Case, model: Model) -> list[CaseProblem]:
 
 def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """What may be meant, and most often is not; `blocks` in the order of the model."""
-    return [*size_doubts(_sizes(model, blocks)), *_odd_loads(case, model)]
+    return [*size_doubts(_sizes(model, blocks)), *_odd_loads(case, model), *_loads_and_weight(case, model)]
 
 
 def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
@@ -58,6 +61,31 @@ def _odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
         elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[block]:
             message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
+
+
+def _loads_and_weight(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Dead loads that press where it is mass that pushes, and live loads that are nothing beside the weight."""
+    weight = float(model.masses[~model.fixed].sum()) * case.gravity
+    of_kind = {
+        kind: [(i, math.hypot(*load.force)) for i, load in enumerate(case.load) if load.kind == kind]
+        for kind in ("dead", "live")
+    }
+    pattern = getattr(case.analysis, "pattern", None)
+    dead, live = (sum(force for _, force in of_kind[kind]) for kind in ("dead", "live"))
+    if (pattern == "mass" or case.analysis.kind in SHAKES) and dead > HEAVY * weight:
+        pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
+        message = f"dead loads of {dead:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
+        message += "what is a mass, such as a roof or a floor, is drawn as a block"
+        yield CaseProblem(("load", of_kind["dead"][0][0]), message)
+    likely = 1e3 * live > HEAVY * weight
+    if pattern == "live" and 0.0 < live < LIGHT * weight and likely and not _is_unit(live):
+        message = f"live loads of {live:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
+        yield CaseProblem(("load", of_kind["live"][0][0], "force"), message)
+
+
+def _is_unit(force: float) -> bool:
+    """Whether a force is a power of ten, as where the multiplier is the load itself."""
+    return math.log10(force).is_integer()
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:

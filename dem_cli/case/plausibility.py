@@ -57,8 +57,8 @@ USUAL = {
     "jcs": STRENGTH,
     # a barrel vault; the largest stone ever moved; many blocks of an arch or a wall
     "thickness": UsualRange(0.0, 50.0, "m", "the depth of a structure", (0.02, 5.0), LENGTHS),
-    "block": UsualRange(0.0, 20.0, "m", "the size of a block", (0.02, 5.0), LENGTHS),
-    "blocks": UsualRange(0.0, 8.0, "m", "the size of blocks", (0.02, 5.0), LENGTHS),
+    "block": UsualRange(0.0, 20.0, "m", "the size of a block, root of its area", (0.02, 5.0), LENGTHS),
+    "blocks": UsualRange(0.0, 8.0, "m", "the size of blocks, root of their area", (0.02, 5.0), LENGTHS),
 }  # fmt: skip
 STEEPEST = 2.0  # friction coefficient, tan(63°)
 

@@ -43,6 +43,7 @@ class FailureLoad:
     wide: bool = False  # the bracket is wider than asked for
     failing: Verdict | None = None
     impossible: bool = False  # limit analysis proved that nothing is in equilibrium there; the motion shows it
+    failed_from: SavedState | None = None  # equilibrium from which the lowest failure began
     failed_state: SavedState | None = None  # of the lowest failure
     crept: float | None = None  # internal multiplier of the equilibrium in which the creep ended, if it did
     crept_state: SavedState | None = None
@@ -86,7 +87,7 @@ class FailureLoad:
         self.earlier = (self.carried, self.failed)
         self.low, self.high, self.held = 0.0, None, at_rest
         self.found, self.wide, self.status, self.undecided = False, False, NOT_CONVERGED, []
-        self.failing = self.failed_state = self.onset = None
+        self.failing = self.failed_from = self.failed_state = self.onset = None
 
     def ends_beyond_its_path(self, resolution: float) -> bool:
         """Whether a search that started from the path carries more than its plateau: blocks that wedged."""
@@ -101,7 +102,7 @@ class FailureLoad:
         """
         bound = self.bound
         if bound is not None and (self.high is None or bound < self.high) and bound > (self.low or 0.0):
-            self.high, self.failing, self.failed_state = bound, None, None
+            self.high, self.failing, self.failed_from, self.failed_state = bound, None, None, None
         self.wide = True
         if self.width is not None and self.width <= widest:
             self.found, self.status = True, OK

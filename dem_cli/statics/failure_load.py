@@ -237,7 +237,8 @@ class LoadSearch:
                 self._keep(load)
             elif verdict.state == "failure":
                 trials.fails(load, for_certain=load >= self.impossible)
-                answer.high, answer.failing, answer.failed_state = load * answer.scale, verdict, self.sim.save()
+                answer.high, answer.failing = load * answer.scale, verdict
+                answer.failed_from, answer.failed_state = answer.standing, self.sim.save()
                 answer.impossible = load >= self.impossible
             else:
                 trials.leaves(load)

@@ -9,8 +9,9 @@ import sys
 import numpy as np
 import pytest
 from casefiles import CASES
-from engine import block, moved, rectangle, simulation, solve, tables
+from engine import Records, block, moved, rectangle, scene, simulation, solve, tables
 
+from dem_cli.analyses import solve as solver
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.kernels import records as slot
@@ -47,6 +48,19 @@ def test_bracket_is_as_narrow_as_asked(resolution):
     low, high = summary["failure_load_bracket"]
     assert 0 < (high - low) / low <= resolution * 1.0001
     assert low <= 0.6 * (1 + 1e-6) <= high * (1 + 1e-4)
+
+
+@pytest.mark.parametrize("name", ["wall_21_mu075", "stack_bond_mu060"])
+def test_failure_is_the_motion_from_where_it_began(name):
+    """Where the creep ends in a higher equilibrium than the loads did, that one lies further on than proven failure."""
+    records = Records()
+    case, model = scene(CASES / "verification" / f"{name}.toml", "analysis.follow=0")
+    summary = solver.solve(case, model, records).summary
+    assert summary["search"][-1]["state"] == "equilibrium"  # that of the creep, after the failure
+    before, after = records.frames[-2:]
+    assert (before.stage, after.stage) == ("loading", "collapse")
+    moved = after.positions - before.positions
+    assert float((model.live_loads[:, :2] * moved).sum()) > 0.0
 
 
 def test_cannot_fail():

@@ -32,6 +32,10 @@ kind = "gravity"
 """
 PUSHED = WALL.replace('"gravity"', '"pushover"')
 LIVE = '[[load]]\nblock = "wall-6-1"\nforce = [100.0, 0.0]\nkind = "live"\n'
+PRESSED = '[[load]]\nblock = "wall-6-1"\nforce = [0.0, -4e3]\n'
+PRESS = "load.0: dead loads of 4e+03 N beside blocks of 8.48e+03 N press, but"
+DRAWN = "what is a mass, such as a roof or a floor, is drawn as a block"
+UNSHAKEN = 'duration = 1.0\n[[motion]]\nkind = "none"\n'
 
 
 def said(tmp_path, text: str) -> list[str]:
@@ -61,9 +65,9 @@ UNITS = [
     ("thickness = 0.3", "thickness = 30.0", "structure.0.thickness: 30 m is unusual for a structure 1.7 m in size, "
      "did you mean 0.03 (30 mm) or 0.3 (30 cm)?"),
     ("block = [0.4, 0.2]", "block = [400.0, 200.0]", "structure.0: block 'wall-1-2': 282.8 m is unusual for "
-     "the size of blocks, did you mean 0.2828 (282.8 mm) or 2.828 (282.8 cm)?"),
+     "the size of blocks, root of their area, did you mean 0.2828 (282.8 mm) or 2.828 (282.8 cm)?"),
     ("block = [0.4, 0.2]", "block = [40.0, 17.5]", "structure.0: block 'wall-1-2': 26.46 m is unusual for the "
-     "size of blocks, did you mean 0.02646 (26.46 mm) or 0.2646 (26.46 cm)?"),
+     "size of blocks, root of their area, did you mean 0.02646 (26.46 mm) or 0.2646 (26.46 cm)?"),
     ('kind = "gravity"', 'kind = "gravity"\n' + LIVE, "load.0.kind: not used: kind = 'gravity' has no live load"),
     ('"gravity"', '"pushover"\n' + LIVE + LIVE, "load.0.kind: not used (and 1 more): the live load of pattern = 'mass' "
      "is the weight of the blocks; point loads take part with pattern = 'live'"),
@@ -77,6 +81,10 @@ UNITS = [
      "fixed: a load on it changes nothing"),
     ('"gravity"', '"gravity"\n[[load]]\nblock = "wall-6-1"\nforce = [1.0, 0.0]\nat = [-0.5, 1.1]', "load.0.at: "
      "[-0.5, 1.1] is 0.5 m off block 'wall-6-1': an arm that turns it"),
+    ('"gravity"', f'"pushover"\n{PRESSED}', f"{PRESS} are no part of the live load: {DRAWN}"),
+    ('"gravity"', f'"time-history"\n{UNSHAKEN}{PRESSED}', f"{PRESS} have no inertia: {DRAWN}"),
+    ('"gravity"', '"pushover"\npattern = "live"\n' + LIVE.replace("100.0", "1.3"), "load.0.force: live loads of "
+     "1.3 N in all beside a weight of 8.48e+03 N; did you mean kN?"),
 ]  # fmt: skip
 
 
@@ -97,6 +105,16 @@ def test_no_doubt_about_models_and_monuments(new, tmp_path):
 def test_no_doubt_about_loads_on_their_block(at, tmp_path):
     text = f'{PUSHED}pattern = "live"\n{LIVE}at = {at}\n'
     assert said(tmp_path, text) == []
+
+
+def test_no_doubt_about_a_load_of_one_newton_that_is_multiplied(tmp_path):
+    assert said(tmp_path, f'{PUSHED}pattern = "live"\n{LIVE.replace("100.0", "1.0")}') == []
+
+
+def test_no_doubt_about_small_dead_loads_and_tilting(tmp_path):
+    dead = '[[load]]\nblock = "wall-6-1"\nforce = [0.0, -{}]\n'
+    assert said(tmp_path, PUSHED + dead.format(400.0)) == []
+    assert said(tmp_path, f'{PUSHED}pattern = "tilt"\n{dead.format(4e3)}') == []
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2, 1.2, 5.0, 10.0, 100.0])
