@@ -18,7 +18,7 @@ from dem_cli.ensembles.bisection import Ends
 from dem_cli.ensembles.shaken_run import ProgressOnly
 from dem_cli.ensembles.static_bound import Bound, bound
 from dem_cli.ensembles.static_run import StaticRun, decide, fall
-from dem_cli.ensembles.static_values import changed, checked_model, scale_of, weaker
+from dem_cli.ensembles.static_values import changed, checked_model, load_doubts, scale_of, weaker
 from dem_cli.errors import CaseError
 from dem_cli.laws.strength import strengths
 from dem_cli.model.model import Model
@@ -158,6 +158,8 @@ class SafetyStudy:
         doubts = self.settings.doubts
         if self.analysis.of_strength and ends.fails is not None and ends.fails <= 1.0:
             self.warnings.append("it does not stand as it is: it fails at F = 1, with the strengths of the case")
+        if not self.analysis.of_strength and ends.stands is not None:
+            self.warnings += load_doubts(self.case, ends.stands)
         if bisection.changes(self.answers) > 1:
             tried = ", ".join(f"{v:.5g} {'stands' if s else 'fails'}" for v, s in sorted(self.answers.items()))
             self.warnings.append(f"not monotone: {tried}; the answer is the first failure from the side that stands")

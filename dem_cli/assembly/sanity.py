@@ -34,7 +34,7 @@ def problems(case: Case, model: Model) -> list[CaseProblem]:
 
 def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """What may be meant, and most often is not; `blocks` in the order of the model."""
-    return [*size_doubts(_sizes(model, blocks)), *_odd_loads(case, model), *_loads_and_weight(case, model)]
+    return [*size_doubts(_sizes(model, blocks)), *odd_loads(case, model), *_loads_and_weight(case, model)]
 
 
 def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
@@ -51,7 +51,7 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
     )
 
 
-def _odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
+def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads on blocks that cannot move, and at points outside of their block."""
     for i, load in enumerate(case.load):
         block = model.numbers[load.block]

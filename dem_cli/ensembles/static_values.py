@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.sanity import odd_loads
 from dem_cli.assembly.validate import problems
 from dem_cli.case.variation import impossible, impossible_table, value_at, with_value
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.static_settings import SafetySettings
 from dem_cli.ensembles.bisection import Scale
-from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.laws.strength import reduced, strengths
 from dem_cli.model.model import Model
 
@@ -65,6 +66,19 @@ def checked_model(case: Case, value: float) -> Model:
     if found:
         raise impossible(f"{case.analysis.vary} = {value:.6g}", found)
     return made.model
+
+
+def load_doubts(case: Case, value: float) -> list[str]:
+    """A word where loads do not follow the blocks of a changed case: they keep the place that `at` gives them."""
+    changed_case = changed(case, case.analysis.vary, value)
+    found = [problem for problem in odd_loads(changed_case, assembly(changed_case).model) if "at" in problem.path]
+    if not found:
+        return []
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    where = dotted(found[0].path)
+    return [
+        f"at {case.analysis.vary} = {value:.6g}, {where}{more}: {found[0].message}; `at` does not follow the blocks"
+    ]
 
 
 def weaker(case: Case, factor: float) -> Case:

@@ -115,6 +115,18 @@ def test_least_friction_and_steepest_slope_by_key():
     assert summary["stands_at"] < summary["fails_at"]
 
 
+@pytest.mark.parametrize(("at", "follows"), [([0.0, 0.5], True), ([-0.5, 0.5], False)])
+def test_loads_that_do_not_follow_the_blocks_are_named(at, follows):
+    """A column 1 m wide that topples when it is thinner: a load on its back face stays where that face was."""
+    column = {"kind": "column", "block": [1.0, 1.0], "courses": 3}
+    load = {"block": "column-1", "force": [2000.0, -1000.0], "at": at, "kind": "live"}
+    analysis = {"kind": "safety", "vary": "structure.0.block.0", "between": [0.05, 1.0], "pattern": "live"}
+    summary, _ = solve(tables(structure=[column], load=[load], analysis=analysis))
+    said = [warning for warning in summary["warnings"] if "does not follow" in warning]
+    assert bool(said) is not follows
+    assert follows or "load.0.at: [-0.5, 0.5] is 0." in said[0]
+
+
 def test_whole_numbers():
     """A column of blocks 0.5 m long and 0.2 m high under 0.3 g: stands up to 0.5 / 0.3 / 0.2 = 8.3 courses."""
     case = {
