@@ -31,6 +31,21 @@ DOC_PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
     "analysis": "docs/numerics.md",
 }
 
+EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
+    "pressure thrust surcharge earth earthpressure distributedload lineload weight": "load",
+    "window windows door gate opening": "structure.wall.openings",
+    "earthquake groundmotion accelerogram shaking quake pga": "motion",
+    "mortar": "joints.mohr-coulomb.cohesion",
+    "crack cracking tensilestrength": "joints.mohr-coulomb.tension",
+    "normalstiffness springs": "joints.kn",
+    "overturning failureload seismiccapacity": "analysis.pushover",
+    "vault bridge": "structure.arch",
+    "pier pillar tower": "structure.column",
+    "foundation subsidence": "settlement",
+    "depth outofplane": "structure.thickness",
+    "course layer": "structure.wall.courses",
+}
+
 
 class CaseEntry(NamedTuple):
     """A key as it is in tables of some kinds, or, without a key, the table itself."""
@@ -65,9 +80,18 @@ def find(model: type[BaseModel], query: str) -> list[CaseEntry]:
         names.setdefault(table.path, set()).update(table.declared.model_fields)
     found = [(rank, one) for one in entries(model) if (rank := _rank(words, one, names[one.table.path])) is not None]
     if not words or not found:
+        meant = _everyday(query)
+        if meant is not None:
+            return find(model, meant)
         raise UsageError(unknown(model, query, words))
     best = min(rank for rank, _ in found)
     return _together(entry for rank, entry in found if rank == best)
+
+
+def _everyday(query: str) -> str | None:
+    """The key path for a word that people use for it; None: not known."""
+    plain = re.sub(r"[^a-z]", "", query.lower())
+    return next((path for words, path in EVERYDAY_WORDS.items() if plain in words.split()), None)
 
 
 def entries(model: type[BaseModel]) -> Iterator[CaseEntry]:

