@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
@@ -49,11 +50,13 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             off = _off_the_load(peak, search, sim.live_scale, settings.doubts.off_the_load)
             found["curve_off_the_load"] = bool(off)
             job.warnings += off
+            found["after_collapse"] = joint_state(sims[-1], END)
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
+        found["joint_state"] = joint_state(sim, END)
     if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
         found["limit_analysis"] = _limit_analysis(job, search)
     return job.outcome(sims, _answer(search, sim, resolution) | found)
@@ -64,11 +67,12 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
     failing = search.failed_state
     sim.restore(search.standing)
     track.frame("loading")
+    found = {"joint_state": joint_state(sim, LAST_EQUILIBRIUM)}
     if failing is None:
-        return {}
+        return found
     sim.restore(failing)
     track.frame("collapse")
-    return describe(sim, search.standing)
+    return found | describe(sim, search.standing)
 
 
 def _search(job: Job) -> tuple[FailureLoad, Simulation]:

@@ -88,6 +88,7 @@ def execute(
     is interrupted has "interrupted", with the results so far (KeyboardInterrupt where there are none).
     """
     from dem_cli.case.writer import case_text
+    from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.provenance import provenance
     from dem_cli.output.store import ResultWriter
@@ -102,6 +103,7 @@ def execute(
     ):
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
+        writer.follow(DrawnJoints)
         with (
             abandoning(writer),
             loaded.located(),

@@ -38,7 +38,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     translates = turned < settings.turns * motion.max(initial=0.0)
     mode = "sliding" if translates else "rocking" if share < settings.rocking else "mixed"
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
-    parts: dict[str, Any] = {"moving_blocks": _names(sim, moving)}
+    parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
@@ -53,7 +53,8 @@ def _size(sim: Simulation) -> float:
     return float(((places + radii).max(axis=0) - (places - radii).min(axis=0)).max())
 
 
-def _names(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+def named(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+    """How many blocks, and the names of the first ones."""
     names = [sim.model.block_ids[i] for i in blocks[: sim.settings.mechanism.listed]]
     return {"count": len(blocks), "first": names}
 
