@@ -15,7 +15,7 @@ from dem_cli.pipeline.batches import BatchOptions, batch_of, finish
 from dem_cli.pipeline.completion import completed, stopped, with_names
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.pipeline.monitor_names import check_quantities, monitor_names, monitor_quantities
-from dem_cli.pipeline.recorder import Recorder
+from dem_cli.pipeline.recorder import Recorder, joints_of
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
@@ -88,7 +88,6 @@ def execute(
     is interrupted has "interrupted", with the results so far (KeyboardInterrupt where there are none).
     """
     from dem_cli.case.writer import case_text
-    from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.provenance import provenance
     from dem_cli.output.store import ResultWriter
@@ -103,7 +102,7 @@ def execute(
     ):
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
-        writer.follow(DrawnJoints)
+        writer.follow(joints_of)
         with (
             abandoning(writer),
             loaded.located(),
