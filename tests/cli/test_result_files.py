@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import h5py
 import numpy as np
 import pytest
 from casefiles import CASES
+from click.testing import CliRunner
 
 import dem_cli
+from dem_cli.cli.main import main
 from dem_cli.output.layout import GROUPS, STEP_FIELDS, VTK_FILES
 from dem_cli.output.record import STATES
 
@@ -216,3 +219,55 @@ def test_the_same_in_two_runs(tmp_path):
         dem_cli.run(CASES / "verification" / "column_14.toml", changes, tmp_path / name).close()
     for name in (*VTK_FILES, "results.h5"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+# -- joints ----------------------------------------------------------------------------------------
+
+
+def dem(*words):
+    result = CliRunner().invoke(main, [str(word) for word in words])
+    return result.exit_code, result.output
+
+
+def test_joints_as_a_table(folders):
+    folder = folders["pushover"]
+    assert dem("export", folder, "--joints") == (0, f"{folder / 'joints.csv'}\n")
+    with (folder / "joints.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    with dem_cli.open(folder) as result:
+        joints = result.joints()
+    assert [row["block a"] for row in rows] == ["c-base", "c-1", "c-2"]
+    for name in ("opening", "crack_width", "slip", "normal_stress", "shear_stress", "eccentricity"):
+        column = f"{name.replace('_', ' ')} [{joints.units[name]}]"
+        assert [float(row[column]) for row in rows] == joints[name].tolist()
+    assert [float(row["y [m]"]) for row in rows] == pytest.approx([0.0, HEIGHT, 2 * HEIGHT])
+    assert [float(row["steepness [deg]"]) for row in rows] == [0.0] * 3
+    assert [row["state"] for row in rows] == joints["state"].tolist()
+    assert dem("export", folder, "--joints", "--frame", "0", "-o", folder / "joints.csv")[0] == 0
+    assert "sticking" in (folder / "joints.csv").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--joints", "--frame", "99"], "--frame 99: the run kept"),
+        (["--pvd", "--frame", "0"], "--frame is for --joints"),
+        (["--pvd", "--joints"], "say which format is wanted"),
+    ],
+)
+def test_what_export_refuses(folders, words, message):
+    code, said = dem("export", folders["pushover"], *words)
+    assert code == 2
+    assert message in said
+
+
+def test_no_joints_without_frames(folders):
+    code, said = dem("export", folders["fragility"], "--joints")
+    assert (code, "the results hold no joints" in said) == (2, True)
+
+
+def test_joints_as_a_picture(folders, tmp_path):
+    pytest.importorskip("matplotlib")
+    for kind in ("pushover", "gravity"):  # with open joints, and with none
+        assert dem("plot", folders[kind], "--picture", "joints", "-o", tmp_path / f"{kind}.png")[0] == 0
+        assert (tmp_path / f"{kind}.png").stat().st_size > 5000
