@@ -18,7 +18,7 @@ from dem_cli.statics.agreement import doubts, histories, load_range, unique
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
-from dem_cli.statics.mechanism import describe
+from dem_cli.statics.mechanism import describe, moved_blocks
 from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import GRAVITY, find_start
 
@@ -50,7 +50,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             off = _off_the_load(peak, search, sim.live_scale, settings.doubts.off_the_load)
             found["curve_off_the_load"] = bool(off)
             job.warnings += off
-            found["after_collapse"] = joint_state(sims[-1], END)
+            found["after_collapse"] = joint_state(falling, END) | {"moved_blocks": moved_blocks(falling)}
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement

@@ -23,7 +23,7 @@ GROUPS = (
 def draw_joints(results: Results, path: Path) -> None:
     """Of the last frame: every open joint, and how many there are at each height."""
     joints = joints_of(results)
-    states, steep = joints.at(len(results.frames) - 1), steepness(joints)
+    last, states, steep = results.frames[-1], joints.at(len(results.frames) - 1), steepness(joints)
     widths, heights = states.opening, joints.places.ends[:, :, 1].mean(axis=1)
     widest = float(widths.max(initial=0.0))
     shown = widths > SEEN * widest
@@ -35,7 +35,9 @@ def draw_joints(results: Results, path: Path) -> None:
             left.plot(factor * widths[here], heights[here], marker, ms=5, color=colour, alpha=0.7, label=label, lw=0)
         _draw_counts(right, heights[shown & (steep >= STEEP)], float(np.ptp(heights)) if len(heights) else 0.0)
         left.set(xlabel=f"mean opening [{unit}]", ylabel="height [m]", xlim=(0.0, None))
-        right.set(xlabel=f"head joints open by more than {factor * SEEN * widest:.2g} {unit}")
+        right.set(xlabel=f"head joints > {factor * SEEN * widest:.2g} {unit}")
+        far, unit = style.length_unit(last.displacement)
+        left.set_title(f"last frame: moved {far * last.displacement:.3g} {unit}", fontsize=10, fontweight="normal")
         left.legend(loc="lower right")
         style.headline(figure, results.summary)
 

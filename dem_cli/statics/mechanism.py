@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.engine.measures import displacements
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
 from dem_cli.kernels import records as slot
@@ -45,6 +46,12 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
             parts[key] = _pairs(sim, np.flatnonzero(values > settings.takes_part * motion.max(initial=0.0)))
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
+
+
+def moved_blocks(sim: Simulation) -> dict[str, Any]:
+    """Blocks that went along in a collapse, by how far they are from where they started."""
+    shift = np.sqrt((displacements(sim) ** 2).sum(axis=1))
+    return named(sim, np.flatnonzero(shift > sim.settings.mechanism.takes_part * shift.max(initial=0.0)))
 
 
 def _size(sim: Simulation) -> float:

@@ -37,6 +37,7 @@ def test_it_is_the_exact_one(swept):
     exact = {(a, f): overturns(block, pulse(a, f), SECONDS) for a in AMPLITUDES for f in FREQUENCIES}
     assert set(exact.values()) == {False, True}
     assert {key: value == "true" for key, value in found.items()} == exact
+    assert [row["fallen_blocks.count"] for row in rows] == ["1" if row["collapsed"] == "true" else "" for row in rows]
 
 
 def test_it_is_drawn_where_nobody_says_how(swept, tmp_path, monkeypatch):

@@ -162,6 +162,7 @@ def test_a_column_at_failure_turns_about_its_edge(folders):
         after = result.summary["after_collapse"]
         widest = result.joints()["crack_width"]
         assert after["crack_width"]["value"] == widest.max()
+        assert after["moved_blocks"] == {"count": 3, "first": ["c-1", "c-2", "c-3"]}
         assert after["open"] == int((result.joints()["state"] == "open").sum())
 
 
