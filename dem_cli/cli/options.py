@@ -24,6 +24,7 @@ overrides_option = click.option(
 
 STDIN, STANDARD_INPUT = "-", Path("<stdin>")  # on the command line; in messages
 
+given: list[str] = []  # the case that came from there last, for the report of a fault
 _SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
 
 
@@ -68,6 +69,7 @@ def load(case: str, overrides: Sequence[str]) -> LoadedCase:
     if case != STDIN:
         return api.load_case(case, overrides)
     text = decoded(STANDARD_INPUT, sys.stdin.buffer.read())
+    given[:] = [text]
     return api.load_case(STANDARD_INPUT, overrides, text)
 
 

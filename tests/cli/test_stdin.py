@@ -97,3 +97,13 @@ def test_messages_name_it_with_the_line(given, message):
     found = dem("check", "-", given=given)
     assert found.exit_code == 2
     assert message in found.output
+
+
+def test_a_fault_of_the_program_leaves_the_case(monkeypatch):
+    def broken(loaded):
+        raise RuntimeError("a fault")
+
+    monkeypatch.setattr("dem_cli.api.build_model", broken)
+    assert dem("check", "-", given=CASE).exit_code == 70
+    (report,) = Path.cwd().glob("dem-internal-error-*.txt")
+    assert f"---- <stdin>\n{CASE}" in report.read_text(encoding="utf-8")
