@@ -21,7 +21,9 @@ PLACES = ("block a", "block b", "x [m]", "y [m]", "steepness [deg]", "length [m]
 def joints_of(results: Results) -> JointHistory:
     """The joints of a run. Raises UsageError where it kept none."""
     if results.joints is None:
-        raise UsageError("the results hold no joints: the run kept no frames (output.frames = 0), or is an older one's")
+        raise UsageError(
+            "the results hold no joints: the run kept no frames (output.frames = 0), or an earlier version made it"
+        )
     return results.joints
 
 

@@ -48,7 +48,7 @@ class FollowedJoints(Protocol):
 
 
 class ParaViewFiles:
-    """The files of a run. opened: makes one by its name; joints: None where they are not followed."""
+    """The files of a run. opened: makes one by its name; joints: None where there are none."""
 
     def __init__(self, model: Model, joints: FollowedJoints | None, opened: Callable[[str], h5py.File]):
         self.model, self._rest = model, rest_vertices(model)
@@ -57,7 +57,7 @@ class ParaViewFiles:
         )
         self.points = PointSeries(opened(CONTACTS), CONTACT_FIELDS | STEP_FIELDS)
         self.joints: GridSeries | None = None
-        if joints is not None and len(joints.places.area):
+        if joints is not None:
             starts, places = np.arange(0, 2 * len(joints.places.area) + 1, 2), joint_places(joints.places)
             self.joints = GridSeries(opened(JOINTS), starts, _VTK_LINE, places, JOINT_FIELDS | STEP_FIELDS)
 

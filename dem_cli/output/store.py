@@ -211,10 +211,11 @@ class ResultWriter:
 
     def _begin_frames(self) -> None:
         """The files for ParaView, and what does not change of the joints."""
-        self._joints = self._joints_of and self._joints_of(self.model)
-        if self._joints is not None:
+        joints = self._joints_of and self._joints_of(self.model)
+        if joints is not None and len(joints.places.area):
+            self._joints = joints
             group = self.dem.create_group("joints")
-            for name, values in self._joints.places._asdict().items():
+            for name, values in joints.places._asdict().items():
                 describe(group.create_dataset(name, data=values), JOINT_PLACES[name])
             self._joint_states = GrowingGroup(group, JOINT_STATES, _FRAMES_AT_ONCE)
         self._vtk = ParaViewFiles(self.model, self._joints, self._open)
