@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
@@ -39,7 +40,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         found["status"] = "not converged"
         job.warnings.append(str(error))
     track.flush()
-    return job.outcome([sim], found | {"largest_displacement": measures.largest_displacement(sim)})
+    found |= {"largest_displacement": measures.largest_displacement(sim), "joint_state": joint_state(sim, END)}
+    return job.outcome([sim], found)
 
 
 def loads_between(start: float, end: float, step: float) -> np.ndarray:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
@@ -27,4 +28,5 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         status = "not converged"
         job.warnings.append(str(error))
     track.flush()
-    return job.outcome([sim], {"status": status, "largest_displacement": measures.largest_displacement(sim)})
+    found = {"status": status, "largest_displacement": measures.largest_displacement(sim)}
+    return job.outcome([sim], found | {"joint_state": joint_state(sim, END)})

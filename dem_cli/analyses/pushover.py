@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
@@ -17,7 +18,7 @@ from dem_cli.statics.agreement import doubts, histories, load_range, unique
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
-from dem_cli.statics.mechanism import describe
+from dem_cli.statics.mechanism import describe, moved_blocks
 from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import GRAVITY, find_start
 
@@ -50,11 +51,13 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             off = _off_the_load(peak, search, sim.live_scale, settings.doubts.off_the_load)
             found["curve_off_the_load"] = bool(off)
             job.warnings += off
+            found["after_collapse"] = joint_state(falling, END) | {"moved_blocks": moved_blocks(falling)}
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
     elif search.status != FALLS:
         track.frame("loading")
+        found["joint_state"] = joint_state(sim, END)
     if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
         found["limit_analysis"] = _limit_analysis(job, search)
     return job.outcome(sims, _answer(search, sim, resolution) | found)
@@ -68,11 +71,12 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
     before, failing = search.failed_from or search.standing, search.failed_state
     sim.restore(before)
     track.frame("loading")
+    found = {"joint_state": joint_state(sim, LAST_EQUILIBRIUM)}
     if failing is None:
-        return {}
+        return found
     sim.restore(failing)
     track.frame("collapse")
-    return describe(sim, before)
+    return found | describe(sim, before)
 
 
 def _search(job: Job) -> tuple[FailureLoad, Simulation]:

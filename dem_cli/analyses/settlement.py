@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.errors import CaseError, CaseProblem, SolverError
-from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
-from dem_cli.statics.equilibrium import check_finite, settle_or_fail, stand
-from dem_cli.statics.post_peak import soften_falls
+from dem_cli.statics.equilibrium import stand
+from dem_cli.statics.mechanism import describe
+from dem_cli.statics.settlement_way import SettlementWay
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+
+COLLAPSED = "collapsed under the settlement"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -31,17 +34,27 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     job.skipped.append("failure search: the supports move, the load does not")
     sim = job.simulation("large", stiffness_ratio(model, settings.stiffness.settlement_overlap))
     track = job.track(sim)
+    found: dict[str, Any] = {}
     try:
         job.clock.progress("gravity", 0.0, 0.0, 0.0)
         status = "ok" if stand(sim, job.budget).state == "equilibrium" else FALLS
         track.write("gravity")
         track.frame("gravity")
         if status == "ok":
-            status = _move(case, sim, track, job.budget)
+            way = SettlementWay(sim, _motions(case, sim))
+            status = _move(way, track, case.output.frames, job.budget)
+            found |= measured_at_end(sim)
+            if status == COLLAPSED:
+                found |= _collapse(case, way, job)
     except SolverError as error:
         status = "not converged"
         job.warnings.append(str(error))
-    return job.outcome([sim], {"status": status, "largest_displacement": measures.largest_displacement(sim)})
+    return job.outcome([sim], {"status": status} | (found or measured_at_end(sim)))
+
+
+def measured_at_end(sim: Simulation) -> dict[str, Any]:
+    """What is said of the structure as it is now."""
+    return {"largest_displacement": measures.largest_displacement(sim), "joint_state": joint_state(sim, END)}
 
 
 def stiffness_ratio(model: Model, overlap: float = DEFAULT.stiffness.settlement_overlap) -> float:
@@ -58,30 +71,44 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
     return motion
 
 
-def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
+def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
-    settlement = sim.settings.settlement
-    motion = _motions(case, sim)
-    reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
-    largest = float(np.abs(motion * reach).max())
-    elastic = max(measures.largest_elastic(sim), 1e-9 * sim.smallest)
-    chunk = max(int(np.ceil(max(largest / (settlement.per_step * elastic), settlement.fewest) / settlement.rows)), 1)
-    every = max(settlement.rows // max(case.output.frames - 2, 1), 1)
-    sim.use_combined_damping()
-    sim.set_load(0.0)
-    soften_falls(sim, largest, chunk * settlement.rows)
-    sim.move_supports(motion / (chunk * settlement.rows))
-    for number in range(1, settlement.rows + 1):
-        sim.advance(chunk, slot.HOLD_LOAD)
-        budget.spend(chunk, "moving the supports")
-        check_finite(sim)
+    sim, rows = way.sim, way.rows
+    every = max(rows // max(frames - 2, 1), 1)
+    way.begin()
+    for number in range(1, rows + 1):
+        way.go_on(budget)
         track.write("settlement")
         if number % every == 0:
             track.frame("settlement")
-        share, moved = number / settlement.rows, measures.largest_displacement(sim)
+        share, moved = number / rows, measures.largest_displacement(sim)
         track.observer.progress("settlement", share, moved, 0.95 * share)
-    sim.move_supports(np.zeros_like(motion))
-    verdict = settle_or_fail(sim, 0.0, budget, measures.dead_scale(sim))
+    stands = way.stands(budget)
     track.write("settlement")
     track.frame("settlement")
-    return "ok" if verdict.state == "equilibrium" else "collapsed under the settlement"
+    return "ok" if stands else COLLAPSED
+
+
+def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
+    """How far the supports had moved when the structure ceased to stand, and how it falls; the end stays as it is."""
+    sim = way.sim
+    end = sim.save()
+    try:
+        low, high = way.bracket(job.budget)
+        sim.restore(way.failing)
+        how = describe(sim, way.standing)
+    except SolverError as error:
+        job.warnings.append(f"the settlement at collapse was not found: {error}")
+        return {}
+    finally:
+        sim.restore(end)
+    share = low / way.rows
+    supports = {
+        table.block: {
+            "displacement": [share * component for component in table.displacement],
+            "rotation": share * table.rotation,
+        }
+        for table in case.settlement
+    }
+    found = {"share": share, "bracket": [share, high / way.rows], "supports": supports}
+    return {"settlement_at_collapse": found} | how

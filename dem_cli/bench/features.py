@@ -52,17 +52,19 @@ class Feature:
 
 
 class DiskObserver(Observer):
-    """Everything goes to results.h5 and contacts.vtkhdf, as in `dem run`."""
+    """Everything goes to results.h5 and the files for ParaView, as in `dem run`."""
 
     def __init__(self, case: Case, model: Model, folder: Path):
         from dem_cli.case.writer import case_text
+        from dem_cli.contact.drawn_joints import DrawnJoints
         from dem_cli.output.store import ResultWriter
 
         names = [f"monitor {i + 1}" for i in range(len(case.monitor))]
         self.writer = ResultWriter(folder, model, case_text(case), {}, names, case.analysis.kind)
+        self.writer.follow(DrawnJoints)
 
     def frame(self, frame: Frame) -> None:
-        """To both files."""
+        """To all files."""
         self.writer.frame(frame)
 
     def row(self, row: HistoryRow) -> None:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.calibrate.table import Calibration
 from dem_cli.calibrate.trials import CalibrationTrial
+from dem_cli.output.csv_cells import cell
 
 OK = "ok"
 
@@ -73,7 +74,7 @@ def as_csv(table: Sequence[dict[str, Any]]) -> str:
     writer = csv.DictWriter(text, keys, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
     for row in table:
-        writer.writerow({key: "-".join(map(str, v)) if isinstance(v, list) else v for key, v in row.items()})
+        writer.writerow({key: cell("-".join(map(str, v)) if isinstance(v, list) else v) for key, v in row.items()})
     return text.getvalue()
 
 

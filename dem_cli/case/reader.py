@@ -42,6 +42,11 @@ class CaseSource:
         self.overrides = tuple(overrides)
         self.old_keys: list[CaseProblem] = []  # doubts about keys that are retired and still read
 
+    @property
+    def name(self) -> str:
+        """What results, and a case without a title, are called."""
+        return self.path.stem.strip("<>")
+
     @cached_property
     def places(self) -> KeyPositions:
         """Where every key and value of the text stands."""
@@ -96,7 +101,7 @@ class LoadedCase(CaseSource):
         self.warnings = [self.render(doubt) for doubt in (*source.old_keys, *doubts(case))]
 
     def __repr__(self) -> str:
-        return f"<case {self.case.title or self.path.stem!r} of {self.path}>"
+        return f"<case {self.case.title or self.name!r} of {self.path}>"
 
 
 def read_case(
@@ -131,7 +136,7 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
     source.old_keys, found = retired_keys.rename(data, {override.path for override in source.overrides})
-    cross_references.complete(data, source.path.stem)
+    cross_references.complete(data, source.name)
     case = None
     try:
         case = model.model_validate(data, context={"folder": source.path.parent})  # where relative paths start
@@ -175,6 +180,11 @@ def read_text(path: Path) -> str:
         raise UsageError(f"{path}: is a folder; a case is a TOML file") from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be read ({error.strerror or error})") from None
+    return decoded(path, raw)
+
+
+def decoded(path: Path, raw: bytes) -> str:
+    """The text that the file holds."""
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.options import case_argument, load, overrides_option, warn
 
 
 @click.command("build", short_help="Write the geometry of a case to a file.")
@@ -18,7 +18,7 @@ def command(case: str, overrides: tuple[str, ...], output: str) -> None:
     from dem_cli import api
     from dem_cli.output.vtk import write_geometry
 
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     model = api.build_model(loaded)
     warn(loaded)
     write_geometry(Path(output), model)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dem_cli.calibrate.comparison import OK, TrialAnswer
-from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.options import case_argument, load, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
@@ -46,13 +46,12 @@ def command(
 
     Every shape with every aperture is one run up to failure.
     """
-    from dem_cli import api
     from dem_cli.calibrate.trials import trials
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     check(loaded)
     plan = trials(loaded.case)
     check_trials(loaded, plan)
@@ -60,7 +59,7 @@ def command(
         warn(loaded)
     with (
         Interrupts(),
-        OutputFolder(output or Path("results") / f"{loaded.path.stem}-calibration", force=force) as folder,
+        OutputFolder(output or Path("results") / f"{loaded.name}-calibration", force=force) as folder,
     ):
         found = solve_all(plan, min(jobs or usable_cores(), len(plan)), quiet)
         summary = summarised(loaded, plan, found) | {"wall_seconds": time.perf_counter() - started}
@@ -195,7 +194,7 @@ def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequ
     unanswered = [f"{trial.name}: {one.status}" for trial, one in zip(plan, found) if one.status != OK]
     return ordered(
         {
-            "title": case.title or loaded.path.stem,
+            "title": case.title or loaded.name,
             "kind": "calibration",
             "version": __version__,
             "status": OK,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.options import case_argument, load, overrides_option, warn
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -23,7 +23,7 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
     from dem_cli import api
     from dem_cli.pipeline.monitor_names import check_quantities, monitor_names
 
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     model = api.build_model(loaded)
     with loaded.located():
         check_quantities(loaded.case, monitor_names(loaded.case.monitor))

@@ -12,14 +12,32 @@ from dem_cli.errors import UsageError
 
 @click.command("export", short_help="Write results in other formats.")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--joints", is_flag=True, help="A CSV file: opening, crack width, slip and stress of every joint.")
 @click.option("--pvd", is_flag=True, help="A .vtu and .vtp file per frame with .pvd, for ParaView before 5.12.")
-@click.option("-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Default: DIR/pvd.")
-def command(folder: Path, pvd: bool, output: Path | None) -> None:
+@click.option(
+    "--frame", metavar="WHICH",
+    help="With --joints: last (the default), failure, a number from 0, or a time such as 2.5s.",
+)  # fmt: skip
+@click.option(
+    "-o", "--output", metavar="PATH", type=click.Path(path_type=Path), help="Default: DIR/joints.csv, DIR/pvd."
+)
+def command(folder: Path, joints: bool, pvd: bool, frame: str | None, output: Path | None) -> None:
     """Write the results in DIR in another format."""
+    from dem_cli.output.joint_table import JOINTS_TABLE, joints_of, write_joints
     from dem_cli.output.reader import read
     from dem_cli.output.vtk import export_pvd
 
-    if not pvd:
-        raise UsageError("say which format is wanted: --pvd")
-    for path in export_pvd(read(folder), output or folder / "pvd"):
-        console.show(str(path))
+    if joints == pvd:
+        raise UsageError("say which format is wanted: --joints or --pvd")
+    if pvd and frame is not None:
+        raise UsageError("--frame is for --joints; --pvd writes all frames")
+    results = read(folder)
+    if pvd:
+        for path in export_pvd(results, output or folder / "pvd"):
+            console.show(str(path))
+        return
+    from dem_cli.render.render import frame_number
+
+    joints_of(results)
+    number = frame_number(results.frames, results, frame or "last")
+    console.show(str(write_joints(results, number, output or folder / JOINTS_TABLE)))

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import click
 
+from dem_cli.cli.options import STANDARD_INPUT, STDIN, given
 from dem_cli.version import __version__
 
 CODE = 70  # EX_SOFTWARE of sysexits.h
@@ -53,6 +54,7 @@ def write(error: Exception, words: Sequence[str]) -> Path:
             f"command: dem {' '.join(words)}\n\n",
             *traceback.format_exception(error),
             *(f"\n---- {word}\n{case_text(Path(word))}" for word in words if is_case(word)),
+            *(f"\n---- {STANDARD_INPUT}\n{text[:LARGEST_CASE]}" for text in given if STDIN in words),
         )
     )
     name = f"dem-internal-error-{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}.txt"

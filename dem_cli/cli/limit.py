@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.options import case_argument, load, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 from dem_cli.version import __version__
@@ -54,7 +54,7 @@ def command(
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     require_multiplier(loaded)
     model = api.build_model(loaded)
     properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
@@ -103,7 +103,7 @@ def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) 
     limits = found.summary() | {"heads": heads}
     return ordered(
         {
-            "title": loaded.case.title or loaded.path.stem,
+            "title": loaded.case.title or loaded.name,
             "kind": "limit",
             "version": __version__,
             "status": status(found),
@@ -156,14 +156,16 @@ def end_of_path(found: LimitLoads) -> Collapse | None:
 def write(
     loaded: LoadedCase, model: Model, found: LimitLoads, summary: dict[str, Any], output: Path, force: bool
 ) -> None:
-    """summary.json, results.h5, contacts.vtkhdf and case.toml in the folder `output`, whole or not at all."""
+    """summary.json, results.h5, the files for ParaView and case.toml in the folder `output`, whole or not at all."""
     from dem_cli.case.writer import case_text
+    from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.provenance import provenance
     from dem_cli.output.store import ResultWriter
 
     with OutputFolder(output, force=force) as folder:
         writer = ResultWriter(folder.path, model, case_text(loaded.case), provenance(), kind="limit", name=output)
+        writer.follow(DrawnJoints)
         try:
             for snapshot in frames(loaded, found):
                 writer.frame(snapshot)

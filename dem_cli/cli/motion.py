@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option, warn
+from dem_cli.cli.options import case_argument, load, overrides_option, warn
 from dem_cli.cli.words import console
 from dem_cli.errors import CaseError, DemError, UsageError
 from dem_cli.version import __version__
@@ -50,12 +50,12 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
     from dem_cli.output.folder import OutputFolder
     from dem_cli.output.summary import to_json
 
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     api.build_model(loaded)  # supports that do not exist, records that cannot be used
     warn(loaded)
     groups = groups_of(loaded)
     summary = summarised(loaded, groups)
-    with OutputFolder(output or Path("results") / f"{loaded.path.stem}-motion", force=force) as folder:
+    with OutputFolder(output or Path("results") / f"{loaded.name}-motion", force=force) as folder:
         write(folder, groups, summary)
         place = folder.commit()
     console.show(to_json(summary).rstrip() if as_json else answer(summary, place))

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -19,6 +22,9 @@ overrides_option = click.option(
     help="Change one value, such as --set joints.dry.friction=0.5; may be repeated.",
 )
 
+STDIN, STANDARD_INPUT = "-", Path("<stdin>")  # on the command line; in messages
+
+given: list[str] = []  # the case that came from there last, for the report of a fault
 _SMALLEST, _LARGEST = 200, 8000  # pixels of a picture
 
 
@@ -50,6 +56,21 @@ class AxisLimits(click.ParamType):
         if not low < high:
             self.fail(f"{value}: give two numbers, the lower one first, such as 0:0.02")
         return low, high
+
+
+def load(case: str, overrides: Sequence[str]) -> LoadedCase:
+    """Read and validate the case that a command is given: a file, or standard input where it is `-`.
+
+    Relative paths in a case from standard input start at the working directory. Raises CaseError and UsageError.
+    """
+    from dem_cli import api
+    from dem_cli.case.reader import decoded
+
+    if case != STDIN:
+        return api.load_case(case, overrides)
+    text = decoded(STANDARD_INPUT, sys.stdin.buffer.read())
+    given[:] = [text]
+    return api.load_case(STANDARD_INPUT, overrides, text)
 
 
 def warn(loaded: LoadedCase) -> None:

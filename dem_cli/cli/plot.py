@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from dem_cli.post.chart import ChartOptions
 
 CHART, SWEEP = "plot.png", "sweep.png"
-PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy")
+PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy", "joints")
 
 
 @click.command("plot", short_help="Draw the results of runs and sweeps.")

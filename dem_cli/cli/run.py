@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.options import case_argument, load, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.errors import DemError
 from dem_cli.pipeline.batches import BatchOptions, check
@@ -86,7 +86,7 @@ def command(
     from dem_cli.pipeline.execution import one_of_many
 
     started = time.perf_counter()
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     one_of_many(loaded)
     options = BatchOptions(threads, resume)
     check(loaded.case, options)
@@ -94,7 +94,7 @@ def command(
     summary, folder = execute(
         loaded,
         model,
-        output or Path("results") / loaded.path.stem,
+        output or Path("results") / loaded.name,
         started,
         force=force,
         quiet=quiet,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli.cli.options import case_argument, overrides_option
+from dem_cli.cli.options import case_argument, load, overrides_option
 from dem_cli.cli.words import console
 from dem_cli.cli.words.run_counter import RunCounter
 from dem_cli.errors import CaseError, CaseProblem, UsageError
@@ -67,7 +67,6 @@ def command(
     on where an interrupted or killed one stopped. Exit code: 0 all solved, 1 some failed; a run that does not stand is
     solved, and counted.
     """
-    from dem_cli import api
     from dem_cli.sweep.folder import opened
     from dem_cli.sweep.run import prepared
 
@@ -75,9 +74,9 @@ def command(
     part = sharded(shard)
     if fresh and shard:
         raise UsageError("--fresh with --shard would throw away the runs of the other shards; give another DIR with -o")
-    loaded = api.load_case(case, overrides)
+    loaded = load(case, overrides)
     plan = planned(loaded)
-    folder = output or Path("results") / f"{loaded.path.stem}_sweep"
+    folder = output or Path("results") / f"{loaded.name}_sweep"
     sweep = prepared(loaded, plan, folder.resolve(), loaded.overrides, light=keep == "summary")
     if dry_run:
         print_plan(sweep)
@@ -116,14 +115,18 @@ def print_plan(sweep: PlannedSweep) -> None:
     import csv
     import sys
 
+    from dem_cli.output.csv_cells import cell
     from dem_cli.sweep.plan import show_value
+
+    def told(value: Any) -> Any:
+        return cell(value) if isinstance(value, str) else show_value(value)
 
     names = ["run", *sweep.plan.keys]
     writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(names)
+    writer.writerow(map(cell, names))
     for run, job in zip(sweep.plan.runs, sweep.jobs, strict=True):
         values = sweep.base | run.values
-        writer.writerow([job.id if job else "", *("" if k not in values else show_value(values[k]) for k in names[1:])])
+        writer.writerow([job.id if job else "", *("" if k not in values else told(values[k]) for k in names[1:])])
 
 
 def spread(

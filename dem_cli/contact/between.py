@@ -48,15 +48,19 @@ class StartJoints:
         shared = np.flatnonzero((np.sort(self.blocks, axis=1) == sorted((first, second))).all(axis=1))
         if not len(shared):
             return None
-        joint = shared[self.lengths[shared].argmax()]
-        edges = self.edges[joint]
-        if self.blocks[joint, 0] != first:
-            edges = edges[[2, 3, 0, 1]]
-        places = np.array(overlap_ends(edges[np.newaxis], self.corners))  # (2, 1) along the first edge
-        a0, a1, b0, b1 = self.corners[edges]
-        along = (a1 - a0) / np.hypot(*(a1 - a0))
-        on_first = a0 + places * along
-        share = (on_first - b0) @ along / ((b1 - b0) @ along)
-        on_second = b0 + share[:, np.newaxis] * (b1 - b0)
+        joint = shared[[self.lengths[shared].argmax()]]
+        turned = self.blocks[joint[0], 0] != first
+        normals, on_first, on_second = self.sides(self.edges[joint][:, [2, 3, 0, 1]] if turned else self.edges[joint])
         centroids = self.model.centroids
-        return JointEnds(np.array([along[1], -along[0]]), on_first - centroids[first], on_second - centroids[second])
+        return JointEnds(normals[0], on_first[0] - centroids[first], on_second[0] - centroids[second])
+
+    def sides(self, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Normals (n, d) of pairs of edges, and where they begin and end on either side [m], (n, 2, d) each."""
+        a0, a1, b0, b1 = (self.corners[edges[:, i]] for i in range(4))
+        along = (a1 - a0) / np.hypot(*(a1 - a0).T)[:, np.newaxis]
+        places = np.stack(overlap_ends(edges, self.corners), axis=1)[..., np.newaxis]
+        on_first = a0[:, np.newaxis] + places * along[:, np.newaxis]
+        past = ((on_first - b0[:, np.newaxis]) * along[:, np.newaxis]).sum(axis=2)
+        share = past / ((b1 - b0) * along).sum(axis=1)[:, np.newaxis]
+        on_second = b0[:, np.newaxis] + share[..., np.newaxis] * (b1 - b0)[:, np.newaxis]
+        return np.stack([along[:, 1], -along[:, 0]], axis=1), on_first, on_second

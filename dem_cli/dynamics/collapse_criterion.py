@@ -26,19 +26,30 @@ class CollapsedBlock(NamedTuple):
 
 def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock | None:
     """The block that turned or sank farthest beyond the limits of the case, where there is one."""
-    free, d = sim.free, sim.model.dimension
-    turned = np.abs(sim.bodies.orientations[free, 0])
-    sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
-    limit = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
-    for values, limits, word, unit in (
-        (np.degrees(turned), np.full(len(free), analysis.fallen_deg), "turned by", "°"),
-        (sank, limit, "sank by", " m"),
-    ):
+    for values, limits, word, unit in _measured(sim, analysis):
         over = values - limits
         if len(over) and over.max() > 0.0:
             k = int(over.argmax())
-            return CollapsedBlock(sim.model.block_ids[free[k]], sim.time, f"{word} {values[k]:.3g}{unit}")
+            return CollapsedBlock(sim.model.block_ids[sim.free[k]], sim.time, f"{word} {values[k]:.3g}{unit}")
     return None
+
+
+def fallen_blocks(sim: DynamicSimulation, analysis: ShakingAnalysis) -> np.ndarray:
+    """Numbers of all blocks that turned or sank beyond the limits of the case, ascending."""
+    over = [values > limits for values, limits, _, _ in _measured(sim, analysis)]
+    return sim.free[np.any(over, axis=0)]
+
+
+def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
+    """What tells a fall, of the free blocks: values, limits, a word and a unit."""
+    free, d = sim.free, sim.model.dimension
+    turned = np.degrees(np.abs(sim.bodies.orientations[free, 0]))
+    sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
+    drops = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
+    return [
+        (turned, np.full(len(free), analysis.fallen_deg), "turned by", "°"),
+        (sank, drops, "sank by", " m"),
+    ]
 
 
 def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite
+from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
 from dem_cli.dynamics.ground import GroundMotion
@@ -18,6 +18,7 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.properties import joint_properties, law_of, laws_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.viscous import Damping
@@ -27,6 +28,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.output.record import FALLS, Energy, Samples
 from dem_cli.statics.equilibrium import stand
+from dem_cli.statics.mechanism import named
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -145,6 +147,7 @@ class TimeHistory:
         found["collapse_time"] = None if fallen is None else fallen.time
         if fallen is not None:
             found |= {"collapse_block": fallen.block, "collapse": fallen.how}
+            found["fallen_blocks"] = named(sim, fallen_blocks(sim, self.case.analysis))
         return found
 
     def _stretch(self, n_steps: int, every: int) -> np.ndarray:
@@ -194,6 +197,7 @@ class TimeHistory:
             "largest_displacement": measures.largest_displacement(sim),
             "largest_overlap": self.overlap,
             "unbalanced_force": None,
+            "joint_state": joint_state(sim, END),
         })  # fmt: skip
 
 

@@ -129,6 +129,7 @@ class SettlementSettings:
     """How slowly supports move."""
 
     rows: int = 200  # looks along the way
+    station: int = 10  # looks from one state that is kept to the next
     per_step: float = 0.05  # movement of a support in a step, in elastic displacements under the dead loads
     fewest: int = 20_000  # steps of the whole movement, at least
 

@@ -25,7 +25,11 @@ OWN_NAMES = frozenset(
     (
         SUMMARY,
         "results.h5",
+        "blocks.vtkhdf",
         "contacts.vtkhdf",
+        "joints.vtkhdf",
+        "joints.csv",
+        "joints.png",
         "case.toml",
         "capacity.png",
         "collapse.png",

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import h5py
 import numpy as np
 from h5py import h5s
+
+from dem_cli.output.layout import Described, describe
 
 _CHUNK_BYTES = 32768
 _FEWEST_ROWS = 64
@@ -14,10 +18,13 @@ class GrowingDataset:
     """HDF5 dataset that grows row by row."""
 
     def __init__(self, group: h5py.Group, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int):
+        """n_rows: how many rows space is made for at once, as far as that is little."""
         width = tuple(max(1, size) for size in shape)
         row_bytes = dtype.itemsize * int(np.prod(width))
-        chunk = max(1, min(max(_FEWEST_ROWS, n_rows), _CHUNK_BYTES // row_bytes))
-        data = group.create_dataset(name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *width))
+        chunk = max(1, min(n_rows, _CHUNK_BYTES // row_bytes))
+        self.data = data = group.create_dataset(
+            name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *width)
+        )
         self.id, self.shape, self.dtype, self.length = data.id, shape, dtype, 0
 
     def append(self, rows: np.ndarray) -> int:
@@ -33,10 +40,14 @@ class GrowingDataset:
 
 
 class GrowingGroup:
-    """The growing datasets of one group, made when they first get rows."""
+    """The growing datasets of one group, made when they first get rows.
 
-    def __init__(self, group: h5py.Group):
-        self.group = group
+    declared     what each holds; one that is not there is written without attributes (bookkeeping of VTKHDF)
+    fewest_rows  that space is made for at once
+    """
+
+    def __init__(self, group: h5py.Group, declared: Mapping[str, Described], fewest_rows: int = _FEWEST_ROWS):
+        self.group, self.declared, self.fewest_rows = group, declared, fewest_rows
         self._columns: dict[str, GrowingDataset] = {}
 
     def append(self, name: str, rows: np.ndarray) -> int:
@@ -44,8 +55,10 @@ class GrowingGroup:
         rows = np.asarray(rows)
         column = self._columns.get(name)
         if column is None:
-            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, len(rows))
+            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, max(self.fewest_rows, len(rows)))
             self._columns[name] = column
+            if name in self.declared:
+                describe(column.data, self.declared[name])
         return column.append(rows)
 
     def append_one(self, name: str, value: float, dtype: type = np.int64) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeAlias, overload
+from typing import Any, NamedTuple, TypeAlias, overload
 
 import h5py
 import numpy as np
@@ -15,7 +15,8 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.record import FRAME_UNITS, STAGES, ContactRecord, Energy, Frame
+from dem_cli.output.layout import FRAMES, units_of
+from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
 
@@ -37,13 +38,25 @@ class Results:
     status: str
     kind: str
     series: HistorySeries | None  # of a time history
+    joints: JointHistory | None = None  # None: results without frames, or of earlier versions
     source: ExitStack | None = None  # holds open the file that frames are read from; None: they are in memory
+
+
+class JointHistory(NamedTuple):
+    """The joints as they were drawn, and their states frame by frame."""
+
+    places: JointPlaces
+    states: JointStates  # in memory or datasets of a file that is open, (n_frames, n_joints) each
+
+    def at(self, frame: int) -> JointStates:
+        """Of one frame, by its number."""
+        return JointStates(*(values[frame] for values in self.states))
 
 
 class Frames(Sequence[Frame]):
     """All frames of a run, handed out one by one; their arrays are in memory, or datasets of a file that is open."""
 
-    units = FRAME_UNITS
+    units = units_of(FRAMES)
 
     def __init__(self, columns: dict[str, Stored], contacts: dict[str, Stored]):
         self._columns, self._contacts = columns, contacts
@@ -140,6 +153,7 @@ def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
         status=str(dem.attrs["status"]),
         kind=str(dem.attrs["kind"]),
         series=read_series(dem["series"]) if "series" in dem else None,
+        joints=_read_joints(dem["joints"], lazy) if "joints" in dem else None,
     )
 
 
@@ -154,6 +168,12 @@ def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
     contacts = dem["contacts"]
     return Frames(columns, {name: contacts[name] if lazy else contacts[name][:] for name in ContactRecord._fields})
+
+
+def _read_joints(group: h5py.Group, lazy: bool) -> JointHistory:
+    states = [group[name] for name in JointStates._fields]
+    places = JointPlaces(*(group[name][:] for name in JointPlaces._fields))
+    return JointHistory(places, JointStates(*(states if lazy else [data[:] for data in states])))
 
 
 def _read_model(group: h5py.Group) -> Model:

@@ -41,9 +41,26 @@ class ContactRecord(NamedTuple):
     state: np.ndarray  # index into STATES, (n,) int8
 
 
-# Units of the numbers below that have one, by name.
-CONTACT_UNITS = {"points": "m", "normal_force": "N", "shear_force": "N", "force": "N", "gap": "m", "slip": "m"}
-FRAME_UNITS = {"time": "s", "displacement": "m", "positions": "m", "orientations": "rad"}
+class JointPlaces(NamedTuple):
+    """Joints as they were drawn: pairs of edges that face each other in the undeformed structure."""
+
+    blocks: np.ndarray  # the two blocks a, b, (n, 2) int64
+    ends: np.ndarray  # where it begins and ends, on a [m], (n, 2, d)
+    normals: np.ndarray  # unit, from a to b, (n, d)
+    length: np.ndarray  # [m], (n,)
+    area: np.ndarray  # length times the smaller thickness [m²], (n,)
+
+
+class JointStates(NamedTuple):
+    """These joints at one instant, (n,) each; across and along are said by a, with which a joint turns."""
+
+    opening: np.ndarray  # mean distance of its ends across it, positive open [m]
+    crack_width: np.ndarray  # distance of its wider end; 0 where none is open [m]
+    slip: np.ndarray  # of the middle of b on a, along the normal turned by +90° [m]
+    normal_stress: np.ndarray  # normal force over area, compression positive [Pa]
+    shear_stress: np.ndarray  # on b, along the normal turned by +90° [Pa]
+    eccentricity: np.ndarray  # of the normal force from the middle, the same way; 0 where there is none [m]
+    state: np.ndarray  # index into STATES, int8: sliding where any point slides, open where none presses
 
 
 class Frame(NamedTuple):

@@ -6,6 +6,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
+from dem_cli.output.csv_cells import cell
 from dem_cli.output.record import RunRow
 
 TABLES = {"fragility": "fragility.csv", "time-history": "repeats.csv"}  # kind of analysis -> file
@@ -16,9 +17,9 @@ def write_runs(path: Path, rows: Sequence[RunRow], monitors: Sequence[str]) -> N
     """Columns as in COLUMNS, then the peak of each monitor; empty where nobody knows."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow([*RUN_COLUMNS, *(f"peak {name}" for name in monitors)])
+        table.writerow([*RUN_COLUMNS, *(cell(f"peak {name}") for name in monitors)])
         for row in rows:
             collapsed = "" if row.collapsed is None else int(row.collapsed)
             time = "" if row.time is None else row.time
-            table.writerow([row.structure, row.record, row.intensity, row.acceleration, collapsed, time, row.how,
-                            *row.peaks])  # fmt: skip
+            told = (row.structure, row.record, row.intensity, row.acceleration, collapsed, time, row.how, *row.peaks)
+            table.writerow(map(cell, told))

@@ -1,10 +1,4 @@
-"""Time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and in history.csv.
-
-/dem/series                                        attributes: monitors (names), quantities
-/dem/series/time                                   [s], (n,); written last, it counts
-/dem/series/base_acceleration, _velocity, _displacement   [m, s], (n, d)
-/dem/series/monitors                               (n, n_monitors), SI
-"""
+"""Time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and in history.csv."""
 
 from __future__ import annotations
 
@@ -16,7 +10,9 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
+from dem_cli.output.csv_cells import cell
 from dem_cli.output.growing_dataset import GrowingGroup
+from dem_cli.output.layout import SERIES
 from dem_cli.output.record import Samples
 
 MONITOR_UNITS = {
@@ -61,7 +57,9 @@ class SeriesWriter:
         self.names, self.quantities = tuple(names), tuple(quantities)
         group.attrs.create("monitors", list(self.names), dtype=_TEXT)
         group.attrs.create("quantities", list(self.quantities), dtype=_TEXT)
-        self._group, self._columns = group, GrowingGroup(group)
+        units = tuple(MONITOR_UNITS[quantity] for quantity in self.quantities)
+        watched = SERIES["monitors"]._replace(columns=self.names, units=units)
+        self._group, self._columns = group, GrowingGroup(group, SERIES | {"monitors": watched})
         self._waiting: list[Samples] = []
         self.n_waiting = 0
         self._peaks: list[Peak] = []
@@ -109,7 +107,7 @@ class SeriesWriter:
         """All of it as text, one line per sample."""
         series = read_series(self._group)
         with path.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerow(headers(series))
+            csv.writer(file, lineterminator="\n").writerow(map(cell, headers(series)))
             if len(series.time):
                 np.savetxt(file, table(series), fmt="%.9g", delimiter=",")
 

@@ -1,15 +1,7 @@
-"""Result writer: a run on disk as it goes, in results.h5 (blocks, histories, everything) and contacts.vtkhdf.
+"""Result writer: a run on disk as it goes, in results.h5 (float64, what `reader.read` returns) and files for ParaView.
 
-results.h5 holds `/VTKHDF` (float32, what ParaView shows) beside `/dem` (float64, what `reader.read` returns):
-
-    /dem             attributes: format, status ("running" until closed)
-    /dem/case        the effective case, text
-    /dem/provenance  attributes: versions
-    /dem/model       the arrays of Model
-    /dem/frames      one row per frame; n_contacts says how many rows of /dem/contacts belong to it
-    /dem/contacts    the contact points of all frames, one after the other
-    /dem/history     one row per HistoryRow, with energy/ and monitors (names in its attribute)
-    /dem/series      of time histories: base motion and monitors at an even rate (output/series.py)
+What results.h5 holds is declared in output/layout.py and told in docs/results.md. `/VTKHDF` in it is a link to that of
+blocks.vtkhdf, for those who open results.h5 itself.
 """
 
 from __future__ import annotations
@@ -21,30 +13,42 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.geometry.rotation import across, angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.hdf5_file import Hdf5File
-from dem_cli.output.record import STAGES, STATES, ContactRecord, Energy, Frame, HistoryRow, RunRow, Samples
+from dem_cli.output.layout import (
+    CONTACTS,
+    DEM,
+    ENERGY,
+    FRAMES,
+    HISTORY,
+    JOINT_PLACES,
+    JOINT_STATES,
+    MODEL,
+    PER_SECOND,
+    PER_STEP,
+    describe,
+)  # fmt: skip
+from dem_cli.output.paraview import BLOCKS, FollowedJoints, ParaViewFiles
+from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
-from dem_cli.output.series import SeriesWriter
+from dem_cli.output.series import MONITOR_UNITS, SeriesWriter
 from dem_cli.output.summary import write_summary
-from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
-from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
 RESULTS_FORMAT = 1
-RESULTS, CONTACTS, CASE, HISTORY = "results.h5", "contacts.vtkhdf", "case.toml", "history.csv"
+RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
 ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time")
 FRAME_SCALARS = ("step", "load", "displacement", "time")
 IN_SECONDS = frozenset(("time-history",))  # kinds whose frames ParaView counts in seconds; others by their number
 FRAME_ARRAYS = ("positions", "orientations", "velocities")
-_VTK_POLYGON = 7
+_FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
 _TEXT = h5py.string_dtype()
 _UNSAID = ("aliases",)  # of a model: the case file says them
+JointsOf = Callable[[Model], FollowedJoints]
 
 
 class ResultWriter:
@@ -70,9 +74,10 @@ class ResultWriter:
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
         self._files: list[Hdf5File] = []
-        self._vtk: tuple[GridSeries, PointSeries] | None = None
+        self._joints_of: JointsOf | None = None
+        self._joints: FollowedJoints | None = None
+        self._vtk: ParaViewFiles | None = None
         self._series: SeriesWriter | None = None
-        self._rest = rest_vertices(model)
         self._guarded(lambda: self._start(case_text, provenance))
 
     def _start(self, case_text: str, provenance: Mapping[str, str]) -> None:
@@ -83,14 +88,24 @@ class ResultWriter:
         dem.attrs["kind"] = self.kind
         dem.attrs["status"] = "running"
         dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)
-        dem.create_dataset("case", data=case_text, dtype=_TEXT)
+        describe(dem.create_dataset("case", data=case_text, dtype=_TEXT), DEM["case"])
         dem.create_group("provenance").attrs.update(provenance)
         _store_model(dem.create_group("model"), self.model)
-        self._frames, self._contacts, self._history = (
-            GrowingGroup(dem.create_group(name)) for name in ("frames", "contacts", "history")
+        units = PER_SECOND if self.kind in IN_SECONDS else PER_STEP
+        moving = FRAMES | {"velocities": FRAMES["velocities"]._replace(units=units)}
+        self._frames = GrowingGroup(dem.create_group("frames"), moving, _FRAMES_AT_ONCE)
+        self._contacts = GrowingGroup(dem.create_group("contacts"), CONTACTS)
+        watched = HISTORY["monitor_values"]._replace(
+            columns=self.monitors, units=tuple(MONITOR_UNITS[quantity] for quantity in self.quantities)
         )
+        ledger = {f"energy/{name}": said for name, said in ENERGY.items()}
+        self._history = GrowingGroup(dem.create_group("history"), HISTORY | {"monitor_values": watched} | ledger)
         dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
         self._flush()
+
+    def follow(self, joints_of: JointsOf) -> None:
+        """Keep the state of every joint with each frame. joints_of: finds the joints of a structure."""
+        self._joints_of = joints_of
 
     def _open(self, name: str) -> h5py.File:
         self._files.append(Hdf5File(self.folder / name))
@@ -123,7 +138,7 @@ class ResultWriter:
         """Frames to come are of this structure, not of that of the case. Raises ValueError after the first frame."""
         if self.n_frames:
             raise ValueError("frames of another structure are kept already")
-        self.model, self._rest = model, rest_vertices(model)
+        self.model = model
 
         def store() -> None:
             del self.dem["model"]
@@ -148,7 +163,7 @@ class ResultWriter:
         def finish() -> None:
             self._flush_rows()
             if self._series is not None:
-                self._series.write_csv(self.folder / HISTORY)
+                self._series.write_csv(self.folder / HISTORY_TABLE)
             self.dem.attrs["status"] = str(summary["status"])
             while self._files:
                 self._files.pop().close()
@@ -181,32 +196,30 @@ class ResultWriter:
             self._series.flush()
 
     def _frame(self, frame: Frame) -> None:
-        self._store_frame(frame)
         if self._vtk is None:
-            self._vtk = self._start_vtk()
-        grid, points = self._vtk
-        vertices = placed_vertices(self.model, frame.positions, frame.orientations)
-        velocities = vertex_velocities(self.model, vertices, frame.positions, frame.velocities)
-        step_fields = {
-            "load_multiplier": float(frame.load),
-            "control_displacement": float(frame.displacement),
-            "stage": STAGES.index(frame.stage),
-            "step": int(frame.step),
-            "time": float(frame.time),
-        }
-        moved = in_space(vertices - self._rest)
-        cell_fields = {"rotation": angles_of(frame.orientations)[self.model.part_blocks].astype(np.float32)}
-        value = float(frame.time if self.kind in IN_SECONDS else self.n_frames)
-        fields = {"displacement": moved, "velocity": in_space(velocities)}
-        grid.add(value, in_space(vertices), fields, cell_fields, step_fields)
-        points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), step_fields)
+            self._begin_frames()
+            assert self._vtk is not None
+        self._store_frame(frame)
+        now = None
+        if self._joints is not None:
+            now = self._joints.at(frame.positions, frame.orientations, frame.contacts)
+            for name, values in now.states._asdict().items():
+                self._joint_states.append(name, values[np.newaxis])
+        self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
         self.n_frames += 1
         self._flush()
 
-    def _start_vtk(self) -> tuple[GridSeries, PointSeries]:
-        cells = block_fields(self.model)
-        grid = GridSeries(self._files[0].hdf, self.model.part_starts, _VTK_POLYGON, cells)
-        return grid, PointSeries(self._open(CONTACTS))
+    def _begin_frames(self) -> None:
+        """The files for ParaView, and what does not change of the joints."""
+        joints = self._joints_of and self._joints_of(self.model)
+        if joints is not None and len(joints.places.area):
+            self._joints = joints
+            group = self.dem.create_group("joints")
+            for name, values in joints.places._asdict().items():
+                describe(group.create_dataset(name, data=values), JOINT_PLACES[name])
+            self._joint_states = GrowingGroup(group, JOINT_STATES, _FRAMES_AT_ONCE)
+        self._vtk = ParaViewFiles(self.model, self._joints, self._open)
+        self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
     def _store_frame(self, frame: Frame) -> None:
         frames, contacts = self._frames, self._contacts
@@ -228,9 +241,9 @@ def _store_model(group: h5py.Group, model: Model) -> None:
         if isinstance(value, int):
             group.attrs[name] = value
         elif isinstance(value, tuple):
-            group.create_dataset(name, data=list(value), dtype=_TEXT)
+            describe(group.create_dataset(name, data=list(value), dtype=_TEXT), MODEL[name])
         else:
-            group.create_dataset(name, data=value)
+            describe(group.create_dataset(name, data=value), MODEL[name])
 
 
 def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:
@@ -242,40 +255,3 @@ def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:
     if rows[0].monitors:
         history.append("monitor_values", np.array([row.monitors for row in rows], dtype=np.float64))
     history.append("stage", np.array([STAGES.index(row.stage) for row in rows], dtype=np.int8))  # last: it counts
-
-
-def contact_forces(contacts: ContactRecord) -> np.ndarray:
-    """Force of each contact point on its second block [N], (n, d)."""
-    normals = contacts.normals
-    forces = contacts.normal_force[:, np.newaxis] * normals
-    if normals.shape[1] == 2:
-        tangents = across(normals)
-        forces = forces + contacts.shear_force * tangents
-    return forces
-
-
-def block_fields(model: Model) -> dict[str, np.ndarray]:
-    """What ParaView shows on the blocks, the same at all times; a value per convex part."""
-    parts = model.part_blocks
-    return {
-        "block_id": parts.astype(np.int32),
-        "material": model.block_material[parts].astype(np.int32),
-        "fixed": model.fixed[parts].astype(np.uint8),
-    }
-
-
-def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
-    """What ParaView shows at the contact points."""
-    shear = contacts.shear_force
-    return {
-        "joint": contacts.joint.astype(np.int32),
-        "block_a": contacts.blocks[:, 0].astype(np.int32),
-        "block_b": contacts.blocks[:, 1].astype(np.int32),
-        "normal": in_space(contacts.normals),
-        "force": in_space(contact_forces(contacts)),
-        "normal_force": contacts.normal_force.astype(np.float32),
-        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
-        "gap": contacts.gap.astype(np.float32),
-        "slip": contacts.slip.astype(np.float32),
-        "state": contacts.state.astype(np.uint8),
-    }

@@ -13,21 +13,23 @@ import h5py
 import numpy as np
 
 from dem_cli.output.growing_dataset import GrowingGroup
+from dem_cli.output.layout import Described, describe
 
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _PARTS = "Steps/PartOffsets"
 Fields = Mapping[str, np.ndarray]
+Declared = Mapping[str, Described]  # what fields mean, by their paths: "PointData/displacement"
 
 
 class _Series:
     """What both kinds of series share: the root group, the columns and the bookkeeping of steps."""
 
-    def __init__(self, file: h5py.File, kind: str):
+    def __init__(self, file: h5py.File, kind: str, declared: Declared):
         self.root = root = file.create_group("VTKHDF")
         root.attrs["Version"] = (2, 0)
         root.attrs.create("Type", kind.encode("ascii"), dtype=h5py.string_dtype("ascii", len(kind)))
         root.create_group("Steps").attrs["NSteps"] = 0
-        self.columns = GrowingGroup(root)
+        self.columns = GrowingGroup(root, declared)
         self.n_steps = 0
 
     def _append_fields(self, kind: str, fields: Fields) -> None:
@@ -60,8 +62,8 @@ class _Series:
 class GridSeries(_Series):
     """Blocks as cells whose corners move and whose topology stays (UnstructuredGrid)."""
 
-    def __init__(self, file: h5py.File, starts: np.ndarray, cell_type: int, cells: Fields):
-        super().__init__(file, "UnstructuredGrid")
+    def __init__(self, file: h5py.File, starts: np.ndarray, cell_type: int, cells: Fields, declared: Declared):
+        super().__init__(file, "UnstructuredGrid", declared)
         root = self.root
         self.static = tuple(cells)
         n_points, n_cells = int(starts[-1]), len(starts) - 1
@@ -72,6 +74,7 @@ class GridSeries(_Series):
         root["Types"] = np.full(n_cells, cell_type, dtype=np.uint8)
         for name, values in cells.items():
             root[f"CellData/{name}"] = values
+            describe(root[f"CellData/{name}"], declared[f"CellData/{name}"])
 
     def add(
         self,
@@ -100,8 +103,8 @@ class GridSeries(_Series):
 class PointSeries(_Series):
     """Points with fields, a different number at each step (PolyData of vertices)."""
 
-    def __init__(self, file: h5py.File):
-        super().__init__(file, "PolyData")
+    def __init__(self, file: h5py.File, declared: Declared):
+        super().__init__(file, "PolyData", declared)
         columns = self.columns
         columns.append("Vertices/Connectivity", np.zeros(0, dtype=np.int64))
         columns.append("Vertices/Offsets", np.zeros(1, dtype=np.int64))

@@ -51,7 +51,7 @@ def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: 
 
     case = loaded.case
     summary = dict(found)
-    summary |= {"title": case.title or loaded.path.stem, "kind": case.analysis.kind, "version": __version__}
+    summary |= {"title": case.title or loaded.name, "kind": case.analysis.kind, "version": __version__}
     summary["blocks"] = model.n_blocks
     summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
     if case.reference and found["status"] != "interrupted":

@@ -15,7 +15,7 @@ from dem_cli.pipeline.batches import BatchOptions, batch_of, finish
 from dem_cli.pipeline.completion import completed, stopped, with_names
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.pipeline.monitor_names import check_quantities, monitor_names, monitor_quantities
-from dem_cli.pipeline.recorder import Recorder
+from dem_cli.pipeline.recorder import Recorder, joints_of
 
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
@@ -102,6 +102,7 @@ def execute(
     ):
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
+        writer.follow(joints_of)
         with (
             abandoning(writer),
             loaded.located(),

@@ -9,10 +9,18 @@ from dem_cli.interrupts import look
 from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
+    from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.model.model import Model
     from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
     from dem_cli.output.store import ResultWriter
     from dem_cli.pipeline.listener import RunListener
+
+
+def joints_of(model: Model) -> DrawnJoints:
+    """The joints of a structure, found when there is a frame to keep: that is compiled."""
+    from dem_cli.contact.drawn_joints import DrawnJoints
+
+    return DrawnJoints(model)
 
 
 class Recorder(Observer):

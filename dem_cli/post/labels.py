@@ -53,7 +53,17 @@ KNOWN_QUANTITIES = {
     "energy_closure": Quantity("error of the energy balance over the energy moved"),
     "onset_of_displacements": Quantity("load at the onset of displacements λ"),
     "peak_of_curve": Quantity("largest load of the curve λ"),
+    "settlement_at_collapse.share": Quantity("share of the settlement at collapse"),
+    "fallen_blocks.count": Quantity("number of blocks that fell"),
+    "joint_state.open": Quantity("number of open joints"),
+    "after_collapse.open": Quantity("number of open joints after the collapse"),
     "friction_share": Quantity("share of the work done by friction"),
+}
+_JOINTS = {  # the largest of all joints
+    "crack_width": Quantity("widest crack", "m"),
+    "slip": Quantity("largest slip of a joint", "m"),
+    "normal_stress": Quantity("largest compressive stress of a joint", "Pa"),
+    "shear_stress": Quantity("largest shear stress of a joint", "Pa"),
 }
 _PARTS = {  # last words of a path inside a summary
     "residual": "last value", "time": "time of the peak", "value": "", "load": "load λ at the last value",
@@ -68,6 +78,9 @@ def of_output(name: str, units: Mapping[str, Any]) -> Quantity:
     """A column of results by its path in the summary; `units`: what its ".unit" columns hold, by their names."""
     if name in KNOWN_QUANTITIES:
         return KNOWN_QUANTITIES[name]
+    if match := re.fullmatch(r"(joint_state|after_collapse)\.(\w+)\.value", name):
+        known = _JOINTS.get(match[2], Quantity(match[2].replace("_", " ")))
+        return known if match[1] == "joint_state" else known._replace(words=f"{known.words} after the collapse")
     if match := re.fullmatch(r"(peaks|monitors)\.(.+)\.(\w+)", name):
         _, monitor, part = match.groups()
         own = str(units.get(f"{match[1]}.{monitor}.unit", ""))

@@ -18,6 +18,8 @@ _MOST_NUMBERS = 160  # cells that are small enough to be read
 _DARK = 0.55  # luminance below which numbers are white
 _BOTH = 0.05  # of the largest value: less on the other side of zero is nothing
 _AREAS = ("#5aa0d8", "#e0a458", "#8fbf8f", "#b39ddb", "#d98cb3", "#c9c4ba")
+_TRUTHS = {"collapsed": {False: "stands", True: "falls"}}  # what truths of a column are called
+_MOST_TICKS = 16  # names along a side
 _FULL = 0.5  # of the cells must have a run, else the keys are no grid
 
 
@@ -58,18 +60,24 @@ def _draw_cells(
     axis.set_facecolor(style.FAINT)  # where there is no answer
     scale, limits = _scale(words, values)
     mesh = axis.pcolormesh(np.ma.masked_invalid(values), cmap=scale, edgecolors="white", linewidth=0.8, **limits)
-    axis.set_xticks(np.arange(len(across)) + 0.5, [shown(v) for v in across])
-    axis.set_yticks(np.arange(len(upwards)) + 0.5, [shown(v) for v in upwards])
+    axis.set_xticks(*_ticks(across))
+    axis.set_yticks(*_ticks(upwards))
     axis.tick_params(length=0)
     axis.spines[:].set_visible(False)
     bar = figure.colorbar(mesh, ax=axis, pad=0.02, aspect=26)
     bar.outline.set_visible(False)
     bar.set_label(quantity.label())
     if words:
-        bar.set_ticks(range(len(words)), labels=list(map(shown, words)))
+        bar.set_ticks(range(len(words)), labels=[_TRUTHS.get(z, {}).get(word) or shown(word) for word in words])
         bar.ax.tick_params(length=0)
     elif values.size <= _MOST_NUMBERS:
         _write_numbers(axis, values, mesh)
+
+
+def _ticks(values: list[Any]) -> tuple[np.ndarray, list[str]]:
+    """Where the names of the values of a key stand, and these: not all where they are many."""
+    every = max(1, -(-len(values) // _MOST_TICKS))
+    return np.arange(0, len(values), every) + 0.5, [shown(v) for v in values[::every]]
 
 
 def _write_numbers(axis: Any, values: np.ndarray, mesh: Any) -> None:

@@ -16,6 +16,7 @@ from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy
 from dem_cli.post.fragility import draw_fragility, has_curve
 from dem_cli.post.histories import draw_histories
+from dem_cli.post.joints import draw_joints
 from dem_cli.post.modes import draw_modes, shapes
 from dem_cli.post.safety import draw_safety, has_runs
 
@@ -29,6 +30,7 @@ PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "energy.png": draw_energy,
 }
 ANIMATION = "collapse.gif"
+JOINTS = "joints.png"  # only where it is asked for
 
 
 def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
@@ -54,6 +56,9 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
 def draw_one(folder: Path, name: str, path: Path) -> None:
     """One of the pictures, into a file of any format of matplotlib. Raises UsageError where it has no data."""
     results = read(folder)
+    if name == JOINTS:
+        draw_joints(results, path)
+        return
     if not has_data(name, results):
         raise UsageError(f"{folder}: nothing to draw for {name.removesuffix('.png')} in a run of kind {results.kind!r}")
     PICTURES[name](results, path)

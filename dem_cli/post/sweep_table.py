@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
+from dem_cli.output.csv_cells import text_of
 from dem_cli.output.sweep_files import CSV, FACTS, IDENTITY_COLUMNS
 from dem_cli.post.labels import nearest, plain, unknown
 
@@ -86,6 +87,7 @@ def read_sweep(folder: Path) -> SweepTable:
         facts = json.loads((folder / FACTS).read_text(encoding="utf-8")) if (folder / FACTS).is_file() else {}
         with (folder / CSV).open(encoding="utf-8", newline="") as file:
             names, *rows = list(csv.reader(file)) or [[]]
+        names = list(map(text_of, names))
     except FileNotFoundError:
         raise UsageError(f"{folder}: no sweep.csv yet; `dem sweep` writes it, the same command goes on") from None
     except (OSError, ValueError) as error:
@@ -106,7 +108,7 @@ def value(text: str) -> Any:
     try:
         return float(text)
     except ValueError:
-        return text
+        return text_of(text)
 
 
 def numeric(values: Sequence[Any]) -> bool:

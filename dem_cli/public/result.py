@@ -16,10 +16,11 @@ import numpy as np
 from dem_cli.case.reader import parse_toml
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
+from dem_cli.output.fields import contact_forces
+from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, units_of
 from dem_cli.output.reader import Frames, Results, read
-from dem_cli.output.record import CONTACT_UNITS, STATES, Frame
+from dem_cli.output.record import STATES, Frame
 from dem_cli.output.series import MONITOR_UNITS
-from dem_cli.output.store import contact_forces
 from dem_cli.output.vertices import placed_vertices
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
@@ -128,7 +129,23 @@ class Result:
         """
         record = self.frame(frame).contacts
         columns = record._asdict() | {"state": np.array(STATES)[record.state], "force": contact_forces(record)}
-        return ArrayTable({name: CONTACT_UNITS.get(name, "") for name in columns}, columns.__getitem__)
+        units = units_of(CONTACTS) | {"force": "N"}
+        return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
+
+    def joints(self, frame: int = -1) -> ArrayTable:
+        """The joints as they were drawn, at a frame by its number (by default the last).
+
+        "blocks", "ends", "length", "area", and what became of them: "opening", "crack_width", "slip",
+        "normal_stress" (compression positive), "shear_stress", "eccentricity", "state". Raises UsageError.
+        """
+        self.frame(frame)
+        found = self._results.joints
+        if found is None:
+            raise UsageError(f"{self._path}: these results have no joints; an earlier version wrote them")
+        states = found.at(frame % len(self.frames))
+        columns = found.places._asdict() | states._asdict() | {"state": np.array(STATES)[states.state]}
+        units = units_of(JOINT_PLACES | JOINT_STATES)
+        return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 
     def corners(self, frame: int | Frame = -1) -> list[np.ndarray]:
         """Corners in space [m] of each convex part at a frame (by default the last), (n_corners, d) each.

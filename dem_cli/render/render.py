@@ -178,10 +178,11 @@ def chosen(results: Results, text: str) -> list[Frame]:
     frames = results.frames
     if not len(frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to render")
-    return [frames[_number(frames, results, text)]]
+    return [frames[frame_number(frames, results, text)]]
 
 
-def _number(frames: Frames, results: Results, text: str) -> int:
+def frame_number(frames: Frames, results: Results, text: str) -> int:
+    """The number of the frame that `--frame` asks for. Raises UsageError where there is none."""
     if text == "last":
         return len(frames) - 1
     if text == "failure":

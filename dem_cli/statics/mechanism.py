@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.engine.measures import displacements
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
 from dem_cli.kernels import records as slot
@@ -38,7 +39,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     translates = turned < settings.turns * motion.max(initial=0.0)
     mode = "sliding" if translates else "rocking" if share < settings.rocking else "mixed"
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
-    parts: dict[str, Any] = {"moving_blocks": _names(sim, moving)}
+    parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
         slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
         opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
@@ -47,13 +48,20 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
 
 
+def moved_blocks(sim: Simulation) -> dict[str, Any]:
+    """Blocks that went along in a collapse, by how far they are from where they started."""
+    shift = np.sqrt((displacements(sim) ** 2).sum(axis=1))
+    return named(sim, np.flatnonzero(shift > sim.settings.mechanism.takes_part * shift.max(initial=0.0)))
+
+
 def _size(sim: Simulation) -> float:
     """Largest extent of the free blocks [m]."""
     places, radii = sim.bodies.positions[sim.free], sim.shape.radii[sim.free, None]
     return float(((places + radii).max(axis=0) - (places - radii).min(axis=0)).max())
 
 
-def _names(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+def named(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
+    """How many blocks, and the names of the first ones."""
     names = [sim.model.block_ids[i] for i in blocks[: sim.settings.mechanism.listed]]
     return {"count": len(blocks), "first": names}
 

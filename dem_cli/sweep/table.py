@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.output.atomic_file import whole
+from dem_cli.output.csv_cells import cell
 from dem_cli.output.scalars import plain
 from dem_cli.output.sweep_files import CSV, IDENTITY_COLUMNS, SQLITE
 from dem_cli.sweep.plan import show_value
@@ -93,12 +94,14 @@ def write_csv(folder: Path, table: Sequence[Row], names: Sequence[str]) -> None:
     """Only sweep.csv, for those who look while runs go on."""
     with whole(folder / CSV) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
+        writer.writerow(map(cell, names))
         writer.writerows([_cell(row.get(name)) for name in names] for row in table)
 
 
 def _cell(value: Any) -> Any:
-    return "" if value is None else show_value(value) if not isinstance(value, float) else repr(value)
+    if value is None or isinstance(value, str):
+        return cell(value or "")
+    return repr(value) if isinstance(value, float) else show_value(value)
 
 
 def _write_sqlite(path: Path, table: Sequence[Row], names: Sequence[str]) -> None:

@@ -63,7 +63,7 @@ def test_heads_without_friction():
 def test_results_hold_the_mechanism_and_its_forces(tmp_path):
     folder = tmp_path / "out"
     assert dem("limit", WALL, "-o", folder).exit_code == 0
-    names = {"summary.json", "results.h5", "contacts.vtkhdf", "case.toml"}
+    names = {"summary.json", "results.h5", "blocks.vtkhdf", "contacts.vtkhdf", "joints.vtkhdf", "case.toml"}
     assert {path.name for path in folder.iterdir()} == names
     results = read(folder)
     limits = results.summary["limit_analysis"]

@@ -71,4 +71,4 @@ def test_export(folder):
 
 
 def test_export_needs_a_format(folder):
-    assert dem("export", folder) == (2, "error: say which format is wanted: --pvd\n")
+    assert dem("export", folder) == (2, "error: say which format is wanted: --joints or --pvd\n")

@@ -19,6 +19,7 @@ from click.testing import CliRunner
 
 from dem_cli.cli.main import main
 from dem_cli.errors import OutputError
+from dem_cli.post.sweep_table import read_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 DEM = [sys.executable, "-m", "dem_cli"]
@@ -99,6 +100,21 @@ def test_it_computes_no_more_than_the_table_needs_unless_asked(case, tmp_path):
     dem("sweep", one, "-o", tmp_path / "full", "-j", 1, "--keep", "all")
     run = table(tmp_path / "full")[0]["run"]
     assert "follow = 0.01" in (tmp_path / "full" / "runs" / run / "case.toml").read_text(encoding="utf-8")
+
+
+def test_names_are_no_formulas_and_break_no_row(tmp_path):
+    names = ["=1+1", "+20 %", "two\nlines", "@x", "-0.5"]
+    key = '"joints.dry.friction"'
+    runs = [f"[[sweep.run]]\nname = {json.dumps(name)}\n{key} = 0.{5 + i}\n" for i, name in enumerate(names)]
+    path = tmp_path / "named.toml"
+    path.write_text(SMALL + "".join(runs), encoding="utf-8")
+    assert dem("sweep", path, "--dry-run")[0] == 0
+    assert dem("sweep", path, "-o", tmp_path / "out", "-j", 1, "-q")[0] == 0
+    lines = (tmp_path / "out" / "sweep.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 1 + len(names)
+    assert [line.split(",")[1] for line in lines[1:]] == ["'=1+1", "'+20 %", "two lines", "'@x", "-0.5"]
+    read = read_sweep(tmp_path / "out")
+    assert read.columns["name"] == ["=1+1", "+20 %", "two lines", "@x", -0.5]
 
 
 def test_processes_make_no_difference_and_nothing_is_done_twice(case, tmp_path):

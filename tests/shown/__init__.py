@@ -84,7 +84,10 @@ class Reader:
         """One command; its output is added to what was printed."""
         if line.startswith(ELSEWHERE):
             return
-        words, target = shlex.split(line, comments=True), None
+        words, target, given = shlex.split(line, comments=True), None, None
+        if "|" in words:  # what one command prints is the case of the other
+            first, words = words[: words.index("|")], words[words.index("|") + 1 :]
+            given = dem(*first[1:])[1]
         if ">" in words:
             words, target = words[: words.index(">")], words[words.index(">") + 1]
         if words[0] == "scripts/run":
@@ -94,7 +97,7 @@ class Reader:
             parse(words[1:])
             return
         one = [] if words[1] not in MANY or "-j" in words else ["-j", "1"]
-        code, said = dem(*words[1:], *one)
+        code, said = dem(*words[1:], *one, given=given)
         assert code == int(wanted[1] if (wanted := EXIT.search(line)) else 0), f"{line}\n{said}"
         if target:
             (self.folder / target).write_text(said, encoding="utf-8")
@@ -107,9 +110,9 @@ class Reader:
             assert plain(line) in printed or line.strip() == "...", f"not printed: {line}\n{self.printed}"
 
 
-def dem(*words: str) -> tuple[int, str]:
-    """`dem WORDS` in this process: exit code and all that was printed."""
-    result = CliRunner().invoke(main, list(words))
+def dem(*words: str, given: str | None = None) -> tuple[int, str]:
+    """`dem WORDS` in this process, `given` its standard input: exit code and all that was printed."""
+    result = CliRunner().invoke(main, list(words), input=given)
     assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
     return result.exit_code, result.output
 

@@ -96,6 +96,7 @@ def _new_bar(stream: TextIO) -> Any:
 
 
 MOST_PEAKS = 8  # of monitors, a line each
+MOST_NAMES = 8  # of blocks, in one line
 MOST_TURNS = 6  # of a load path, in one line
 
 
@@ -127,6 +128,10 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
             else ""
         )
         rows.append(("failure load", f"{load_text(load)}{between}"))
+    settled = summary.get("settlement_at_collapse")
+    if settled is not None:
+        stands, falls = (100.0 * share for share in settled["bracket"])
+        rows.append(("collapse", f"between {stands:.3g} % and {falls:.3g} % of the settlement"))
     if summary.get("equilibrium_load") is not None:
         bound = "" if bracket is None or bracket[1] is None else f"; not above {load_text(bracket[1])}"
         rows.append(("equilibrium at", f"{load_text(summary['equilibrium_load'])}{bound}"))
@@ -153,6 +158,10 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         at = summary.get("collapse_time")
         fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
         rows.append(("result", fell if summary["collapsed"] else "stood"))
+    fallen = summary.get("fallen_blocks")
+    if fallen:
+        names = ", ".join(fallen["first"][:MOST_NAMES])
+        rows.append(("fell", f"{fallen['count']:,}: {names}" + (", …" if fallen["count"] > MOST_NAMES else "")))
     peaks = summary.get("peaks") or {}
     for name, found in list(peaks.items())[:MOST_PEAKS]:
         peak, residual = (_measure(found[key], found["unit"]) for key in ("peak", "residual"))

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 from reference import results
 
+from dem_cli.contact.drawn_joints import DrawnJoints
+from dem_cli.model.model import Model
+from dem_cli.output.record import Frame
 from dem_cli.post import style
 from studies.chapter7.walls import FACE
 from studies.places import CASES
@@ -53,33 +56,22 @@ def fall(*overrides: str) -> dict[str, Any]:
         "status": summary["status"],
         "bracket": bracket_of(summary, 9),
         "moved": round(moved[chosen], 5),
-        "widths": widths_of(model.block_ids, start, placed[chosen]),
+        "widths": widths_of(model, falling[chosen]),
         "corners": corners_of(model, falling[chosen], DRAWN),
         "seconds": round(summary["solve_seconds"], 1),
         "warnings": summary["warnings"],
     }
 
 
-def widths_of(names: tuple[str, ...], start: list[Any], placed: list[Any]) -> list[list[float]]:
-    """Mean widths of the vertical joints of the upper LAYERS [m], from the top, from left to right."""
-    place = {name: i for i, name in enumerate(names)}
-    courses = max(int(name.split("-")[1]) for name in names if "base" not in name)
-    found = []
-    for layer in range(courses, courses - LAYERS, -1):
-        row, widths = 1, []
-        while f"wall-{layer}-{row + 1}" in place:
-            left, right = place[f"wall-{layer}-{row}"], place[f"wall-{layer}-{row + 1}"]
-            gap = _side(start[right], placed[right], 1.0) - _side(start[left], placed[left], -1.0)
-            widths.append(round(gap, 6))
-            row += 1
-        found.append(widths)
-    return found
-
-
-def _side(start: Any, placed: Any, sign: float) -> float:
-    """Mean x of the left (1) or right (−1) side of a block [m]."""
-    order = np.argsort(sign * np.array(start)[:, 0], kind="stable")[:2]
-    return float(np.array(placed)[order, 0].mean())
+def widths_of(model: Model, frame: Frame) -> list[list[float]]:
+    """Mean widths of the head joints of the upper LAYERS [m], from the top and the left (`dem export --joints`)."""
+    joints = DrawnJoints(model)
+    openings = joints.at(frame.positions, frame.orientations, frame.contacts).states.opening
+    heads = np.flatnonzero(np.abs(joints.places.normals[:, 0]) > np.abs(joints.places.normals[:, 1]))
+    places = joints.places.ends.mean(axis=1)
+    heights = np.round(places[heads, 1], DRAWN)
+    layers = [heads[heights == height] for height in np.unique(heights)[: -LAYERS - 1 : -1]]
+    return [np.round(openings[layer[np.argsort(places[layer, 0])]], 6).tolist() for layer in layers]
 
 
 def values(found: dict[str, Any]) -> dict[str, Any]:

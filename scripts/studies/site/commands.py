@@ -12,8 +12,9 @@ from studies.template import table as markdown
 
 INTRODUCTION = """# Commands
 
-Every command takes `--help`. What is asked for is printed on stdout, as text or with `--json` as one JSON object;
-progress, remarks and errors go to stderr. Exit codes are the same everywhere:
+Every command takes `--help`. CASE is a TOML file, or `-`, which reads it from standard input. What is asked for is
+printed on stdout, as text or with `--json` as one JSON object; progress, remarks and errors go to stderr. Exit codes
+are the same everywhere:
 
 | code | means |
 | --- | --- |

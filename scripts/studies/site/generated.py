@@ -6,12 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from studies.places import ROOT
-from studies.site import case_keys, commands, gallery_page, readme
+from studies.site import case_keys, commands, gallery_page, readme, results_files
 
 PAGES: dict[str, Callable[[], str]] = {
     "docs/case.md": case_keys.text,
     "docs/commands.md": commands.text,
     "docs/gallery.md": gallery_page.text,
+    "docs/results.md": results_files.text,
     "README.md": readme.text,
 }
 

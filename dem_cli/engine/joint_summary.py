@@ -1,0 +1,36 @@
+"""Joints of a simulation in few numbers, for summary.json: how many are open, the widest crack, the largest stress."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
+from dem_cli.engine import measures
+from dem_cli.engine.simulation import Simulation
+
+LAST_EQUILIBRIUM, END = "last equilibrium", "end"
+
+
+def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
+    """Joints as they were drawn, now; instant: in words. With the two blocks of each largest value."""
+    joints = DrawnJoints(sim.model)
+    positions = sim.bodies.positions + sim.origin
+    states = joints.at(positions, sim.bodies.orientations, measures.contact_record(sim)).states
+    ids = sim.model.block_ids
+
+    def largest(values: np.ndarray) -> dict[str, Any]:
+        k = int(values.argmax())
+        return {"value": float(values[k]), "between": [ids[block] for block in joints.places.blocks[k]]}
+
+    found: dict[str, Any] = {"at": instant, "joints": len(states.state), "open": int((states.state == OPEN).sum())}
+    if len(states.state):
+        shear = np.abs(states.shear_stress)
+        found |= {
+            "crack_width": largest(states.crack_width),
+            "slip": largest(np.abs(states.slip)),
+            "normal_stress": largest(states.normal_stress),
+            "shear_stress": largest(shear),
+        }
+    return found

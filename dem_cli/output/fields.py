@@ -1,0 +1,70 @@
+"""Fields of blocks, contact points and joints that ParaView shows, as arrays: float32 and whole numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.geometry.rotation import across
+from dem_cli.model.model import Model
+from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
+from dem_cli.output.vertices import in_space
+
+
+def contact_forces(contacts: ContactRecord) -> np.ndarray:
+    """Force of each contact point on its second block [N], (n, d)."""
+    normals = contacts.normals
+    forces = contacts.normal_force[:, np.newaxis] * normals
+    if normals.shape[1] == 2:
+        tangents = across(normals)
+        forces = forces + contacts.shear_force * tangents
+    return forces
+
+
+def block_fields(model: Model) -> dict[str, np.ndarray]:
+    """What ParaView shows on the blocks, the same at all times; a value per convex part."""
+    parts = model.part_blocks
+    return {
+        "block_id": parts.astype(np.int32),
+        "material": model.block_material[parts].astype(np.int32),
+        "fixed": model.fixed[parts].astype(np.uint8),
+    }
+
+
+def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
+    """What ParaView shows at the contact points."""
+    shear = contacts.shear_force
+    return {
+        "joint": contacts.joint.astype(np.int32),
+        "block_a": contacts.blocks[:, 0].astype(np.int32),
+        "block_b": contacts.blocks[:, 1].astype(np.int32),
+        "normal": in_space(contacts.normals),
+        "force": in_space(contact_forces(contacts)),
+        "normal_force": contacts.normal_force.astype(np.float32),
+        "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
+        "gap": contacts.gap.astype(np.float32),
+        "slip": contacts.slip.astype(np.float32),
+        "state": contacts.state.astype(np.uint8),
+    }
+
+
+def joint_places(places: JointPlaces) -> dict[str, np.ndarray]:
+    """What ParaView shows on the joints, the same at all times."""
+    blocks = places.blocks.astype(np.int32)
+    return {"block_a": blocks[:, 0], "block_b": blocks[:, 1], "area": places.area.astype(np.float32)}
+
+
+def joint_fields(states: JointStates) -> dict[str, np.ndarray]:
+    """What ParaView shows on the joints of one instant."""
+    found = {name: values.astype(np.float32) for name, values in states._asdict().items() if name != "state"}
+    return found | {"state": states.state.astype(np.uint8)}
+
+
+def step_fields(frame: Frame) -> dict[str, float | int]:
+    """Numbers of a frame as a whole."""
+    return {
+        "load_multiplier": float(frame.load),
+        "control_displacement": float(frame.displacement),
+        "stage": STAGES.index(frame.stage),
+        "step": int(frame.step),
+        "time": float(frame.time),
+    }

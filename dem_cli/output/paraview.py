@@ -1,0 +1,76 @@
+"""Files that ParaView and pyvista open by name, one step per frame: blocks, contact points and joints (.vtkhdf)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import h5py
+import numpy as np
+
+from dem_cli.geometry.rotation import angles_of
+from dem_cli.model.model import Model
+from dem_cli.output.fields import block_fields, contact_fields, joint_fields, joint_places, step_fields
+from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES
+from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates
+from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
+from dem_cli.output.vtkhdf import GridSeries, PointSeries
+
+BLOCKS, CONTACTS, JOINTS = VTK_FILES
+_VTK_LINE, _VTK_POLYGON = 3, 7
+
+
+class JointsNow(Protocol):
+    """All joints at one instant."""
+
+    @property
+    def states(self) -> JointStates:
+        """As results.h5 keeps them."""
+
+    @property
+    def gaps(self) -> np.ndarray:
+        """Distance at both ends [m], (n, 2)."""
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Where these are [m], (n, 2, d)."""
+
+
+class FollowedJoints(Protocol):
+    """The joints of a structure as it was drawn, and what became of them (contact/drawn_joints.py)."""
+
+    @property
+    def places(self) -> JointPlaces:
+        """Where they were drawn."""
+
+    def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointsNow:
+        """At one instant."""
+
+
+class ParaViewFiles:
+    """The files of a run. opened: makes one by its name; joints: None where there are none."""
+
+    def __init__(self, model: Model, joints: FollowedJoints | None, opened: Callable[[str], h5py.File]):
+        self.model, self._rest = model, rest_vertices(model)
+        self.blocks = GridSeries(
+            opened(BLOCKS), model.part_starts, _VTK_POLYGON, block_fields(model), BLOCK_FIELDS | STEP_FIELDS
+        )
+        self.points = PointSeries(opened(CONTACTS), CONTACT_FIELDS | STEP_FIELDS)
+        self.joints: GridSeries | None = None
+        if joints is not None:
+            starts, places = np.arange(0, 2 * len(joints.places.area) + 1, 2), joint_places(joints.places)
+            self.joints = GridSeries(opened(JOINTS), starts, _VTK_LINE, places, JOINT_FIELDS | STEP_FIELDS)
+
+    def add(self, value: float, frame: Frame, joints: JointsNow | None) -> None:
+        """Append a frame; value: what ParaView counts it by."""
+        model, steps = self.model, step_fields(frame)
+        vertices = placed_vertices(model, frame.positions, frame.orientations)
+        velocities = vertex_velocities(model, vertices, frame.positions, frame.velocities)
+        moving = {"displacement": in_space(vertices - self._rest), "velocity": in_space(velocities)}
+        turned = {"rotation": angles_of(frame.orientations)[model.part_blocks].astype(np.float32)}
+        self.blocks.add(value, in_space(vertices), moving, turned, steps)
+        self.points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), steps)
+        if self.joints is not None and joints is not None:
+            ends = in_space(joints.ends.reshape(-1, joints.ends.shape[2]))
+            gaps = {"gap": joints.gaps.ravel().astype(np.float32)}
+            self.joints.add(value, ends, gaps, joint_fields(joints.states), steps)

@@ -1,0 +1,79 @@
+"""Way of settling supports, and how far along it a structure stands: the settlement at collapse, by bisection."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.engine import measures
+from dem_cli.engine.budget import Budget
+from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.state import SavedState
+from dem_cli.kernels import records as slot
+from dem_cli.statics.equilibrium import check_finite, settle_or_fail
+from dem_cli.statics.post_peak import soften_falls
+
+
+class SettlementWay:
+    """Supports move evenly, look by look; stations on the way are kept, so that one can go back.
+
+    motion    whole movement of every block, zero but for the settling supports [m, rad], (n_blocks, n_dof)
+    done      looks so far, of `rows`
+    standing, failing   where it was last seen to come to rest, and to fail, with the supports held
+    """
+
+    def __init__(self, sim: Simulation, motion: np.ndarray):
+        self.sim, settlement = sim, sim.settings.settlement
+        self.rows, self.done = settlement.rows, 0
+        reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
+        self.largest = float(np.abs(motion * reach).max())
+        elastic = max(measures.largest_elastic(sim), 1e-9 * sim.smallest)
+        steps = max(self.largest / (settlement.per_step * elastic), settlement.fewest)
+        self.chunk = max(int(np.ceil(steps / self.rows)), 1)
+        self.rate = motion / (self.chunk * self.rows)
+        self.stations: dict[int, SavedState] = {}
+        self.standing = self.failing = sim.save()
+
+    def begin(self) -> None:
+        """From rest under the dead loads."""
+        self.sim.use_combined_damping()
+        self.sim.set_load(0.0)
+        soften_falls(self.sim, self.largest, self.chunk * self.rows)
+        self.sim.move_supports(self.rate)
+        self.stations[0] = self.sim.save()
+
+    def go_on(self, budget: Budget) -> None:
+        """The supports move on until the next look."""
+        self.sim.advance(self.chunk, slot.HOLD_LOAD)
+        budget.spend(self.chunk, "moving the supports")
+        check_finite(self.sim)
+        self.done += 1
+        if self.done % self.sim.settings.settlement.station == 0:
+            self.stations[self.done] = self.sim.save()
+
+    def stands(self, budget: Budget) -> bool:
+        """Whether the structure comes to rest with the supports held where they are."""
+        self.sim.move_supports(np.zeros_like(self.rate))
+        verdict = settle_or_fail(self.sim, 0.0, budget, measures.dead_scale(self.sim))
+        found = verdict.state == "equilibrium"
+        if found:
+            self.standing = self.sim.save()
+        else:
+            self.failing = self.sim.save()
+        return found
+
+    def go_to(self, number: int, budget: Budget) -> None:
+        """To a look of before, on the same way."""
+        self.done = max(station for station in self.stations if station <= number)
+        self.sim.restore(self.stations[self.done])
+        soften_falls(self.sim, self.largest, self.chunk * self.rows)
+        while self.done < number:
+            self.go_on(budget)
+
+    def bracket(self, budget: Budget) -> tuple[int, int]:
+        """The last look at which it stands, and the first at which it falls: it does in the end."""
+        low, high = 0, self.rows
+        while high - low > 1:
+            middle = (low + high) // 2
+            self.go_to(middle, budget)
+            low, high = (middle, high) if self.stands(budget) else (low, middle)
+        return low, high
