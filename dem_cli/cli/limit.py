@@ -36,7 +36,9 @@ if TYPE_CHECKING:
 )
 @click.option("--associated-only", is_flag=True, help="Leave out the load of joints that do not dilate.")
 @click.option("--lower", is_flag=True, help="Also a load below which no joints that do not dilate collapse.")
-@click.option("--least", is_flag=True, help="Also the least load of all collapse states of such joints; small structures.")
+@click.option(
+    "--least", is_flag=True, help="Also the least load of all collapse states of such joints; small structures."
+)
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
 def command(

@@ -41,8 +41,8 @@ class Law(Generic[JointTable]):
     columns: Callable[[JointTable, float], tuple[float, ...]]  # (table, kn [Pa/m]) -> row of `parameters`
     # (parameters, normal forces, memory, kn of the points) -> largest shear forces, all (n_points, ...)
     shear_limit: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-    # For limit analysis, (parameters, kn) of the points -> what they carry at most (laws/envelope.py); None: no straight
-    # lines hold it. `residual`: what is left when a point has slid and opened for long; None: all of it.
+    # For limit analysis, (parameters, kn) of the points -> what they carry at most (laws/envelope.py); None: that has
+    # no straight lines. `residual`: what is left when a point has slid and opened for long; None: all of it.
     envelope: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
     residual: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
     scalars: int = 0  # numbers that a point remembers

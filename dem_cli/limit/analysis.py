@@ -107,32 +107,31 @@ def limit_loads(
         begun = time.perf_counter()
         path = trace(structure, friction, progress=progress, settings=settings)
         found = found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
-    left = None if law.residual is None else envelope_of(structure.joints, law, heads_frictionless, residual=True)
+    left = envelope_of(structure.joints, law, heads_frictionless, residual=True)
     return _with_bounds(found, strength, left, bounds, settings)
 
 
 def _with_bounds(
-    found: LimitLoads, strength: Envelope, left: Envelope | None, bounds: Collection[str], settings: LimitSettings
+    found: LimitLoads, strength: Envelope, left: Envelope, bounds: Collection[str], settings: LimitSettings
 ) -> LimitLoads:
     """The same with the bounds of joints that do not dilate, as far as they are asked for.
 
-    left: of the strength, after sliding and opening for long; None: all of it.
+    left: of the strength, after sliding and opening for long.
     """
     upper = np.inf if found.associated.upper is None else found.associated.upper
     if LOWER in bounds:
         from dem_cli.limit.reduced import lower_bound
 
-        found = found._replace(
-            lower=lower_bound(found.structure, strength, left or strength, upper, settings.reduced)
-        )
+        found = found._replace(lower=lower_bound(found.structure, strength, left, upper, settings.reduced))
     if LEAST in bounds:
         from dem_cli.limit.least import least_load
 
-        if left is not None:
-            raise UsageError("the least load needs joints whose strength stays as it is; leave out --least")
-        found = found._replace(
-            least=least_load(found.structure, strength, upper, found.non_associated, settings.least)
-        )
+        if not all(np.array_equal(whole, part) for whole, part in zip(strength, left, strict=True)):
+            raise UsageError(
+                "the least load (--least) is that of joints whose strength stays, and that of the joints here falls as "
+                "they slide or open; give them residual strengths as high as the others, or leave --least out"
+            )
+        found = found._replace(least=least_load(found.structure, strength, upper, found.non_associated, settings.least))
     return found
 
 

@@ -7,11 +7,11 @@ Lo Bianco and Mazzarella (thesis 3.1.3, equations 3-5; Baggio and Trovalusci 200
                       B u = (a − q + tan ψ s, s₊ − s₋),   live·u = 1    a mechanism in which the live loads work
                       a (N + ft A) = q (fc A − N) = 0,   s± (C + μ N ± T) = 0,   λ, a, q, s± ≥ 0
 
-Every history ends in one of these states, so that none ends below the least load. Each product is a choice between its
-two factors: a whole number, 0 or 1. HiGHS searches all of them (branch and bound), which proves the least load, or those
-that differ in a few choices from the state in hand, which proves a local least: no state that differs less is lower.
-Whole numbers need bounds of forces and rates: `Choices`. What the solver returns is solved again for its choices alone,
-and its products are looked at.
+Every history that ends in a mechanism in which the live loads work ends in one of these states, none below the least
+load. Each product is a choice between its two factors: a whole number, 0 or 1. HiGHS searches all of them (branch and
+bound), which proves the least load, or those that differ in a few choices from the state in hand, which proves a local
+least: no state that differs less is lower. Whole numbers need bounds: statics gives those of the forces; no joint is
+faster than `fastest`. What the solver returns is solved again for its choices alone, and its products are looked at.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import LeastSettings
 
 
-class State(NamedTuple):
+class CollapseState(NamedTuple):
     """A collapse state: forces, a mechanism, and which joints it opens, crushes and slides."""
 
     load: float  # multiplier of the live loads, as users know it
@@ -38,10 +38,10 @@ class State(NamedTuple):
     residual: float  # largest violation of the conditions, forces in mean weights, rates over the largest
 
 
-class Found(NamedTuple):
+class StateSearch(NamedTuple):
     """What one search came to."""
 
-    state: State | None
+    state: CollapseState | None
     proved: float  # below it there is no state among those searched, as users know it; inf: there is none at all
     whole: bool  # whether the search came to its end
     nodes: int
@@ -57,6 +57,9 @@ class CollapseStates:
         own = np.repeat(structure.scales[::n_dof], n_dof)
         self.columns = diags(own / structure.scales)  # rotations as motions at the radius of a block
         self.upper = upper
+        forces = np.abs(statics.live.reshape(-1, n_dof) / (own / structure.scales).reshape(-1, n_dof)).max(axis=1)
+        lightest = max(float(forces[forces > 0.0].min()), settings.slightest * float(forces.max()))
+        self.fastest = settings.rates / lightest  # rate of a joint, while live loads have unit power
         joint, self.limits = statics.joint, statics.strength
         n_points, n_joints = statics.n_points, statics.n_joints
         self.crushed = np.flatnonzero(np.isfinite(self.limits.compression))
@@ -126,7 +129,7 @@ class CollapseStates:
     def _inequalities(self) -> tuple[csr_matrix, np.ndarray]:
         """Strength; each choice closes one of its two factors; what virtual work says of the load."""
         statics, limits, joint = self.statics, self.limits, self.statics.joint
-        n_points, n_joints, settings = statics.n_points, statics.n_joints, self.settings
+        n_points, n_joints = statics.n_points, statics.n_joints
         (cone, tops), all_of = statics.cone_rows(), identity(n_points).tocsr()
         rubs = diags(limits.friction) @ statics.sums
         reach = 2.0 * (limits.cohesion + limits.friction * np.bincount(joint, self.most, n_joints))
@@ -146,14 +149,15 @@ class CollapseStates:
             (self._row(choices=plus + minus), np.ones(n_joints)),
             self._work(),
         ]
-        del settings
         return vstack([row for row, _ in rows]).tocsr(), np.concatenate([top for _, top in rows])
 
     def _rates(self, count: int) -> csr_matrix:
         """A rate is nothing without its choice."""
         rates = csr_matrix((np.ones(count), (np.arange(count), self.rates.start + np.arange(count))), (count, self.n))
-        chosen = csr_matrix((np.ones(count), (np.arange(count), self.choices.start + np.arange(count))), (count, self.n))
-        return rates - self.settings.rates * chosen
+        chosen = csr_matrix(
+            (np.ones(count), (np.arange(count), self.choices.start + np.arange(count))), (count, self.n)
+        )
+        return rates - self.fastest * chosen
 
     def _work(self) -> tuple[csr_matrix, np.ndarray]:
         """λ = −dead·u + what the joints take, which is no less than with the least normal forces."""
@@ -174,13 +178,16 @@ class CollapseStates:
         low[self.N], high[self.N] = -self.limits.tension, self.most
         low[self.T], low[self.u] = -np.inf, -np.inf
         high[self.load] = self.upper / self.statics.load
-        high[self.rates], high[self.choices] = self.settings.rates, 1.0
+        high[self.rates], high[self.choices] = self.fastest, 1.0
         return low, high
 
     # -- search ----------------------------------------------------------------------------------------
 
-    def search(self, below: float, near: np.ndarray | None = None) -> Found:
-        """The least state under a load; near: choices from which it may differ in `changed` only."""
+    def search(self, below: float, near: CollapseState | None = None) -> StateSearch:
+        """The least state under a load; near: a state from which it may differ in `changed` choices only.
+
+        Choices that the state leaves open, as both factors are nothing, do not count.
+        """
         from scipy.optimize import Bounds, LinearConstraint, milp
 
         look()
@@ -189,19 +196,19 @@ class CollapseStates:
         (equal, right), (rows, tops) = self._equations(), self._inequalities()
         given = [LinearConstraint(equal, right, right), LinearConstraint(rows, -np.inf, tops)]
         if near is not None:
-            row = np.zeros(self.n)
-            row[self.choices] = 1.0 - 2.0 * near
-            given.append(LinearConstraint(row[None], -np.inf, settings.changed - near.sum()))
+            counted, row = self.settled(near), np.zeros(self.n)
+            row[self.choices] = np.where(counted, 1.0 - 2.0 * near.choices, 0.0)
+            given.append(LinearConstraint(row[None], -np.inf, settings.changed - near.choices[counted].sum()))
         cost, whole = np.zeros(self.n), np.zeros(self.n)
         cost[self.load], whole[self.choices] = 1.0, 1.0
         options = {"node_limit": settings.nodes, "mip_rel_gap": settings.gap, "presolve": True}
         answer = milp(cost, integrality=whole, bounds=Bounds(low, high), constraints=given, options=options)
         nodes = int(answer.mip_node_count or 0)
         if answer.status == 2:
-            return Found(None, np.inf, True, nodes)
+            return StateSearch(None, np.inf, True, nodes)
         proved = answer.mip_dual_bound if answer.mip_dual_bound is not None else 0.0
         state = None if answer.x is None else self.solved(np.round(answer.x[self.choices]))
-        return Found(state, float(max(proved, 0.0)) * self.statics.load, answer.status == 0, nodes)
+        return StateSearch(state, float(max(proved, 0.0)) * self.statics.load, answer.status == 0, nodes)
 
     def chosen(self, normal: np.ndarray, velocities: np.ndarray) -> np.ndarray:
         """The choices of a state: what presses nothing opens, joints that slide fast enough slide; (n_choices,)."""
@@ -213,7 +220,24 @@ class CollapseStates:
         crushes = (self.limits.compression - normal)[self.crushed] <= pressed
         return np.concatenate([opens, crushes, slide > fast, slide < -fast]).astype(float)
 
-    def solved(self, choices: np.ndarray) -> State | None:
+    def factors(self, state: CollapseState) -> tuple[np.ndarray, np.ndarray]:
+        """The two factors of every choice: rates over the largest, reserves of strength [W], (n_choices,)."""
+        statics, limits = self.statics, self.limits
+        normal, shear = state.forces[: statics.n_points], state.forces[statics.n_points :]
+        opening, slide = statics.opening @ state.velocities, statics.sliding @ state.velocities
+        opening = opening - (limits.dilation * np.abs(slide))[statics.joint]
+        rates = np.maximum(np.concatenate([opening, -opening[self.crushed], slide, -slide]), 0.0)
+        strength = limits.cohesion + limits.friction * (statics.sums @ normal)
+        reserves = [normal + limits.tension, (limits.compression - normal)[self.crushed], strength + shear]
+        return rates / max(float(rates.max(initial=0.0)), 1e-300), np.concatenate([*reserves, strength - shear])
+
+    def settled(self, state: CollapseState) -> np.ndarray:
+        """Choices of which one factor is more than nothing, (n_choices,) bool."""
+        small = self.settings.accepted
+        rates, reserves = self.factors(state)
+        return (rates > small) | (reserves > small)
+
+    def solved(self, choices: np.ndarray) -> CollapseState | None:
         """The least load with these choices; None: there is no such state."""
         from scipy.optimize import linprog
 
@@ -230,31 +254,21 @@ class CollapseStates:
         if found.status != SOLVED:
             return None
         x = found.x
-        state = State(
+        state = CollapseState(
             float(x[self.load][0] * self.statics.load), x[: self.load.start], self.columns @ x[self.u], choices, 0.0
         )
         return state._replace(residual=self.residual(state))
 
-    def residual(self, state: State) -> float:
+    def residual(self, state: CollapseState) -> float:
         """Largest violation of equilibrium, strength, compatibility and of the products, from forces and velocities."""
-        statics, limits = self.statics, self.limits
-        forces, load = state.forces, state.load / statics.load
-        normal, shear = forces[: statics.n_points], forces[statics.n_points :]
-        whole = np.append(forces, load)
+        statics = self.statics
+        whole = np.append(state.forces, state.load / statics.load)
         rows, tops = statics.cone_rows()
-        opening, slide = statics.opening @ state.velocities, statics.sliding @ state.velocities
-        opening = opening - (limits.dilation * np.abs(slide))[statics.joint]
-        largest = max(float(np.abs(opening).max(initial=0.0)), float(np.abs(slide).max(initial=0.0)))
-        strength = limits.cohesion + limits.friction * (statics.sums @ normal)
-        products = [
-            np.maximum(opening, 0.0) * (normal + limits.tension),
-            np.maximum(-opening, 0.0) * np.minimum(limits.compression - normal, 1.0),
-            np.maximum(slide, 0.0) * (strength + shear),
-            np.maximum(-slide, 0.0) * (strength - shear),
-        ]
+        rates, reserves = self.factors(state)
         violations = [
             statics.balance @ whole - statics.right,
             np.maximum(rows @ whole - tops, 0.0),
-            *(product / largest for product in products),
+            np.maximum(-reserves, 0.0),
+            rates * np.minimum(np.maximum(reserves, 0.0), 1.0),
         ]
         return max(float(np.abs(values).max(initial=0.0)) for values in violations)

@@ -1,4 +1,4 @@
-"""The forces that every contact point carries, by the vectors that span them: (N, T) = first + Σ g · generator, g ≥ 0; 2D.
+"""The forces of every contact point, by the vectors that span them: (N, T) = first + Σ g · generator, g ≥ 0; 2D.
 
 A joint law enters limit analysis through straight lines (laws/envelope.py): friction alone is the cone |T| ≤ μ N;
 tension, cohesion and crushing move its tip and cut it off. Generators have unit length, so that a large μ does no harm
@@ -92,9 +92,7 @@ def cone_of(strength: Envelope) -> Cone:
     crushed = np.flatnonzero(np.isfinite(strength.compression))
     of_point = np.full(len(friction), -1)
     of_point[crushed] = np.arange(len(crushed))
-    cap = np.concatenate(
-        [of_point, of_point[rough], len(crushed) + np.arange(len(blunt)), np.full(sum(parts[3:]), -1)]
-    )
+    cap = np.concatenate([of_point, of_point[rough], len(crushed) + np.arange(len(blunt)), np.full(sum(parts[3:]), -1)])
     share = np.concatenate([cosine, cosine[rough], np.ones(sum(parts[2:]))])
     most = np.concatenate([(strength.compression + tip)[crushed], 2.0 * width[blunt]])
     return Cone(points, normal, shear, first, cap, share, most)

@@ -17,9 +17,8 @@ from scipy.sparse import csr_matrix, diags, hstack, identity, vstack
 
 from dem_cli.interrupts import look
 from dem_cli.laws.envelope import Envelope
-from dem_cli.limit.cone import cone_of
 from dem_cli.limit.matrices import Structure
-from dem_cli.limit.program import program_of
+from dem_cli.limit.program import units
 
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
@@ -42,8 +41,7 @@ class JointForces:
     """Linear programs over the forces of a structure; `joint` is the joint of each point, (n_points,)."""
 
     def __init__(self, structure: Structure, strength: Envelope) -> None:
-        program = program_of(structure, cone_of(strength))
-        self.structure, self.weight, self.load = structure, program.weight, program.load
+        self.structure, (self.weight, self.load) = structure, units(structure)
         kept, self.joint = np.unique(structure.joints.owners, return_inverse=True)
         self.n_points, self.n_joints = len(self.joint), len(kept)
         self.strength = self.of(strength)

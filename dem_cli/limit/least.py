@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.laws.envelope import Envelope
-from dem_cli.limit.collapse_states import CollapseStates, Found, State
+from dem_cli.limit.collapse_states import CollapseStates, StateSearch, CollapseState
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LeastSettings
 
@@ -62,7 +62,7 @@ def least_load(
     """
     begun = time.perf_counter()
     states = CollapseStates(structure, strength, upper, settings)
-    found, nodes = Found(None, 0.0, False, 0), 0
+    found, nodes = StateSearch(None, 0.0, False, 0), 0
     if states.statics.n_joints <= settings.whole:
         found = states.search(upper)
         nodes = found.nodes
@@ -75,7 +75,7 @@ def least_load(
         return _told(states, None, NONE, found.proved, nodes, begun)
     known = SOME
     for _ in range(settings.rounds):
-        near = states.search((1.0 - settings.better) * best.load, best.choices)
+        near = states.search((1.0 - settings.better) * best.load, best)
         nodes += near.nodes
         better = _believed(near.state, settings)
         if better is None:
@@ -85,24 +85,20 @@ def least_load(
     return _told(states, best, known, found.proved, nodes, begun)
 
 
-def _believed(state: State | None, settings: LeastSettings) -> State | None:
+def _believed(state: CollapseState | None, settings: LeastSettings) -> CollapseState | None:
     return state if state is not None and state.residual <= settings.accepted else None
 
 
-def _end_of(path: Path, states: CollapseStates) -> State | None:
+def _end_of(path: Path, states: CollapseStates) -> CollapseState | None:
     """The state in which the path ends, or one close to it; None: there is none."""
     if path.normal is None or path.shear is None or path.mechanism is None:
         return None
-    settings, statics = states.settings, states.statics
-    choices = states.chosen(path.normal / statics.weight, path.mechanism.ravel()[states.structure.free])
-    state = _believed(states.solved(choices), settings)
-    if state is None:
-        state = _believed(states.search(states.upper, choices).state, settings)
-    return state
+    choices = states.chosen(path.normal / states.statics.weight, path.mechanism.ravel()[states.structure.free])
+    return _believed(states.solved(choices), states.settings)
 
 
 def _told(
-    states: CollapseStates, best: State | None, known: str, proved: float, nodes: int, begun: float
+    states: CollapseStates, best: CollapseState | None, known: str, proved: float, nodes: int, begun: float
 ) -> LeastLoad:
     moved = None if best is None else states.structure.on_blocks(best.velocities)
     return LeastLoad(

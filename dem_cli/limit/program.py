@@ -60,16 +60,20 @@ class ProgramSolution(NamedTuple):
 
 def program_of(structure: Structure, cone: Cone, settings: AssociatedSettings = DEFAULT_LIMIT.associated) -> Program:
     """The linear program of a structure with live loads."""
+    n_blocks, (weight, load) = len(structure.free) // structure.n_dof, units(structure)
+    motion, constant = cone.motion(structure.compatibility), structure.dead
+    if cone.first.any():
+        constant = constant + structure.compatibility.T @ cone.first.ravel()
+    return Program(structure, cone, motion, constant, n_blocks, weight, load, settings)
+
+
+def units(structure: Structure) -> tuple[float, float]:
+    """Mean weight of a block that can move [N], and the multiplier that makes live loads as large as the dead ones."""
     d, n_dof = structure.model.dimension, structure.n_dof
     forces = (loads.reshape(-1, n_dof)[:, :d] for loads in (structure.dead, structure.live))
     dead, live = (float(np.linalg.norm(loads, axis=1).sum()) for loads in forces)
     live = live or float(np.abs(structure.live).sum())  # moments alone
-    n_blocks = len(structure.free) // n_dof
-    weight = (dead or live) / n_blocks
-    motion, constant = cone.motion(structure.compatibility), structure.dead
-    if cone.first.any():
-        constant = constant + structure.compatibility.T @ cone.first.ravel()
-    return Program(structure, cone, motion, constant, n_blocks, weight, (dead or live) / live, settings)
+    return (dead or live) / (len(structure.free) // n_dof), (dead or live) / live
 
 
 def largest_load(program: Program, options: dict[str, Any]) -> ProgramSolution:

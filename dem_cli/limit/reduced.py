@@ -8,9 +8,9 @@ flow is that of the real joint and associated, and which takes no more than the 
 Let forces of the reduced domain balance the dead loads and the live ones times `low`, and others the live ones times
 `reached`. Then virtual work of both in the mechanism of any collapse at a multiplier between them would take more than
 the loads give: there is no collapse in between, whatever the history. With N_min = −ft A, all that the strength itself
-says, this is the thesis's domain, |T| ≤ c A of dry joints: nothing where cohesion is nothing. Statics says more: N_min is
-found by one linear program for each joint, over all forces that the real joints carry at loads of the interval, and
-the interval is moved on from what was reached.
+says, this is the thesis's domain, |T| ≤ c A of joints without tension: nothing where cohesion is nothing. Statics says
+more: N_min is found by one linear program for each joint, over all forces that the real joints carry at loads of the
+interval, and the interval is moved on from what was reached.
 
 It holds for the geometry of the start and joints that keep their strength while they slide and open.
 """
@@ -82,8 +82,8 @@ class ReducedDomain:
         if by_strength is not None:
             low, proved = by_strength, True
         for _ in range(settings.intervals):
-            spent = (self.most.programs + self.most.n_joints) * self.most.n_joints
-            if not associated - low > settings.accuracy * associated or spent > settings.effort:
+            effort = (self.most.programs + self.most.n_joints) * self.most.n_joints
+            if not associated - low > settings.accuracy * associated or effort > settings.effort:
                 break
             reached = self.reach(self.least_normals(low, high), low, high)
             if reached is None or not reached - low >= settings.least_gain * (high - low):
@@ -92,9 +92,8 @@ class ReducedDomain:
                 high = low + settings.shorter * (high - low)
                 continue
             low, high, proved = reached, associated, True
-        found = (OK, low) if proved else (NONE, None)
-        programs = self.most.programs + self.kept.programs
-        return LowerBound(*found, by_strength, programs, time.perf_counter() - begun)
+        programs, spent = self.most.programs + self.kept.programs, time.perf_counter() - begun
+        return LowerBound(OK if proved else NONE, low if proved else None, by_strength, programs, spent)
 
     def least_normals(self, low: float, high: float) -> np.ndarray:
         """Least normal force of each joint in any equilibrium at loads of the interval [mean weights], (n_joints,)."""
@@ -122,4 +121,4 @@ class ReducedDomain:
         last = kept.solve(-cost, bounds, rows, tops)
         if last.status != SOLVED:
             return None  # without an upper end any load, as far as these forces tell: none to name
-        return float(-last.fun * kept.load) * (1.0 - self.settings.margin)
+        return max(float(-last.fun * kept.load) * (1.0 - self.settings.margin), low)

@@ -90,14 +90,15 @@ class LeastSettings:
     """The least load of joints that do not dilate, as a mixed-integer program: bounds, effort, accuracy."""
 
     forces: float = 20.0  # largest normal force of a contact point, in all dead and live loads together
-    rates: float = 100.0  # largest rate of a joint × mean weight, over the power of the live loads
+    rates: float = 10.0  # largest rate of a joint, over the motion of the least loaded block if it moves alone ...
+    slightest: float = 0.02  # ... but no block counts as less loaded than this share of the most loaded one
     whole: int = 40  # joints, up to which all mechanisms are searched
-    nodes: int = 20_000  # of one search
-    changed: int = 6  # states of contact points and joints that a local search may change at once
+    nodes: int = 2_000  # of one search
+    changed: int = 2  # states of contact points and joints that a local search may change at once
     rounds: int = 30  # of the local search
     better: float = 1e-4  # share of the load that is an improvement
     gap: float = 1e-4  # relative, of load and proved bound at which a search ends
-    carries: float = 1e-7  # force in mean weights, rate over `rates`: less is none
+    carries: float = 1e-7  # force in mean weights: less is none
     accepted: float = 1e-5  # residual of the conditions, in mean weights, of a state that is believed
 
 

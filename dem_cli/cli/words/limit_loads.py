@@ -28,7 +28,7 @@ def _associated(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
-    status, spent = limits.get("non_associated_status"), limits.get("non_associated_seconds")
+    status, spent = limits.get("non_associated_status"), float(limits.get("non_associated_seconds") or 0.0)
     if limits.get("non_associated") is not None:
         how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(spent)}"
         final = limits.get("non_associated_final_load")
@@ -59,7 +59,9 @@ def _lower(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
         return []
     if limits["lower_bound"] is None:
         return [("lower bound", str(limits["lower_bound_status"]))]
-    how = f"reduced domain: joints that do not dilate collapse at no lower load, {seconds(limits['lower_bound_seconds'])}"
+    how = (
+        f"reduced domain: joints that do not dilate collapse at no lower load, {seconds(limits['lower_bound_seconds'])}"
+    )
     return [("lower bound", f"{load_text(limits['lower_bound'])}  ({how})")]
 
 
