@@ -29,8 +29,10 @@ class Envelope(NamedTuple):
 
 def frictional(friction: np.ndarray) -> Envelope:
     """Friction and nothing else: N ≥ 0, |T| ≤ μ N; (n_points,)."""
-    nothing = np.zeros(len(friction))
-    return Envelope(np.array(friction, float), nothing, nothing, np.full(len(friction), np.inf), nothing)
+    n_points = len(friction)
+    return Envelope(
+        np.array(friction, float), np.zeros(n_points), np.zeros(n_points), np.full(n_points, np.inf), np.zeros(n_points)
+    )
 
 
 def envelope(n_points: int, **values: np.ndarray | float) -> Envelope:

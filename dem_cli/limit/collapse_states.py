@@ -7,6 +7,7 @@ Lo Bianco and Mazzarella (thesis 3.1.3, equations 3-5; Baggio and Trovalusci 200
                       B u = (a − q + tan ψ s, s₊ − s₋),   live·u = 1    a mechanism in which the live loads work
                       a (N + ft A) = q (fc A − N) = 0,   s± (C + μ N ± T) = 0,   λ, a, q, s± ≥ 0
 
+C is the cohesion of the points that are shut; a point without tension loses its own as it opens (a > 0).
 Every history that ends in a mechanism in which the live loads work ends in one of these states, none below the least
 load. Each product is a choice between its two factors: a whole number, 0 or 1. HiGHS searches all of them (branch and
 bound), which proves the least load, or those that differ in a few choices from the state in hand, which proves a local
@@ -137,6 +138,7 @@ class CollapseStates:
         of_choice = identity(count).tocsr()
         ends = np.cumsum([n_points, len(self.crushed), n_joints, n_joints])
         y, crush, plus, minus = (of_choice[a:b] for a, b in zip([0, *ends[:-1]], ends, strict=True))
+        lost = statics.sums @ diags(limits.lost) @ y  # cohesion of the points that open
         span = limits.tension + self.most
         full = (limits.tension + limits.compression)[self.crushed]
         rows = [
@@ -144,8 +146,8 @@ class CollapseStates:
             (self._rates(count), np.zeros(count)),
             (self._row(N=all_of, choices=diags(span) @ y), self.most),
             (self._row(N=-all_of[self.crushed], choices=diags(full) @ crush), limits.tension[self.crushed]),
-            (self._row(N=rubs, T=identity(n_joints), choices=diags(reach) @ plus), reach - limits.cohesion),
-            (self._row(N=rubs, T=-identity(n_joints), choices=diags(reach) @ minus), reach - limits.cohesion),
+            (self._row(N=rubs, T=identity(n_joints), choices=diags(reach) @ plus - lost), reach - limits.cohesion),
+            (self._row(N=rubs, T=-identity(n_joints), choices=diags(reach) @ minus - lost), reach - limits.cohesion),
             (self._row(choices=plus + minus), np.ones(n_joints)),
             self._work(),
         ]
@@ -162,7 +164,7 @@ class CollapseStates:
     def _work(self) -> tuple[csr_matrix, np.ndarray]:
         """λ = −dead·u + what the joints take, which is no less than with the least normal forces."""
         limits, statics = self.limits, self.statics
-        slip = csr_matrix(limits.cohesion + (limits.friction - limits.dilation) * self.least)
+        slip = csr_matrix(statics.sure_cohesion(self.least) + (limits.friction - limits.dilation) * self.least)
         row = self._row(
             load=csr_matrix([[-1.0]]),
             u=csr_matrix(-statics.dead[None]) @ self.columns,
@@ -227,7 +229,9 @@ class CollapseStates:
         opening, slide = statics.opening @ state.velocities, statics.sliding @ state.velocities
         opening = opening - (limits.dilation * np.abs(slide))[statics.joint]
         rates = np.maximum(np.concatenate([opening, -opening[self.crushed], slide, -slide]), 0.0)
-        strength = limits.cohesion + limits.friction * (statics.sums @ normal)
+        shut = 1.0 - state.choices[: statics.n_points]
+        cohesion = limits.cohesion - statics.sums @ (limits.lost * (1.0 - shut))
+        strength = cohesion + limits.friction * (statics.sums @ normal)
         reserves = [normal + limits.tension, (limits.compression - normal)[self.crushed], strength + shear]
         return rates / max(float(rates.max(initial=0.0)), 1e-300), np.concatenate([*reserves, strength - shear])
 
@@ -268,7 +272,6 @@ class CollapseStates:
         violations = [
             statics.balance @ whole - statics.right,
             np.maximum(rows @ whole - tops, 0.0),
-            np.maximum(-reserves, 0.0),
             rates * np.minimum(np.maximum(reserves, 0.0), 1.0),
         ]
         return max(float(np.abs(values).max(initial=0.0)) for values in violations)

@@ -33,6 +33,7 @@ class JointStrength(NamedTuple):
     tension: np.ndarray  # of points
     compression: np.ndarray  # of points
     cohesion: np.ndarray  # of joints: without any normal force
+    lost: np.ndarray  # of points: their share of it, where it goes as they open: without tension nothing holds it
     friction: np.ndarray  # of joints [-]
     dilation: np.ndarray  # of joints, tan ψ [-]
 
@@ -69,8 +70,21 @@ class JointForces:
             strength.tension / self.weight,
             strength.compression / self.weight,
             np.bincount(self.joint, strength.cohesion / self.weight, self.n_joints),
+            np.where(strength.tension > 0.0, 0.0, strength.cohesion / self.weight),
             strength.friction[first],
             strength.dilation[first],
+        )
+
+    def sure_cohesion(self, least: np.ndarray) -> np.ndarray:
+        """Cohesion of every joint that no opening takes away, (n_joints,): where it presses one point at least is shut.
+
+        least: normal forces of the joints, (n_joints,).
+        """
+        smallest = np.full(self.n_joints, np.inf)
+        np.minimum.at(smallest, self.joint, self.strength.lost)
+        lost = np.bincount(self.joint, self.strength.lost, self.n_joints)
+        return np.where(
+            lost > 0.0, self.strength.cohesion - lost + np.where(least > 0.0, smallest, 0.0), self.strength.cohesion
         )
 
     def bounds(self, low: float, high: float, shear: np.ndarray | None = None) -> np.ndarray:

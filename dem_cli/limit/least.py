@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.laws.envelope import Envelope
-from dem_cli.limit.collapse_states import CollapseStates, StateSearch, CollapseState
+from dem_cli.limit.collapse_states import CollapseState, CollapseStates, StateSearch
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LeastSettings
 

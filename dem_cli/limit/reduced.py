@@ -12,7 +12,9 @@ says, this is the thesis's domain, |T| ≤ c A of joints without tension: nothin
 more: N_min is found by one linear program for each joint, over all forces that the real joints carry at loads of the
 interval, and the interval is moved on from what was reached.
 
-It holds for the geometry of the start and joints that keep their strength while they slide and open.
+It holds for the geometry of the start and joints that keep their strength while they slide and open. A point without
+tension loses its cohesion as it opens (laws/mohr_coulomb.py): only what one point has of it counts, and only where the
+joint presses; the thesis's domain has all of it.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ class LowerBound(NamedTuple):
 
     status: str  # OK or NONE
     multiplier: float | None  # of the live loads, as users know it; None where none was proved
-    by_strength: float | None  # the same with N_min = −ft A alone: the domain of the thesis
+    reduced_domain: float | None  # the domain of the thesis, of joints that keep their cohesion where they open
     programs: int  # linear programs solved
     seconds: float
 
@@ -43,8 +45,8 @@ class LowerBound(NamedTuple):
         """What summary.json says of it."""
         return {
             "lower_bound": self.multiplier,
-            "lower_bound_by_strength_alone": self.by_strength,
             "lower_bound_status": self.status,
+            "reduced_domain": self.reduced_domain,
             "lower_bound_programs": self.programs,
             "lower_bound_seconds": self.seconds,
         }
@@ -76,11 +78,13 @@ class ReducedDomain:
 
     def search(self, associated: float) -> LowerBound:
         """Intervals from zero on, each from what the last one reached."""
-        begun, settings, least = time.perf_counter(), self.settings, self.untied
-        low, high, proved = 0.0, associated, False
-        by_strength = self.reach(least, 0.0, associated)
-        if by_strength is not None:
-            low, proved = by_strength, True
+        begun, settings = time.perf_counter(), self.settings
+        low, high = 0.0, associated
+        thesis = self.reach(self.untied, 0.0, associated, self.kept.strength.cohesion)
+        first = self.reach(self.untied, 0.0, associated)
+        if first is not None:
+            low = first
+        proved = first is not None
         for _ in range(settings.intervals):
             effort = (self.most.programs + self.most.n_joints) * self.most.n_joints
             if not associated - low > settings.accuracy * associated or effort > settings.effort:
@@ -93,7 +97,7 @@ class ReducedDomain:
                 continue
             low, high, proved = reached, associated, True
         programs, spent = self.most.programs + self.kept.programs, time.perf_counter() - begun
-        return LowerBound(OK if proved else NONE, low if proved else None, by_strength, programs, spent)
+        return LowerBound(OK if proved else NONE, low if proved else None, thesis, programs, spent)
 
     def least_normals(self, low: float, high: float) -> np.ndarray:
         """Least normal force of each joint in any equilibrium at loads of the interval [mean weights], (n_joints,)."""
@@ -108,10 +112,14 @@ class ReducedDomain:
                 least[k] = max(least[k], found.fun - self.settings.margin)
         return least
 
-    def reach(self, least: np.ndarray, low: float, high: float) -> float | None:
-        """The largest multiplier up to `high` in the reduced domain, if `low` is in it as well; else None."""
+    def reach(self, least: np.ndarray, low: float, high: float, cohesion: np.ndarray | None = None) -> float | None:
+        """The largest multiplier up to `high` in the reduced domain, if `low` is in it as well; else None.
+
+        least: normal forces of the joints that slide; cohesion: of them, None: what no opening takes away.
+        """
         kept, own = self.kept, self.kept.strength
-        fixed = np.maximum(own.cohesion + (own.friction - own.dilation) * least, 0.0)
+        cohesion = kept.sure_cohesion(least) if cohesion is None else cohesion
+        fixed = np.maximum(cohesion + (own.friction - own.dilation) * least, 0.0)
         bounds, rows, tops = kept.bounds(low, high), *kept.cone_rows(own.dilation, fixed)
         cost = np.zeros(kept.n)
         cost[-1] = 1.0

@@ -57,12 +57,14 @@ def _least(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
 def _lower(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     if "lower_bound" not in limits:
         return []
+    rows = []
+    if limits["reduced_domain"]:  # without cohesion it says nothing
+        how = "reduced domain: lower bound of joints that keep their cohesion where they open"
+        rows.append(("bonded", f"{load_text(limits['reduced_domain'])}  ({how})"))
     if limits["lower_bound"] is None:
-        return [("lower bound", str(limits["lower_bound_status"]))]
-    how = (
-        f"reduced domain: joints that do not dilate collapse at no lower load, {seconds(limits['lower_bound_seconds'])}"
-    )
-    return [("lower bound", f"{load_text(limits['lower_bound'])}  ({how})")]
+        return [*rows, ("lower bound", str(limits["lower_bound_status"]))]
+    how = f"joints that do not dilate collapse at no lower load, {seconds(limits['lower_bound_seconds'])}"
+    return [*rows, ("lower bound", f"{load_text(limits['lower_bound'])}  ({how})")]
 
 
 def _hand_check(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
