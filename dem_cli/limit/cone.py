@@ -18,8 +18,6 @@ from dem_cli.kernels.records import Joints
 from dem_cli.laws.envelope import Envelope
 from dem_cli.laws.law import Law
 
-SAME = 1e-9  # relative; larger differences from proportion are the law's
-
 
 class Cone(NamedTuple):
     """Generators: two of each frictional point, one of the others, one more along a joint with cohesion at its tip."""
@@ -119,25 +117,14 @@ def envelope_of(joints: Joints, law: Law, heads_frictionless: bool = False, resi
 
 
 def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> np.ndarray:
-    """Friction coefficient of every point [-], (n_points,).
+    """Friction coefficient of every point of joints with friction and nothing else [-], (n_points,).
 
     heads_frictionless: joints steeper than 45° to the horizontal carry no friction (thesis Table 5-3); 2D.
-    Raises UsageError where the largest shear force of the law does not grow in proportion to the normal force.
+    Raises UsageError where the law remembers anything, or has more than |T| ≤ μ N.
     """
-    owner, n_points = joints.owners, len(joints.kn)
-    linear = not (law.bonded or law.n_memory(2))
-    if linear:
-        memory = np.zeros((n_points, 0))
-        one, two, none = (
-            law.shear_limit(joints.law[owner], np.full(n_points, n), memory, joints.kn) for n in (1.0, 2.0, 0.0)
-        )
-        linear = (np.abs(two - 2.0 * one) <= SAME * np.abs(one)).all() and (none == 0.0).all()
-    if not linear:
+    if law.envelope is None or law.bonded or law.n_memory(2):
         raise UsageError(
             f"limit analysis needs joints whose largest shear force is friction × normal force; "
             f"law '{law.name}' is not of that kind"
         )
-    friction = one.copy()
-    if heads_frictionless:
-        friction[np.abs(joints.frames[:, 1]) < STEEP] = 0.0
-    return friction
+    return envelope_of(joints, law, heads_frictionless).friction

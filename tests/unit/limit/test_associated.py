@@ -245,10 +245,9 @@ def test_a_law_without_straight_lines_is_refused():
 def test_a_law_that_is_not_friction_alone_has_no_path():
     made = scene(wall())
     structure = start_structure(made.model, joint_properties(made.case, made.model))
-    cohesive = {"name": "glue", "shear_limit": lambda p, normal, memory, kn: p[:, 0] * normal + 1.0}
-    for change in (cohesive, {"name": "glue", "scalars": 1}, {"name": "glue", "bonded": True}):
+    for change in ({"envelope": None}, {"scalars": 1}, {"bonded": True}):
         with pytest.raises(UsageError, match="law 'glue'"):
-            friction_of(structure.joints, dataclasses.replace(COULOMB, **change))
+            friction_of(structure.joints, dataclasses.replace(COULOMB, name="glue", **change))
 
 
 def test_head_joints_without_friction():
