@@ -185,8 +185,8 @@ class CollapseStates:
 
     # -- search ----------------------------------------------------------------------------------------
 
-    def search(self, below: float, near: CollapseState | None = None) -> StateSearch:
-        """The least state under a load; near: a state from which it may differ in `changed` choices only.
+    def search(self, below: float, near: CollapseState | None = None, changed: int = 0) -> StateSearch:
+        """The least state under a load; near: a state from which it may differ in so many choices only.
 
         Choices that the state leaves open, as both factors are nothing, do not count.
         """
@@ -200,7 +200,7 @@ class CollapseStates:
         if near is not None:
             counted, row = self.settled(near), np.zeros(self.n)
             row[self.choices] = np.where(counted, 1.0 - 2.0 * near.choices, 0.0)
-            given.append(LinearConstraint(row[None], -np.inf, settings.changed - near.choices[counted].sum()))
+            given.append(LinearConstraint(row[None], -np.inf, changed - near.choices[counted].sum()))
         cost, whole = np.zeros(self.n), np.zeros(self.n)
         cost[self.load], whole[self.choices] = 1.0, 1.0
         options = {"node_limit": settings.nodes, "mip_rel_gap": settings.gap, "presolve": True}
@@ -212,15 +212,14 @@ class CollapseStates:
         state = None if answer.x is None else self.solved(np.round(answer.x[self.choices]))
         return StateSearch(state, float(max(proved, 0.0)) * self.statics.load, answer.status == 0, nodes)
 
-    def chosen(self, normal: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-        """The choices of a state: what presses nothing opens, joints that slide fast enough slide; (n_choices,)."""
-        statics, small = self.statics, 1e-3
-        slide = statics.sliding @ velocities
-        fast = small * float(np.abs(slide).max(initial=0.0))
-        pressed = self.settings.carries + 1e-6 * float(normal.max(initial=0.0))
-        opens = normal + self.limits.tension <= pressed
-        crushes = (self.limits.compression - normal)[self.crushed] <= pressed
-        return np.concatenate([opens, crushes, slide > fast, slide < -fast]).astype(float)
+    def chosen(self, forces: np.ndarray, velocities: np.ndarray, weight: float) -> np.ndarray:
+        """The choices of a state that is one but for errors, (n_choices,): the smaller factor is nothing.
+
+        forces: N of points, T of joints; weight: of rates, over the largest of each kind.
+        """
+        loose = CollapseState(0.0, forces, velocities, np.zeros(self.choices.stop - self.choices.start), 0.0)
+        rates, reserves = self.factors(loose)
+        return (weight * rates > reserves / max(float(forces.max(initial=0.0)), 1e-300)).astype(float)
 
     def factors(self, state: CollapseState) -> tuple[np.ndarray, np.ndarray]:
         """The two factors of every choice: rates over the largest, reserves of strength [W], (n_choices,)."""

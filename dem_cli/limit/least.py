@@ -73,16 +73,31 @@ def least_load(
         best = _end_of(path, states)
     if best is None:
         return _told(states, None, NONE, found.proved, nodes, begun)
-    known = SOME
+    best, changed, more = _locally(states, best)
+    known = SOME if changed is None else LOCAL
+    return _told(states, best, known, found.proved, nodes + more, begun)._replace(changed=changed)
+
+
+def _locally(states: CollapseStates, best: CollapseState) -> tuple[CollapseState, int | None, int]:
+    """From a state to lower ones, while there are any that differ in a few choices.
+
+    Returns the last, in how many choices it was proved against others (None: in none), and the nodes of all searches.
+    """
+    settings, nodes = states.settings, 0
+    tried = [settings.changed, 0]  # none: only what the state leaves open
     for _ in range(settings.rounds):
-        near = states.search((1.0 - settings.better) * best.load, best)
+        near = states.search((1.0 - settings.better) * best.load, best, tried[0])
         nodes += near.nodes
         better = _believed(near.state, settings)
-        if better is None:
-            known = LOCAL if near.whole and near.state is None else SOME
+        if better is not None:
+            best = better
+        elif near.whole and near.state is None:
+            return best, tried[0], nodes
+        else:
+            tried = tried[1:]
+        if not tried:
             break
-        best = better
-    return _told(states, best, known, found.proved, nodes, begun)
+    return best, None, nodes
 
 
 def _believed(state: CollapseState | None, settings: LeastSettings) -> CollapseState | None:
@@ -93,8 +108,14 @@ def _end_of(path: Path, states: CollapseStates) -> CollapseState | None:
     """The state in which the path ends, or one close to it; None: there is none."""
     if path.normal is None or path.shear is None or path.mechanism is None:
         return None
-    choices = states.chosen(path.normal / states.statics.weight, path.mechanism.ravel()[states.structure.free])
-    return _believed(states.solved(choices), states.settings)
+    statics, moved = states.statics, path.mechanism.ravel()[states.structure.free]
+    shear = np.bincount(statics.joint, path.shear[:, 0], statics.n_joints)
+    forces = np.concatenate([path.normal, shear]) / statics.weight
+    for weight in states.settings.weights:
+        state = _believed(states.solved(states.chosen(forces, moved, weight)), states.settings)
+        if state is not None:
+            return state
+    return None
 
 
 def _told(
@@ -105,7 +126,7 @@ def _told(
         known,
         None if best is None else best.load,
         proved if np.isfinite(proved) and proved > 0.0 else None,
-        states.settings.changed if known == LOCAL else None,
+        None,
         None if best is None else best.residual,
         moved,
         states.bounded,

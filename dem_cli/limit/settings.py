@@ -96,6 +96,7 @@ class LeastSettings:
     nodes: int = 2_000  # of one search
     changed: int = 2  # states of contact points and joints that a local search may change at once
     rounds: int = 30  # of the local search
+    weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path
     better: float = 1e-4  # share of the load that is an improvement
     gap: float = 1e-4  # relative, of load and proved bound at which a search ends
     carries: float = 1e-7  # force in mean weights: less is none

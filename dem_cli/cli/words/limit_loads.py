@@ -46,6 +46,8 @@ def _least(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     if known is None:
         return []
     how = LEAST_OF.get(known, "").format(changed=limits["least_changed"])
+    if known == "local" and not limits["least_changed"]:
+        how = "a local least: no opening or slip that it leaves open leads lower"
     if proved is not None and known != "all":
         how = f"{how}; none at all below {load_text(proved)}".removeprefix("; ")
     spent = f"{limits['least_nodes']:,} nodes, {seconds(limits['least_seconds'])}"

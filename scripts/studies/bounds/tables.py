@@ -12,19 +12,8 @@ from dem_cli.bench.table import percent
 from dem_cli.contact.layout import lobatto
 from studies.template import table
 
-HEAD = (
-    "case",
-    "blocks",
-    "joints",
-    "lower bound",
-    "least load",
-    "of",
-    "DEM",
-    "path",
-    "associated",
-    "DEM over least",
-    "CPU [s]",
-)
+HEAD = ("case", "blocks", "joints", "bonded", "lower bound", "least load", "of", "DEM", "path", "associated",
+        "DEM over least", "CPU [s]")  # fmt: skip
 LEAST_OF = {"all": "all states", "local": "local", "some": "one state", "none": "none found"}
 SAME = 2e-6  # relative: what solvers leave open
 ABOVE = 0.002  # relative, over the associated load: the resolution of DEM
@@ -47,11 +36,10 @@ def cells(row: Mapping[str, Any]) -> list[str]:
     """A row as text."""
     dem = row["dem"][0]
     over = percent(dem / row["least"] - 1.0) if row["least"] else "–"
-    return [
-        row["name"].split("/")[-1], str(row["blocks"]), str(row["joints"]), load(row["lower_bound"]), load(row["least"]),
-        LEAST_OF.get(row["least_of"], "–"), load(dem), load(row["non_associated"]), load(row["associated"]), over,
-        f"{row['seconds']:.1f}",
-    ]  # fmt: skip
+    bounds = [load(row["reduced_domain"] or None), load(row["lower_bound"]), load(row["least"])]
+    upper = [load(dem), load(row["non_associated"]), load(row["associated"]), over, f"{row['seconds']:.1f}"]
+    of = LEAST_OF.get(row["least_of"], "–")
+    return [row["name"].split("/")[-1], str(row["blocks"]), str(row["joints"]), *bounds, of, *upper]
 
 
 def load(value: float | None) -> str:
