@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     help="Joints steeper than 45°; the thesis's Table 5-3 has them without friction.",
 )
 @click.option("--associated-only", is_flag=True, help="Leave out the load of joints that do not dilate.")
+@click.option("--lower", is_flag=True, help="Also a load below which no joints that do not dilate collapse.")
+@click.option(
+    "--least", is_flag=True, help="Also the least load of all collapse states of such joints; small structures."
+)
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
 def command(
@@ -44,13 +48,15 @@ def command(
     as_json: bool,
     heads: str,
     associated_only: bool,
+    lower: bool,
+    least: bool,
     quiet: bool,
     force: bool,
 ) -> int:
-    """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start."""
+    """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start, and bounds of it."""
     from dem_cli import api
     from dem_cli.engine.properties import joint_properties, law_of
-    from dem_cli.limit.analysis import gaps_left_open, limit_loads, taken_as_plane
+    from dem_cli.limit.analysis import LEAST, LOWER, gaps_left_open, limit_loads, taken_as_plane
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
@@ -62,9 +68,10 @@ def command(
         loaded.warnings.append(note)
     if note := gaps_left_open(model):
         loaded.warnings.append(note)
+    bounds = [name for name, wanted in ((LOWER, lower), (LEAST, least)) if wanted]
     with console.Progress(quiet) as bar:
         found = limit_loads(
-            model, properties, law, heads == "frictionless", associated_only,
+            model, properties, law, heads == "frictionless", associated_only, bounds,
             lambda load, reached: bar.update("no dilation", load, 0.0, None),
         )  # fmt: skip
     summary = summarised(loaded, model, found, heads) | {"wall_seconds": time.perf_counter() - started}

@@ -77,6 +77,7 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
 
     Raises UsageError where the law has no cone |T| ≤ μ N.
     """
+    from dem_cli.laws.envelope import frictional
     from dem_cli.limit.analysis import start_structure
     from dem_cli.limit.associated import carried
     from dem_cli.limit.cone import friction_of
@@ -85,7 +86,7 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
     if not structure.dead.any():
         return True  # nothing to carry
     friction = friction_of(structure.joints, law_of(case))
-    return carried(_under_load(structure, case), friction, settings.limit.associated)[0]
+    return carried(_under_load(structure, case), frictional(friction), settings.limit.associated)[0]
 
 
 def _under_load(structure: Structure, case: Case) -> Structure:

@@ -14,6 +14,7 @@ from pydantic import Field
 
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, scale
+from dem_cli.laws.envelope import frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 from dem_cli.laws.softening import FRICTION_SOFTENING, Softening
@@ -50,6 +51,7 @@ COULOMB = Law(
     function=coulomb,
     columns=lambda table, kn: (table.coefficient,),
     shear_limit=lambda parameters, normal, memory, kn: parameters[:, 0] * normal,
+    envelope=lambda parameters, kn: frictional(parameters[:, 0]),
     variant=lambda table: FRICTION_SOFTENING if table.softening else None,
     source="Cundall 1971; thesis 4.3",
 )

@@ -14,6 +14,7 @@ from pydantic import Field
 from dem_cli.case.base import Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
+from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -43,12 +44,18 @@ def crushing(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     return normal, scale(limit / size, trial), True
 
 
+def strength(parameters, kn) -> Envelope:
+    """Friction, and fc A [N]."""
+    return envelope(len(kn), friction=parameters[:, 1], compression=parameters[:, 2] * kn / parameters[:, 0])
+
+
 CRUSHING = Law(
     name="crushing",
     parameters=CrushingJoint,
     function=crushing,
     columns=lambda table, kn: (kn, table.coefficient, table.compression),
     shear_limit=lambda parameters, normal, memory, kn: parameters[:, 1] * normal,
+    envelope=strength,
     scalars=1,
     bonded=True,
     source="the cap in compression of interface models, here without hardening (Lourenço and Rots 1997)",

@@ -17,6 +17,7 @@ from dem_cli.case.base import Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.decay import slip_on_decay
+from dem_cli.laws.envelope import frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -60,6 +61,8 @@ SLIP_DEGRADING = Law(
     function=degrading,
     columns=lambda table, kn: (table.coefficient, table.residual * table.coefficient, table.slip_scale),
     shear_limit=shear_limit,
+    envelope=lambda parameters, kn: frictional(parameters[:, 0]),
+    residual=lambda parameters, kn: frictional(parameters[:, 1]),
     scalars=1,
     source="thesis 5.2.2, Figures 5-15 to 5-20; the exponential is ours",
 )

@@ -13,6 +13,7 @@ import numpy as np
 
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, scale
+from dem_cli.laws.envelope import envelope
 from dem_cli.laws.law import Law
 from dem_cli.laws.stiffness import StiffJoint
 
@@ -39,6 +40,7 @@ ELASTIC = Law(
     function=elastic,
     columns=lambda table, kn: (kn,),
     shear_limit=lambda parameters, normal, memory, kn: np.full(len(normal), np.inf),
+    envelope=lambda parameters, kn: envelope(len(kn), cohesion=np.inf, tension=np.inf),
     scalars=1,
     intact=(1.0,),
     bonded=True,

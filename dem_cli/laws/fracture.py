@@ -24,6 +24,7 @@ from dem_cli.case.base import KeyProblem, NonNegative, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.decay import slip_on_decay
+from dem_cli.laws.envelope import Envelope, envelope, frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -117,6 +118,14 @@ def shear_limit(parameters, normal, memory, kn):
     return np.maximum(strength * parameters[:, 1] * area + friction * normal, 0.0)
 
 
+def intact(parameters, kn) -> Envelope:
+    """c A, ft A [N] and μ before it cracks."""
+    area = kn / parameters[:, 0]
+    return envelope(
+        len(kn), friction=parameters[:, 3], cohesion=parameters[:, 1] * area, tension=parameters[:, 2] * area
+    )
+
+
 def columns(table, kn):
     """kn [Pa/m], c, ft [Pa], μ0, μr, ft / G_I, c / G_II [1/m]."""
     return (
@@ -131,6 +140,8 @@ FRACTURE = Law(
     function=fracture,
     columns=columns,
     shear_limit=shear_limit,
+    envelope=intact,
+    residual=lambda parameters, kn: frictional(parameters[:, 4]),
     scalars=2,
     intact=(1.0,),
     bonded=True,

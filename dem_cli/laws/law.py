@@ -26,6 +26,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from dem_cli.case.base import CaseModel
+from dem_cli.laws.envelope import Envelope
 
 JointTable = TypeVar("JointTable", bound=CaseModel)
 
@@ -40,6 +41,10 @@ class Law(Generic[JointTable]):
     columns: Callable[[JointTable, float], tuple[float, ...]]  # (table, kn [Pa/m]) -> row of `parameters`
     # (parameters, normal forces, memory, kn of the points) -> largest shear forces, all (n_points, ...)
     shear_limit: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    # For limit analysis, (parameters, kn) of the points -> what they carry at most (laws/envelope.py); None: that has
+    # no straight lines. `residual`: what is left when a point has slid and opened for long; None: all of it.
+    envelope: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
+    residual: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
     scalars: int = 0  # numbers that a point remembers
     vectors: int = 0  # vectors along the tangents that it remembers beside them
     intact: tuple[float, ...] = ()  # first scalars of points that touch at the start; all others start from zero

@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.case.base import CaseModel
 from dem_cli.kernels.jit import inline, named
+from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.law import Law
 
 
@@ -31,12 +32,26 @@ def mixed(laws: tuple[Law, ...]) -> Law:
             limit[own] = law.shear_limit(parameters[own], normal[own], memory[own], kn[own])
         return limit
 
+    def joined(which):
+        def of_all(parameters, kn) -> Envelope:
+            whole = envelope(len(kn))
+            for number, law in enumerate(laws):
+                own = parameters[:, -1] == number
+                for values, found in zip(whole, which(law)(parameters[own], kn[own]), strict=True):
+                    values[own] = found
+            return whole
+
+        return of_all
+
+    straight, falls = all(law.envelope for law in laws), any(law.residual for law in laws)
     return Law(
         name=" + ".join(law.name for law in laws),
         parameters=CaseModel,
         function=function,
         columns=lambda table, kn: (),
         shear_limit=shear_limit,
+        envelope=joined(lambda law: law.envelope) if straight else None,
+        residual=joined(lambda law: law.residual or law.envelope) if straight and falls else None,
         scalars=max(law.scalars for law in laws),
         vectors=max(law.vectors for law in laws),
         bonded=any(law.bonded for law in laws),

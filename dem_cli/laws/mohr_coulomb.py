@@ -21,6 +21,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import KeyProblem, NonNegative
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale, store
+from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -164,6 +165,26 @@ def shear_limit(parameters, normal, memory, kn):
     return np.maximum(cohesion * area + friction * normal, 0.0)
 
 
+def intact(parameters, kn) -> Envelope:
+    """c A, ft A [N] and μ of the bond."""
+    return _bond(parameters[:, 1:4], parameters, kn)
+
+
+def broken(parameters, kn) -> Envelope:
+    """The same of what is left of it."""
+    return _bond(parameters[:, 4:7], parameters, kn)
+
+
+def _bond(strengths, parameters, kn) -> Envelope:
+    """strengths: c, ft [Pa] and μ, (n_points, 3). A joint that stops dilating collapses without."""
+    area, endless = kn / parameters[:, 0], np.isinf(parameters[:, 8])
+    cohesion, tension, friction = strengths.T
+    return envelope(
+        len(kn), friction=friction, cohesion=cohesion * area, tension=tension * area,
+        dilation=np.where(endless, parameters[:, 7], 0.0),
+    )  # fmt: skip
+
+
 def columns(table, kn):
     """kn, then c, ft, μ intact, the same after failure, tan ψ, zdil."""
     return (
@@ -179,6 +200,8 @@ MOHR_COULOMB = Law(
     function=mohr_coulomb,
     columns=columns,
     shear_limit=shear_limit,
+    envelope=intact,
+    residual=broken,
     scalars=2,
     vectors=1,
     intact=(INTACT,),

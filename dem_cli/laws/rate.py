@@ -18,6 +18,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import KeyProblem, NonNegative, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
+from dem_cli.laws.envelope import frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 
@@ -73,6 +74,7 @@ RATE_DEPENDENT = Law(
     function=rate_dependent,
     columns=lambda table, kn: (table.coefficient, table.friction_dynamic, table.velocity),
     shear_limit=shear_limit,
+    envelope=lambda parameters, kn: frictional(parameters[:, 0]),
     scalars=1,
     rates=(2,),
     source="thesis 5.2.2, Figure 5-22: static and dynamic friction; the exponential is ours",

@@ -16,6 +16,7 @@ from pydantic import Field
 from dem_cli.case.base import CaseModel
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, scale
+from dem_cli.laws.envelope import frictional
 from dem_cli.laws.law import Law
 
 
@@ -90,6 +91,8 @@ FRICTION_SOFTENING = Law(
     function=friction_softening,
     columns=columns,
     shear_limit=shear_limit,
+    envelope=lambda parameters, kn: frictional(parameters[:, 0]),
+    residual=lambda parameters, kn: frictional(parameters[:, 1]),
     scalars=1,
     source="thesis 7.2.3, equations 7-10 to 7-15 and Figure 7-10",
 )

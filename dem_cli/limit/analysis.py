@@ -1,9 +1,9 @@
-"""Limit analysis of a model: from its geometry at the start to failure loads."""
+"""Limit analysis of a model: from its geometry at the start to failure loads and their bounds."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,18 +11,23 @@ import numpy as np
 from dem_cli.contact.gaps import gap_words, gaps_of_start
 from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
-from dem_cli.limit.cone import friction_of
+from dem_cli.limit.cone import envelope_of, friction_of
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
+    from dem_cli.laws.envelope import Envelope
+    from dem_cli.limit.least import LeastLoad
     from dem_cli.limit.path import Path
+    from dem_cli.limit.reduced import LowerBound
 
 Progress = Callable[[float, float], None]
+LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
 
 
 class LimitLoads(NamedTuple):
@@ -34,6 +39,9 @@ class LimitLoads(NamedTuple):
     non_associated: Path | None  # joints do not; None where not asked for, or where the first answer leaves no question
     seconds: float  # wall time of the associated load, with detection and matrices
     path_seconds: float | None  # of the non-associated load
+    no_path: str | None = None  # why there is no non-associated load, where the joints are not of the kind
+    lower: LowerBound | None = None  # below it nothing collapses; None where not asked for
+    least: LeastLoad | None = None  # of joints that do not dilate; None where not asked for
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""
@@ -47,9 +55,11 @@ class LimitLoads(NamedTuple):
             "iterations": found.iterations,
             "seconds": self.seconds,
         }
+        for more in (self.lower, self.least):
+            said |= more.summary() if more is not None else {}
         path = self.non_associated
         if path is None:
-            return said
+            return said | ({} if self.no_path is None else {"non_associated_status": self.no_path})
         of_path = path.summary()
         load = of_path.pop("load")
         said["non_associated"] = load if path.status == OK else None
@@ -65,6 +75,7 @@ def limit_loads(
     law: Law,
     heads_frictionless: bool = False,
     associated_only: bool = False,
+    bounds: Collection[str] = (),
     progress: Progress = lambda load, reached: None,
     settings: LimitSettings = DEFAULT_LIMIT,
 ) -> LimitLoads:
@@ -72,21 +83,56 @@ def limit_loads(
 
     heads_frictionless  no friction in joints steeper than 45° to the horizontal (thesis Table 5-3)
     associated_only     leave out the load of joints that do not dilate, which takes longer
-    progress            told the load and the displacement of every increment of the latter (limit.path)
+    bounds              LOWER, LEAST or both, which take longer still
+    progress            told the load and the displacement of every increment of the path (limit.path)
 
-    Raises UsageError without live loads, or where the law has no cone |T| ≤ μ N.
+    Raises UsageError without live loads, or where the strength of the law is not held by straight lines.
     """
     begun = time.perf_counter()
-    structure = start_structure(model, properties)
-    friction = friction_of(structure.joints, law, heads_frictionless)
-    associated = limit_load(structure, friction, settings.associated)
-    seconds = time.perf_counter() - begun
-    if associated_only or associated.status in (FALLS, LOCKED) or not structure.dead.any():
-        return LimitLoads(structure, friction, associated, None, seconds, None)
-    from dem_cli.limit.path import trace  # with SciPy's solvers
+    structure = start_structure(model, properties, law)
+    strength = envelope_of(structure.joints, law, heads_frictionless)
+    associated = limit_load(structure, strength, settings.associated)
+    found = LimitLoads(structure, strength.friction, associated, None, time.perf_counter() - begun, None)
+    try:
+        friction = friction_of(structure.joints, law, heads_frictionless)
+    except UsageError:
+        friction = None
+        if not associated_only:
+            found = found._replace(no_path=f"not looked for: the path knows friction alone, and law '{law.name}' more")
+    if associated.status == FALLS:
+        return found
+    if not (associated_only or associated.status == LOCKED or friction is None) and structure.dead.any():
+        from dem_cli.limit.path import trace  # with SciPy's solvers
 
-    path = trace(structure, friction, progress=progress, settings=settings)
-    return LimitLoads(structure, friction, associated, path, seconds, time.perf_counter() - begun - seconds)
+        begun = time.perf_counter()
+        path = trace(structure, friction, progress=progress, settings=settings)
+        found = found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
+    left = envelope_of(structure.joints, law, heads_frictionless, residual=True)
+    return _with_bounds(found, strength, left, bounds, settings)
+
+
+def _with_bounds(
+    found: LimitLoads, strength: Envelope, left: Envelope, bounds: Collection[str], settings: LimitSettings
+) -> LimitLoads:
+    """The same with the bounds of joints that do not dilate, as far as they are asked for.
+
+    left: of the strength, after sliding and opening for long.
+    """
+    upper = np.inf if found.associated.upper is None else found.associated.upper
+    if LOWER in bounds:
+        from dem_cli.limit.reduced import lower_bound
+
+        found = found._replace(lower=lower_bound(found.structure, strength, left, upper, settings.reduced))
+    if LEAST in bounds:
+        from dem_cli.limit.least import least_load
+
+        if not all(np.array_equal(whole, part) for whole, part in zip(strength, left, strict=True)):
+            raise UsageError(
+                "the least load (--least) is that of joints whose strength stays, and that of the joints here falls as "
+                "they slide or open; give them residual strengths as high as the others, or leave --least out"
+            )
+        found = found._replace(least=least_load(found.structure, strength, upper, found.non_associated, settings.least))
+    return found
 
 
 def taken_as_plane(properties: JointProperties) -> str | None:
@@ -105,11 +151,15 @@ def gaps_left_open(model: Model) -> str | None:
     return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
 
 
-def start_structure(model: Model, properties: JointProperties) -> Structure:
-    """The structure with the joints of its first place, all of them plane: points at their ends are enough.
+def start_structure(model: Model, properties: JointProperties, law: Law | None = None) -> Structure:
+    """The structure with the joints of its first place, all of them plane.
 
-    Points that are open carry nothing: where only a corner touches a face, the other end is far from anything.
+    Points at their ends are enough for joints with friction alone; where tension, cohesion or crushing of the `law` are
+    shared among points, these are those of the DEM joint, so that both are the same joint. Points that are open carry
+    nothing: where only a corner touches a face, the other end is far from anything.
     """
-    properties = properties._replace(layouts=(None,) * len(properties.layouts))
+    shared = law is not None and law.bonded
+    plane = (layout if shared and layout and layout.sides is None else None for layout in properties.layouts)
+    properties = properties._replace(layouts=tuple(plane))
     built = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
     return structure_of(model, only_points(built.joints, built.contacts.gaps <= 0.0))

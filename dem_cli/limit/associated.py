@@ -1,7 +1,8 @@
-"""The associated failure load of rigid blocks: the largest load in equilibrium with forces inside the friction cones.
+"""The associated failure load of rigid blocks: the largest load in equilibrium with forces that the joints can carry.
 
 Static theorem (Livesley 1978). Its dual is the mechanism of least work in which sliding joints also dilate by
-μ times the slip; where friction acts the load is therefore an upper bound of that of real, non-dilating joints.
+μ times the slip; where friction acts the load is therefore an upper bound of that of real, non-dilating joints. Where
+shear strength does not depend on the normal force (μ = 0, cohesion alone: Livesley's first case) it is the load itself.
 
 The solver's word is not taken: residuals, bounds and proofs of impossibility are computed here, on unscaled
 data, from the forces and velocities that it returns; what does not pass is "not converged".
@@ -16,6 +17,7 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import look
+from dem_cli.laws.envelope import Envelope
 from dem_cli.limit.cone import cone_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.program import (
@@ -64,17 +66,17 @@ class LimitLoad(NamedTuple):
 
 
 def limit_load(
-    structure: Structure, friction: np.ndarray, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> LimitLoad:
-    """The largest multiplier of the live loads that the structure carries with associated friction.
+    """The largest multiplier of the live loads that the structure carries with associated flow.
 
-    friction: coefficient of every point, (n_points,), see limit.cone.friction_of.
+    strength: of every point, see limit.cone.envelope_of.
     Status and forces tell apart: fails at a multiplier; does not stand without live load; never fails; not
     converged. Raises UsageError where no live load acts on a block that can move.
     """
     if not np.abs(structure.live).max(initial=0.0) > 0.0:
         raise UsageError("limit analysis needs live loads on blocks that can move, and there are none")
-    program = program_of(structure, cone_of(friction), settings)
+    program = program_of(structure, cone_of(strength), settings)
     found = _first_good(program, largest_load, _judge_load)
     if found.status not in (OK, LOCKED):
         return found
@@ -84,14 +86,14 @@ def limit_load(
 
 
 def carried(
-    structure: Structure, friction: np.ndarray, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> tuple[bool | None, float]:
-    """Whether any forces inside the friction cones carry the dead loads, and the error of the proof; None: not known.
+    """Whether any forces inside the envelope carry the dead loads, and the error of the proof; None: not known.
 
-    friction: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
+    strength: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
     that do not dilate may fail all the same.
     """
-    answer = _first_good(program_of(structure, cone_of(friction), settings), standing, _judge_standing)
+    answer = _first_good(program_of(structure, cone_of(strength), settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
 
 
@@ -119,7 +121,7 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
     s = program.structure
-    amounts = np.maximum(found.amounts, 0.0)
+    amounts = program.cone.admissible(found.amounts)
     normal, shear = _forces(program, amounts)
     imbalance = s.imbalance(np.column_stack([normal, shear]).ravel(), found.multiplier)
     power = float(s.live @ found.velocities)
@@ -128,7 +130,7 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     velocities = found.velocities / power
     residual = float(np.abs(imbalance).max())
     lower = found.multiplier - float((np.abs(imbalance) * s.scales) @ np.abs(velocities))
-    upper = float(amounts @ np.maximum(-(program.motion @ velocities), 0.0)) - float(s.dead @ velocities)
+    upper = _work(program, velocities, amounts) - float(program.dead @ velocities)
     settings = program.settings
     gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
     made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
@@ -142,7 +144,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     """Do the dead loads have forces that carry them?"""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
-    normal, shear = _forces(program, np.maximum(found.amounts, 0.0))
+    normal, shear = _forces(program, program.cone.admissible(found.amounts))
     imbalance = program.structure.imbalance(np.column_stack([normal, shear]).ravel(), 0.0)
     residual = float(np.abs(imbalance).max(initial=0.0))
     if found.kind == ANSWERED and residual <= program.settings.residual:
@@ -155,16 +157,18 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
 
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
     """
-    s, velocities = program.structure, found.velocities
-    power = float(s.dead @ velocities)
-    violation = max(0.0, float(-(program.motion @ velocities).min(initial=0.0)))
+    velocities = found.velocities
+    motion = (program.motion @ velocities)[program.cone.cap < 0]
+    power = float(program.dead @ velocities) - _work(program, velocities)
+    violation = max(0.0, float(-motion.min(initial=0.0)))
     error = violation * program.weight * program.n_blocks / power if power > 0.0 else np.inf
     return _proved(program, FALLS, error, found), error
 
 
 def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
     """Status and error of the proof: contact forces in balance with live loads alone."""
-    s, amounts = program.structure, np.maximum(found.amounts, 0.0)
+    s, free = program.structure, program.cone.cap < 0  # what a cap limits cannot grow without end
+    amounts = np.where(free, np.maximum(found.amounts, 0.0), 0.0)
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
     load = found.multiplier * float(np.abs(s.live / s.scales).max())
     error = float(np.abs(unbalanced).max()) / load if load > 0.0 else np.inf
@@ -178,10 +182,18 @@ def _proved(program: Program, claim: str, error: float, found: ProgramSolution) 
     return f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
 
 
+def _work(program: Program, velocities: np.ndarray, amounts: np.ndarray | None = None) -> float:
+    """What yields at the caps in a mechanism, and the violations elsewhere against forces that are given."""
+    cone, motion = program.cone, program.motion @ velocities
+    work = float(cone.most @ cone.yielding(motion))
+    if amounts is not None:
+        work += float(amounts @ np.where(cone.cap < 0, np.maximum(-motion, 0.0), 0.0))
+    return work
+
+
 def _forces(program: Program, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Normal forces (n_points,) and shear forces (n_points, 1) [N]."""
-    n_points = program.structure.compatibility.shape[0] // 2
-    forces = program.cone.forces(amounts, n_points).reshape(-1, 2)
+    forces = program.cone.forces(amounts).reshape(-1, 2)
     return forces[:, 0].copy(), forces[:, 1:].copy()
 
 

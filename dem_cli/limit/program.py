@@ -3,6 +3,9 @@
     max λ       so that   Gᵀ g + dead + λ live = 0,   g ≥ 0     (G: motion of the cone generators, limit.cone)
     min −dead·u so that   live·u = 1,   G u ≥ 0                 (its dual: the mechanism)
 
+Joints with cohesion, tension and crushing: dead has the forces of their tips (Cone.first), Σ share · g ≤ most of each
+cap, and the dual pays for what yields there: min −dead·u + most·y so that G u + share y ≥ 0, y ≥ 0.
+
 The dual is what the solver gets: it has a third of the rows, and its multipliers are the forces. What makes it
 quick and exact is its scaling: rows by the weight and radius of their own block, forces and velocities by √n;
 only then do the absolute tolerances of a solver mean something (unscaled, walls of 2,275 blocks came out 0.1 %
@@ -14,7 +17,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, diags, vstack
+from scipy.sparse import bmat, csc_matrix, csr_matrix, diags, identity, vstack
 
 from dem_cli.limit.cone import Cone
 from dem_cli.limit.matrices import Structure
@@ -37,6 +40,7 @@ class Program(NamedTuple):
     structure: Structure
     cone: Cone
     motion: csr_matrix  # G, (n_generators, n_free)
+    dead: np.ndarray  # dead loads of the free degrees of freedom, with the forces Cone.first [N, N m], (n_free,)
     n_blocks: int  # that can move
     weight: float  # mean weight [N]
     load: float  # multiplier that makes the live loads as large as the dead ones
@@ -56,14 +60,20 @@ class ProgramSolution(NamedTuple):
 
 def program_of(structure: Structure, cone: Cone, settings: AssociatedSettings = DEFAULT_LIMIT.associated) -> Program:
     """The linear program of a structure with live loads."""
+    n_blocks, (weight, load) = len(structure.free) // structure.n_dof, units(structure)
+    motion, constant = cone.motion(structure.compatibility), structure.dead
+    if cone.first.any():
+        constant = constant + structure.compatibility.T @ cone.first.ravel()
+    return Program(structure, cone, motion, constant, n_blocks, weight, load, settings)
+
+
+def units(structure: Structure) -> tuple[float, float]:
+    """Mean weight of a block that can move [N], and the multiplier that makes live loads as large as the dead ones."""
     d, n_dof = structure.model.dimension, structure.n_dof
     forces = (loads.reshape(-1, n_dof)[:, :d] for loads in (structure.dead, structure.live))
     dead, live = (float(np.linalg.norm(loads, axis=1).sum()) for loads in forces)
     live = live or float(np.abs(structure.live).sum())  # moments alone
-    n_blocks = len(structure.free) // n_dof
-    weight = (dead or live) / n_blocks
-    motion = cone.motion(structure.compatibility)
-    return Program(structure, cone, motion, n_blocks, weight, (dead or live) / live, settings)
+    return (dead or live) / (len(structure.free) // n_dof), (dead or live) / live
 
 
 def largest_load(program: Program, options: dict[str, Any]) -> ProgramSolution:
@@ -79,29 +89,40 @@ def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
 def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> ProgramSolution:
     """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ≥ 0.
 
-    The multipliers of these rows are −λ and the amounts of the generators.
+    The multipliers of these rows are −λ and the amounts of the generators. Behind the velocities are the rates of the
+    caps, behind these rows that they are not negative.
     """
     import clarabel
 
-    s, spread = program.structure, np.sqrt(program.n_blocks)
+    s, cone, spread = program.structure, program.cone, np.sqrt(program.n_blocks)
     columns = diags(1.0 / s.scales)
     a = vstack([csr_matrix(live) @ columns, program.motion @ columns * -program.weight]).tocsc()
+    q = -program.dead / s.scales / spread
+    if len(cone.most):
+        a = _with_caps(a, cone, len(live))
+        q = np.concatenate([q, cone.most / program.weight / spread])
     b = np.zeros(a.shape[0])
     b[: len(live)] = spread
-    cones = [clarabel.ZeroConeT(len(live)), clarabel.NonnegativeConeT(program.motion.shape[0])]
+    cones = [clarabel.ZeroConeT(len(live)), clarabel.NonnegativeConeT(a.shape[0] - len(live))]
     chosen = clarabel.DefaultSettings()
     chosen.verbose, chosen.max_threads = False, 1
     for name, value in ({"tol_feas": program.settings.feasible / spread} | options).items():
         setattr(chosen, name, value)
-    q = -s.dead / s.scales / spread
     answer = clarabel.DefaultSolver(csc_matrix((len(q), len(q))), q, a, b, cones, chosen).solve()
-    x, z = np.array(answer.x), np.array(answer.z) * spread
+    x, z = np.array(answer.x)[: len(s.scales)], np.array(answer.z) * spread
     said = str(answer.status)
     return ProgramSolution(
         KINDS.get(said, UNKNOWN),
-        z[len(live) :] * program.weight,
+        z[len(live) : len(live) + len(cone.points)] * program.weight,
         float(-z[: len(live)].sum()) * program.load,
         x / s.scales,
         int(answer.iterations),
         said,
     )
+
+
+def _with_caps(a: csc_matrix, cone: Cone, before: int) -> csc_matrix:
+    """The rows of velocities, of which the generators come after `before` others, with the rates of the caps."""
+    n_caps, capped = len(cone.most), np.flatnonzero(cone.cap >= 0)
+    rates = csr_matrix((-cone.share[capped], (before + capped, cone.cap[capped])), (a.shape[0], n_caps))
+    return bmat([[a, rates], [None, -identity(n_caps)]]).tocsc()

@@ -1,4 +1,4 @@
-"""Settings of limit analysis: the path to collapse, its interior point, accepted errors of the associated load."""
+"""Settings of limit analysis: path to collapse and its interior point, associated load, lower bound, least load."""
 
 from __future__ import annotations
 
@@ -73,12 +73,45 @@ class AssociatedSettings:
 
 
 @dataclass(frozen=True)
+class ReducedSettings:
+    """The lower bound by the reduced domain: intervals of the load, accuracy, effort."""
+
+    intervals: int = 12  # that are tried at most
+    accuracy: float = 1e-3  # of the associated load, to which the bound is sought
+    least_gain: float = 0.02  # of an interval: less is none
+    shorter: float = 0.25  # share of an interval that is tried where it gave nothing
+    effort: float = 5e4  # linear programs × joints, at most: some seconds
+    margin: float = 1e-6  # in mean weights and of a load: what the solver leaves open
+    endless: float = 1e6  # least normal force of joints that cannot be pulled apart, in mean weights
+
+
+@dataclass(frozen=True)
+class LeastSettings:
+    """The least load of joints that do not dilate, as a mixed-integer program: bounds, effort, accuracy."""
+
+    forces: float = 20.0  # largest normal force of a contact point, in all dead and live loads together
+    rates: float = 10.0  # largest rate of a joint, over the motion of the least loaded block if it moves alone ...
+    slightest: float = 0.02  # ... but no block counts as less loaded than this share of the most loaded one
+    whole: int = 40  # joints, up to which all mechanisms are searched
+    nodes: int = 2_000  # of one search
+    changed: int = 2  # states of contact points and joints that a local search may change at once
+    rounds: int = 30  # of the local search
+    weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path
+    better: float = 1e-4  # share of the load that is an improvement
+    gap: float = 1e-4  # relative, of load and proved bound at which a search ends
+    carries: float = 1e-7  # force in mean weights: less is none
+    accepted: float = 1e-5  # residual of the conditions, in mean weights, of a state that is believed
+
+
+@dataclass(frozen=True)
 class LimitSettings:
     """All settings of limit analysis."""
 
     path: PathSettings = PathSettings()
     interior_point: InteriorPointSettings = InteriorPointSettings()
     associated: AssociatedSettings = AssociatedSettings()
+    reduced: ReducedSettings = ReducedSettings()
+    least: LeastSettings = LeastSettings()
 
 
 DEFAULT_LIMIT = LimitSettings()

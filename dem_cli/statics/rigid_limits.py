@@ -65,11 +65,13 @@ class RigidLimits:
         """The associated limit load; None where limit analysis does not apply."""
         if self._matrices is None:
             return None
+        from dem_cli.laws.envelope import frictional
         from dem_cli.limit.associated import limit_load
 
+        structure, friction = self._matrices
         self.job.clock.progress("limit analysis", 0.0, 0.0, None)
         begun = time.perf_counter()
-        found = limit_load(*self._matrices, self.job.settings.limit.associated)
+        found = limit_load(structure, frictional(friction), self.job.settings.limit.associated)
         self.seconds["associated"] = time.perf_counter() - begun
         return found
 
@@ -78,13 +80,14 @@ class RigidLimits:
         """The associated limit load without friction in head joints; None where limit analysis does not apply."""
         if self._matrices is None:
             return None
+        from dem_cli.laws.envelope import frictional
         from dem_cli.limit.associated import limit_load
         from dem_cli.limit.cone import friction_of
 
         begun = time.perf_counter()
         structure = self._matrices[0]
         friction = friction_of(structure.joints, self.sim.law, heads_frictionless=True)
-        found = limit_load(structure, friction, self.job.settings.limit.associated)
+        found = limit_load(structure, frictional(friction), self.job.settings.limit.associated)
         self.seconds["safe"] = time.perf_counter() - begun
         return found
 

@@ -94,7 +94,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "statics",
         "tables",
     },
-    "statics": {"contact.joints", "engine", "kernels.records", "limit", "model.scales"},
+    "statics": {"contact.joints", "engine", "kernels.records", "laws.envelope", "limit", "model.scales"},
     "engine": {
         "limit.settings",
         "geometry",

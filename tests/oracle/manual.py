@@ -13,8 +13,10 @@ from oracle import bouncing, newmark_slider, two_blocks
 from oracle.base_motion import pulse, rectangle
 from oracle.housner import Block, rock
 from oracle.limit_lp import area_and_centroid
+from oracle.strong_joints import Points, toppling_load
 
 G = 9.81
+LOBATTO_5 = (np.array([0.0, 0.5 - sqrt(3 / 28), 0.5, 0.5 + sqrt(3 / 28), 1.0]), np.array([9, 49, 64, 49, 9]) / 180)
 Answers = dict[str, float]  # by their paths in summary.json
 
 
@@ -34,12 +36,18 @@ def statics() -> dict[str, Answers]:
         "cohesion_block": 0.5 + 1000.0 / (2000.0 * G * 0.3),
         "tension_block": (30e3 - weight) / 1000.0,
         "crushing_block": (1e6 - weight) / 1000.0,
+        "crushing_toe": crushed_toe(0.6, 1.0, 4e4, 2000.0 * G),
         "barton_block": barton * flat / 1000.0,
     }
     found: dict[str, Answers] = {name: {"failure_load": load} for name, load in loads.items()}
     found["spring_penetration"] = {"monitors.block displacement y.value": -weight / 1e9}
     found["settlement_two_blocks"] = leaning_blocks(0.1)
     return found
+
+
+def crushed_toe(width: float, height: float, strength: float, gravity: float) -> float:
+    """λ at which a block turns over five points of a Gauss-Lobatto rule that are crushed one after the other."""
+    return toppling_load(Points(*LOBATTO_5, 0.9, compression=strength), width, height, gravity * width * height)
 
 
 def leaning_blocks(apart: float) -> Answers:

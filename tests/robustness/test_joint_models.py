@@ -221,9 +221,19 @@ def test_friction_is_static_where_time_has_no_meaning():
 
 
 @pytest.mark.parametrize("law", BONDS)
-def test_limit_analysis_says_what_it_cannot(law):
+def test_limit_analysis_bounds_bonds_beside_the_failure_load(law):
+    """Its bound is that of the whole bond, which carries no less than what breaks."""
     summary = solve(tower(2, bonded(law, 10.0), PUSH | {"limit": True}))[0]
-    assert [text for text in summary["warnings"] if text.startswith("no limit analysis")]
+    assert not [text for text in summary["warnings"] if "limit analysis" in text]
+    assert summary["failure_load"] <= summary["limit_analysis"]["associated"] * 1.002
+
+
+def test_limit_analysis_says_what_it_cannot():
+    joint = {"law": "barton", "jrc": 8.0, "jcs": 5e7, "residual_angle_deg": 28.0}
+    summary = solve(tower(2, joint, PUSH | {"limit": True}))[0]
+    (said,) = [text for text in summary["warnings"] if text.startswith("no limit analysis")]
+    assert "law 'barton' is curved" in said
+    assert "limit_analysis" not in summary or summary["limit_analysis"] == {}
 
 
 def test_all_points_of_uneven_joints_are_recorded():

@@ -12,8 +12,8 @@ from dem_cli.cli.main import main
 
 LARGE = {"top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11"}  # 360 blocks: solved for docs/data/loads.json
 SMALL = {  # of one or two blocks: solved by test_manual.py, all in one process
-    "barton_block", "cohesion_block", "crushing_block", "groove_30", "incline_down", "incline_up", "interface_slides",
-    "lever", "slope_of_slip", "stepped_column", "tension_block",
+    "barton_block", "cohesion_block", "crushing_block", "crushing_toe", "groove_30", "incline_down", "incline_up",
+    "interface_slides", "lever", "slope_of_slip", "stepped_column", "tension_block",
 }  # fmt: skip
 OF_CODES = {"wall_21_imperfect_a", "wall_21_imperfect_b", "wall_21_profile"}  # what the thesis's DEM found
 REFERENCED = [

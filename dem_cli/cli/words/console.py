@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Any, TextIO
 
 from dem_cli.cli.words.fragility import fragility_rows
+from dem_cli.cli.words.limit_loads import limit_rows
 from dem_cli.cli.words.modes import mode_rows
 from dem_cli.cli.words.numbers import load_text, metres, seconds
 from dem_cli.cli.words.safety import safety_rows
@@ -192,21 +193,7 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
     """The result of a limit analysis as text."""
     limits = summary["limit_analysis"]
     rows = [] if summary["status"] == "ok" else [("status", str(summary["status"]))]
-    if limits["associated"] is not None:
-        low, high = limits["associated_bounds"]
-        how = f"between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
-        rows.append(("associated", f"{load_text(limits['associated'])}  ({how})"))
-    if limits.get("non_associated") is not None:
-        how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(limits['non_associated_seconds'])}"
-        final = limits.get("non_associated_final_load")
-        if final is not None and final < 0.98 * limits["non_associated"]:
-            how = f"highest load of a path that drops to {load_text(final)} then, {how}"
-        rows.append(("non-associated", f"{load_text(limits['non_associated'])}  ({how})"))
-    if limits.get("non_associated_at_least") is not None:
-        how = f"{limits['non_associated_status']}, {seconds(limits['non_associated_seconds'])}"
-        rows.append(("non-associated", f"at least {load_text(limits['non_associated_at_least'])}  ({how})"))
-    if limits.get("rigid_wall") is not None:
-        rows.append(("hand check", f"{load_text(limits['rigid_wall'])}  (a rigid part turns about the toe; no bound)"))
+    rows += limit_rows(limits)
     if limits["heads"] == "frictionless":
         rows.append(("head joints", "without friction"))
     rows += _cost_rows(summary)

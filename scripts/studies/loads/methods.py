@@ -14,6 +14,7 @@ from dem_cli import api
 from dem_cli.analyses.solve import solve
 from dem_cli.case.schema import Case
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.laws.envelope import frictional
 from dem_cli.limit import path as paths
 from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.associated import OK, limit_load
@@ -69,7 +70,7 @@ def measure(file: Path, overrides: Sequence[str] = (), default: bool = True) -> 
     properties, law = joint_properties(case, model), law_of(case)
     structure = start_structure(model, properties)
     friction = friction_of(structure.joints, law)
-    bound, seconds = timed(lambda: limit_load(structure, friction))
+    bound, seconds = timed(lambda: limit_load(structure, frictional(friction)))
     associated = MethodLoad(bound.status, bound.multiplier, bound.upper, seconds=seconds)
     row = CaseLoads(f"{file.parent.name}/{file.stem}", int((~model.fixed).sum()), associated)
     if bound.status == OK:

@@ -235,12 +235,19 @@ def test_without_live_loads_there_is_nothing_to_find():
         solved(wall(), model=model)
 
 
-def test_a_law_without_a_linear_cone_is_refused():
+def test_a_law_without_straight_lines_is_refused():
     made = scene(wall())
-    cohesive = {"name": "glue", "shear_limit": lambda p, normal, memory, kn: p[:, 0] * normal + 1.0}
-    for change in (cohesive, {"name": "glue", "scalars": 1}, {"name": "glue", "bonded": True}):
+    glue = dataclasses.replace(COULOMB, name="glue", envelope=None)
+    with pytest.raises(UsageError, match="law 'glue' is curved"):
+        limit_loads(made.model, joint_properties(made.case, made.model), glue)
+
+
+def test_a_law_that_is_not_friction_alone_has_no_path():
+    made = scene(wall())
+    structure = start_structure(made.model, joint_properties(made.case, made.model))
+    for change in ({"envelope": None}, {"scalars": 1}, {"bonded": True}):
         with pytest.raises(UsageError, match="law 'glue'"):
-            limit_loads(made.model, joint_properties(made.case, made.model), dataclasses.replace(COULOMB, **change))
+            friction_of(structure.joints, dataclasses.replace(COULOMB, name="glue", **change))
 
 
 def test_head_joints_without_friction():
