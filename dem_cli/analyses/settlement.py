@@ -66,7 +66,7 @@ def _move(case: Case, sim: Simulation, track: Track, budget: Budget) -> str:
     largest = float(np.abs(motion * reach).max())
     elastic = max(measures.largest_elastic(sim), 1e-9 * sim.smallest)
     chunk = max(int(np.ceil(max(largest / (settlement.per_step * elastic), settlement.fewest) / settlement.rows)), 1)
-    every = max(settlement.rows // max(case.output.frames - 2, 1), 1)
+    every = max(settlement.rows // max(case.output.snapshots - 2, 1), 1)
     sim.use_combined_damping()
     sim.set_load(0.0)
     soften_falls(sim, largest, chunk * settlement.rows)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra, UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
@@ -44,7 +44,7 @@ def _pictures(results: Results) -> list[Any]:
         try:
             from PIL import Image
         except ImportError:
-            raise UsageError("an animation needs Pillow: pip install 'dem-cli[plot]'") from None
+            raise MissingExtra("an animation needs Pillow", "plot") from None
         scene = _Scene(results, make)
         palette = Image.new("P", (1, 1))
         palette.putpalette(_palette())

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra
 
 INK, GREY, FAINT = "#26262b", "#7c7c86", "#d5d5da"
 STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
@@ -65,7 +65,7 @@ def canvas() -> Iterator[Callable[..., Any]]:
 
         from dem_cli.post import verbatim_figure
     except ImportError:
-        raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
+        raise MissingExtra("drawing needs matplotlib", "plot") from None
 
     def make(**options: Any) -> Any:
         drawn = verbatim_figure.VerbatimFigure(layout="constrained", **options)

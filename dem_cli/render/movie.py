@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra
 
 FPS = 12.5
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
@@ -19,7 +19,7 @@ _COLOURS, _PAPER = 256, 242
 def check(kind: str) -> None:
     """UsageError where what a format needs is not installed."""
     if kind == "mp4" and find_spec("imageio_ffmpeg") is None:
-        raise UsageError("MP4 needs imageio-ffmpeg: pip install 'dem-cli[movie]' (--movie gif works without)")
+        raise MissingExtra("MP4 needs imageio-ffmpeg", "movie", " (--movie gif works without)")
 
 
 def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.errors import DemError, OutputError, UsageError
+from dem_cli.errors import DemError, MissingExtra, OutputError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
@@ -53,7 +53,7 @@ def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
     """
     for name in ("pyvista", "matplotlib", "PIL"):
         if find_spec(name) is None:
-            raise UsageError("rendering needs pyvista: pip install 'dem-cli[viz]'")
+            raise MissingExtra("rendering needs pyvista", "viz")
     movie.check(path.suffix[1:])
     try:
         in_own_process(render, folder, path, look)

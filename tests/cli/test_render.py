@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,6 +28,7 @@ from dem_cli.post import style
 from dem_cli.render import block_colours, movie, opengl, render
 from dem_cli.render.render import RenderOptions
 
+ROOT = Path(__file__).resolve().parents[2]
 ASK = "from dem_cli.render.opengl import choose_window; choose_window()"
 
 
@@ -205,7 +207,8 @@ def test_an_extra_that_is_missing(folder, tmp_path, monkeypatch, missing):
     monkeypatch.setattr(movie, "find_spec", whether["find_spec"])
     code, output = dem("render", folder, "--movie", "mp4", "-o", tmp_path / "a.mp4")
     assert code == 2
-    assert "pip install 'dem-cli[" in output
+    extra = {"pyvista": "viz", "imageio_ffmpeg": "movie"}[missing]
+    assert f"pip install '{ROOT}[{extra}]'" in output
     assert len(output.splitlines()) == 1
 
 
