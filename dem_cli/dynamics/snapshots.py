@@ -22,16 +22,27 @@ if TYPE_CHECKING:
     from dem_cli.output.record import Frame
 
 
-class SnapshotTimes:
-    """When snapshots are due: at even times from a start to an end, each once."""
+class EvenTimes:
+    """Snapshots as a case asks for them: at even times from a start to an end, each once."""
 
     def __init__(self, start: float, end: float, count: int):
         self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
 
-    def due(self, time: float) -> bool:
-        """Whether a snapshot was due up to now since the last one."""
+    def due(self, time: float, _: float) -> bool:
+        """Whether a snapshot was due up to now [s] since the last one."""
         before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
         return self.shown > before
+
+
+class Intervals:
+    """Snapshots no further apart than an interval [s], and one at the end."""
+
+    def __init__(self, interval: float, end: float):
+        self.interval, self.end = interval, end
+
+    def due(self, time: float, since: float) -> bool:
+        """Whether the last one is long ago [s], or this is the end."""
+        return since >= self.interval or time >= self.end
 
 
 class Snapshots:
@@ -43,70 +54,70 @@ class Snapshots:
     def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots
-        self.wanted, self.stage = wanted, "shaking"
-        self.farthest = 0.0  # [m]
+        self.wanted, self.stage, self.every = wanted, "shaking", 1
         self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
-        self.last = np.zeros((len(sim.free), sim.model.dimension))  # displacements in the last one kept [m]
         self.visible = self.settings.visible * size_of(sim)
-        self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)
+        self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)  # frames that may still be kept
 
     def begin(self, duration: float, sampled: int) -> None:
-        """Even times until `duration` [s], close enough to follow the ground; the start itself is kept by others.
+        """Of a motion that lasts `duration` [s]; the frame of its start is kept by others.
 
         sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
         """
-        settings, between = self.settings, sampled * self.sim.dt
-        self.every = sampled * max(1, round(settings.look / between))
+        settings, sim = self.settings, self.sim
+        self.every = sampled * max(1, round(settings.look / (sampled * sim.dt)))
+        self.last, self.last_step = self._places(), sim.steps  # of the last one kept
+        self.farthest = _largest(self.last)  # [m]
         of_ground = settings.per_cycle * frequency_of(self.ground, duration)
         self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
-        self.times = SnapshotTimes(0.0, duration, self._count(duration, self.per_second))
-        self.room -= len(self.times.times)  # what is left is for what moves faster
-
-    def _count(self, duration: float, per_second: float) -> int:
-        """How many at even times, within the room that there is."""
-        return self.wanted if self.wanted is not None else 1 + math.ceil(min(duration * per_second, self.room))
+        self.times = self._until(duration, duration, self.per_second)
 
     def collapsed(self, end: float) -> None:
         """A collapse is followed from now until `end` [s]."""
-        self.stage, now = "collapse", self.sim.time
+        self.stage, self.ahead, left = "collapse", None, end - self.sim.time
+        self.times = self._until(end, left, max(self.per_second, self.settings.per_second_of_collapse))
+        self.look()
+
+    def _until(self, end: float, left: float, per_second: float) -> EvenTimes | Intervals:
+        """What is due until an end that is so far off [s]."""
         if self.wanted is None:
-            self.room += int((self.times.times > now).sum())
-            count = self._count(end - now, max(self.per_second, self.settings.per_second_of_collapse))
-        else:
-            count = max(self.wanted // 2, 2)
-        self.times = SnapshotTimes(now, end, count)
+            return Intervals(max(1.0 / per_second, left / max(self.room, 1)), end)
+        return EvenTimes(end - left, end, self.wanted if self.stage == "shaking" else self.wanted // 2)
 
     def look(self) -> None:
         """Keep this instant, or remember it."""
-        if self.track.frames == 0:
+        sim, places = self.sim, self._places()
+        moved, since = _largest(places), sim.dt * (sim.steps - self.last_step)
+        if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
             return
-        sim = self.sim
-        places = measures.displacements(sim)[sim.free]
-        moved = math.sqrt((places**2).sum(axis=1).max(initial=0.0))
-        if not math.isfinite(moved):
-            return
-        record = moved > self.farthest
-        self.farthest = max(moved, self.farthest)
-        if self.times.due(sim.time + 0.5 * sim.dt) or self._swung(places):
+        record, self.farthest = moved > self.farthest, max(moved, self.farthest)
+        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt) or self._swung(places):
             if self.ahead is not None and not record:
-                self.track.hand_over(self.ahead)
-            self.ahead, self.last = None, places
-            self.track.hand_over(self._frame())
+                self._keep(self.ahead)
+            self.ahead, self.last, self.last_step = None, places, sim.steps
+            self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
 
+    def _places(self) -> np.ndarray:
+        return measures.displacements(self.sim)[self.sim.free]
+
     def _swung(self, places: np.ndarray) -> bool:
         """Whether a block moved so far since the last snapshot that its swings would be lost between even times."""
-        if self.wanted is not None or self.room <= 0:
-            return False
         limit = self.settings.swing * max(self.farthest, self.visible)
-        swung = bool(((places - self.last) ** 2).sum(axis=1).max(initial=0.0) > limit**2)
-        self.room -= swung
-        return swung
+        return self.wanted is None and self.room > 0 and _largest(places - self.last) > limit
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)
         return measures.frame(self.sim, self.stage)
+
+    def _keep(self, frame: Frame) -> None:
+        self.room -= 1
+        self.track.hand_over(frame)
+
+
+def _largest(displacements: np.ndarray) -> float:
+    return math.sqrt((displacements**2).sum(axis=1).max(initial=0.0))
 
 
 def frequency_of(ground: GroundMotion, duration: float) -> float:
