@@ -12,7 +12,7 @@ _HERE = Path(__file__).resolve().parent.parent
 
 
 def install_command(extra: str) -> str:
-    """What installs an optional part of dem: `pip install '/home/me/dem[plot]'`, from the checkout that this one is of."""
+    """What installs an optional part of dem, from the checkout of this one: `pip install '/home/me/dem[plot]'`."""
     checkout = _checkout()
     if checkout is None:
         return f"pip install '.[{extra}]' in the folder of dem"

@@ -1,8 +1,8 @@
 """Snapshots of a time history: enough frames per second for the motion, and always the one where it went farthest.
 
-Even instants alone alias what moves faster, and miss every peak. A snapshot is due when time has passed that the ground
-or the structure needs to be followed; beside these, a swing that goes farther than all before it leaves the frame of its
-turning point.
+Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
+the ground would be lost, or when a block has moved as far as a part of its swings; beside these, a swing that goes farther
+than all before it leaves the frame of its turning point.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def _largest(displacements: np.ndarray) -> float:
 
 
 def frequency_of(ground: GroundMotion, duration: float) -> float:
-    """Mean frequency of the velocity of the ground, as its zeros come (Rice): σ(a) / 2πσ(v) of its fastest motion [Hz]."""
+    """Mean frequency of the sign of the velocity of the ground (Rice): σ(a) / 2πσ(v), of its fastest motion [Hz]."""
     found = 0.0
     for motion in [*ground.base, *(motion for motions in ground.own.values() for motion in motions)]:
         times = np.linspace(motion.start, min(motion.duration, max(duration, motion.start)), 4001)

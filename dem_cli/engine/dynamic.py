@@ -126,9 +126,7 @@ class DynamicSimulation(Simulation):
         self._run(0, 0, self._still(0), _no_watch(self))
         self.control[:] = control
 
-    def shake(
-        self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None
-    ) -> None:
+    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None) -> None:
         """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
         The books are closed in the middle of the last step, where places, velocities and forces are of one time; looks

@@ -110,7 +110,7 @@ def _fields(line: str) -> list[str]:
         fields = line.split(",")
     else:
         return [part for field in line.split() for part in apart(field)]
-    fields = [field.strip(" \"") for field in fields]
+    fields = [field.strip(' "') for field in fields]
     while fields and not fields[-1]:  # a separator at the end of the line
         fields.pop()
     return fields

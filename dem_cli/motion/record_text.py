@@ -1,4 +1,4 @@
-"""Text of accelerogram files: its encoding (UTF-8, UTF-16, Latin-1), numbers with Fortran D exponents, columns that touch.
+"""Text of accelerogram files: encodings (UTF-8, UTF-16, Latin-1), numbers with Fortran D exponents, columns that touch.
 
 Nothing here guesses: text that could be read in two ways is no number.
 """
@@ -73,8 +73,8 @@ def apart(field: str) -> list[str]:
 def by_width(lines: Sequence[str], count: int) -> list[float] | None:
     """The values in columns of one width, which may touch, or None where these lines are no such columns.
 
-    As Fortran writes them, such as (5E15.7) or (8F10.6): lines of one length, all columns equally wide, numbers at their
-    right end with equally many decimals, `count` of them; and only one width does all this.
+    As Fortran writes them, such as (5E15.7) or (8F10.6): lines of one length, all columns equally wide, numbers at
+    their right end with equally many decimals, `count` of them; and only one width does all this.
     """
     lines = [line.rstrip() for line in lines if line.strip()]
     found = [values for width in _widths(lines, count) if (values := _cut(lines, width)) is not None]

@@ -1,4 +1,4 @@
-"""energy.png: the ledger over the run, against time where the run has one, else against displacement where that grows."""
+"""energy.png: the energy ledger over the run, against time, displacement or, where neither grows, the solver step."""
 
 from __future__ import annotations
 

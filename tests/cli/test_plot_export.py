@@ -12,7 +12,6 @@ from synthetic import history_rows, wall_frames, wall_model, wall_summary
 from dem_cli.cli.main import main
 from dem_cli.output.store import ResultWriter
 
-
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -26,16 +26,15 @@ class Drawn:
 @pytest.mark.parametrize("steps", [(600, 53_000), (1300, 45_000), (500, 700), (20_000, 4_000_000), (3, 9_000_000)])
 def test_steps_are_written_apart(tmp_path, monkeypatch, steps):
     """9,000 stood in 8,000 and 10,000."""
-    drawn = []
-    original = style.headline
-    monkeypatch.setattr(safety.style, "headline", lambda figure, summary: drawn.append(original(figure, summary) or figure))
+    drawn, headline = [], style.headline
+    monkeypatch.setattr(style, "headline", lambda figure, summary: (drawn.append(figure), headline(figure, summary)))
     safety.draw_safety(Drawn(steps), tmp_path / "safety.png")
     (figure,) = drawn
     figure.canvas.draw()
     axis = figure.axes[0].yaxis
     low, high = axis.get_view_interval()
-    ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
-    boxes = [tick.label1.get_window_extent() for tick in ticks if tick.label1.get_text() and low <= tick.get_loc() <= high]
+    seen = [tick.label1 for tick in [*axis.get_major_ticks(), *axis.get_minor_ticks()] if low <= tick.get_loc() <= high]
+    boxes = [label.get_window_extent() for label in seen if label.get_text()]
     heights = sorted((box.y0, box.y1) for box in boxes)
     assert len(heights) >= 2
     assert all(below[1] <= above[0] for below, above in zip(heights, heights[1:]))
