@@ -1,7 +1,7 @@
 """Snapshots of a time history: enough frames per second for the motion, and always the one where it went farthest.
 
 Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
-the ground would be lost, or when a block has moved as far as a part of its swings; beside these, a swing that goes farther
+the ground would be lost, or when a block has moved by a part of its swings; beside these, a swing that goes farther
 than all before it leaves the frame of its turning point.
 """
 
