@@ -3,6 +3,7 @@
 DemError
 ├── CaseError        exit 2   the case file or an override is wrong (all problems at once)
 ├── UsageError       exit 2   arguments, a missing or unreadable file, an output folder that is not ours
+│   └── MissingExtra          an optional part of dem that is not installed
 ├── SolverError      exit 3   the solver gave up; what it has is kept
 └── OutputError      exit 3   results could not be written (full disk, no permission)
 
@@ -15,6 +16,8 @@ import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+from dem_cli.version import install_command
 
 BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 KeyPath = tuple[str | int, ...]
@@ -66,6 +69,17 @@ class UsageError(DemError):
     """Wrong arguments or files on the command line."""
 
     exit_code = 2
+
+
+class MissingExtra(UsageError):
+    """An optional part of dem is not installed: `drawing needs matplotlib: pip install '/home/me/dem[plot]'`."""
+
+    def __init__(self, need: str, extra: str, note: str = ""):
+        super().__init__(f"{need}: {install_command(extra)}{note}")
+
+    def __reduce__(self) -> tuple[Callable[..., UsageError], tuple[str]]:
+        """With its text, so that it may come from another process."""
+        return UsageError, (str(self),)
 
 
 class SolverError(DemError):

@@ -60,7 +60,7 @@ def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
     if wanted.measured is not None and len(found.frequencies) < wanted.mode:
         text = f"{wanted.mode} is too high: the structure has {len(found.frequencies)} natural frequencies above 0"
         raise CaseError([CaseProblem(("analysis", "mode"), text)])
-    for number in range(min(len(found.frequencies), wanted.count) if job.case.output.frames else 0):
+    for number in range(min(len(found.frequencies), wanted.count) if job.case.output.snapshots else 0):
         job.clock.frame(_frame(sim, found.shapes[number], number + 1))
     answer = {
         "frequencies": found.frequencies[: wanted.count],

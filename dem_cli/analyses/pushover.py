@@ -201,7 +201,7 @@ def _by_load(job: Job) -> bool:
 
 def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
     """The collapse, in a simulation of its own."""
-    until, frames = job.case.analysis.follow, job.case.output.frames
+    until, frames = job.case.analysis.follow, job.case.output.snapshots
     load = search.carried / sim.live_scale
     by_load = _by_load(job)
     ratio = (

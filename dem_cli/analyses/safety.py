@@ -230,7 +230,7 @@ class SafetyStudy:
         if follow == 0.0:
             self._hand_over(failing, base)
             return
-        quiet = fall(failing, self.observer, follow, self.case.output.frames)
+        quiet = fall(failing, self.observer, follow, self.case.output.snapshots)
         if quiet is not None:
             self.warnings.append(f"the collapse was not followed to its end: {quiet}")
 
@@ -238,7 +238,7 @@ class SafetyStudy:
         """Rows, and the frame as a displacement of the structure that is drawn."""
         for row in run.rows:
             self.observer.row(row)
-        if self.case.output.frames == 0:
+        if self.case.output.snapshots == 0:
             return
         frame, shift = run.frame, base.model.centroids - run.model.centroids
         contacts = frame.contacts

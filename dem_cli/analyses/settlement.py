@@ -42,7 +42,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         track.frame("gravity")
         if status == "ok":
             way = SettlementWay(sim, _motions(case, sim))
-            status = _move(way, track, case.output.frames, job.budget)
+            status = _move(way, track, case.output.snapshots, job.budget)
             found |= measured_at_end(sim)
             if status == COLLAPSED:
                 found |= _collapse(case, way, job)

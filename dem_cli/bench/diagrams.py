@@ -51,7 +51,7 @@ def _panel(
             mec="white", color=COLOURS[number % len(COLOURS)], label=name,
         )  # fmt: skip
     axis.set(xscale="log", yscale="log", xlabel="CPU seconds")
-    style.number_logs(axis)
+    style.number_logs(axis.xaxis)
     axis.set_title(title)
 
 

@@ -12,6 +12,7 @@ from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure, answer, solve
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.version import install_command
 
 ENGINES = ("pymunk_walls", "box2d_walls")
 NARROW_CASES = ("T21 μ 0.6", "T21 μ 0.75", "COL14", "ARCH μ 0.6")  # all settings
@@ -33,7 +34,7 @@ def measure(options: BenchOptions) -> GroupResult:
     for module in ENGINES:
         engine = import_module(f"dem_cli.bench.{module}")
         if find_spec(engine.PACKAGE) is None:
-            found.notes.append(f"{engine.NAME} was left out: not installed (pip install 'dem-cli[bench]')")
+            found.notes.append(f"{engine.NAME} was left out: not installed ({install_command('bench')})")
             continue
         for setting in engine.SETTINGS[:1] if options.quick else engine.SETTINGS:
             for name in structures:

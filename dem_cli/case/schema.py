@@ -180,8 +180,17 @@ class Monitor(CaseModel):
 class Output(CaseModel):
     """[output]"""
 
-    frames: int = Field(default=20, ge=0, description="snapshots kept; 0 for none")
+    frames: Annotated[int, Field(ge=0)] | None = Field(
+        default=None,
+        description="snapshots kept; 0 for none; default: 20, of time histories as many as show the motion",
+        examples=[60],
+    )
     rate: Positive = Field(default=200.0, description="samples of the monitors per second, in time histories [1/s]")
+
+    @property
+    def snapshots(self) -> int:
+        """Snapshots kept where the analysis does not know better."""
+        return 20 if self.frames is None else self.frames
 
 
 class ProgramStamp(CaseModel):

@@ -36,7 +36,10 @@ STILL, MOVIES = ".png", (".gif", ".mp4")
     help="Joint forces: bars as thick as they are large, or arrows as long.",
 )  # fmt: skip
 @click.option("--size", type=PictureSize(), help="Of the picture [pixels], such as 1200x800.")
-@click.option("--fps", type=click.FloatRange(0.5, 60.0), default=12.5, show_default=True, help="Pictures per second.")
+@click.option(
+    "--fps", type=click.FloatRange(0.5, 60.0),
+    help="Frames per second of a movie; default: 12.5, of time histories as fast as they were.",
+)  # fmt: skip
 def command(
     folder: Path,
     output: Path | None,
@@ -48,7 +51,7 @@ def command(
     joints: bool,
     forces: str | None,
     size: tuple[int, int | None] | None,
-    fps: float,
+    fps: float | None,
 ) -> None:
     """Render the results in DIR: a picture of one frame, or a movie of all."""
     from dem_cli.output.folder import write_error

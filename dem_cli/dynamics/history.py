@@ -13,6 +13,7 @@ from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
+from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
@@ -38,18 +39,6 @@ WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of t
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
 
 
-class SnapshotTimes:
-    """When snapshots are due: at even times from a start to an end, each once."""
-
-    def __init__(self, start: float, end: float, count: int):
-        self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
-
-    def due(self, time: float) -> bool:
-        """Whether a snapshot was due up to now since the last one."""
-        before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
-        return self.shown > before
-
-
 class TimeHistory:
     """One run: a structure under one motion of the ground."""
 
@@ -59,6 +48,7 @@ class TimeHistory:
         self.damping = damping_of_start(job.case, job.model, job.settings)
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
+        self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
         self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
@@ -126,7 +116,7 @@ class TimeHistory:
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
         done, end = 0, self.duration
         fallen: CollapsedBlock | None = None
-        frames = SnapshotTimes(0.0, end, output.frames)
+        self.snapshots.begin(end, every)
         while done < total and sim.time < end - 0.5 * dt:
             n = min(stretch, total - done, max(1, math.ceil((end - sim.time) / dt - 0.5)))
             values = self._stretch(n, every)
@@ -138,9 +128,8 @@ class TimeHistory:
                 fallen = fallen_block(sim, self.case.analysis)
                 if fallen is not None:
                     end = min(end, fallen.time + self.case.analysis.after_collapse)
-                    frames = SnapshotTimes(sim.time, end, max(output.frames // 2, 2))
-            if frames.due(sim.time + 0.5 * dt):
-                self.track.frame("collapse" if fallen else "shaking")
+                    self.snapshots.collapsed(end)
+            self.snapshots.look()
             moved = measures.largest_displacement(sim)
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / end, 1.0))
         found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
@@ -158,7 +147,8 @@ class TimeHistory:
         n_samples = -(-(since + n_steps) // every)
         n_dof = sim.bodies.velocities.shape[1]
         watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
-        sim.shake(self.ground.stretch((done - since) * dt, since + n_steps, dt), n_steps, watch, since)
+        ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
+        sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
         check_finite(sim)
         new = slice(1 if since else 0, None)  # the first sample of a stretch that begins between two is none
         times = (dt * (done - since + every * np.arange(n_samples)))[new]

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
 from dem_cli.interrupts import at_once
-from dem_cli.kernels.jit import cache_is_cold
+from dem_cli.kernels.jit import Compilation
 from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 
 if TYPE_CHECKING:
@@ -62,14 +62,13 @@ class Clock(Observer):
 
     def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
         """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
-        cold, begun = cache_is_cold(), time.perf_counter()
-        if cold:
-            self.progress("compiling (once)", 0.0, 0.0, None)
-        sim = make()
-        built = time.perf_counter()
-        with at_once():  # a minute, the first time
-            sim.compile()
-        self.compiling += time.perf_counter() - (begun if cold else built)
+        compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
+        with compilation.heard():
+            sim = make()
+            built, made = time.perf_counter(), compilation.seconds
+            with at_once():  # a minute, the first time
+                sim.compile()
+        self.compiling += made + time.perf_counter() - built
         return sim
 
     def imported(self, module: str) -> None:

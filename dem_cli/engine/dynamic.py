@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -20,6 +20,15 @@ from dem_cli.model.model import Model
 
 if TYPE_CHECKING:
     from dem_cli.engine.viscous import Damping
+
+
+class Looker(Protocol):
+    """Who looks at a simulation while it is shaken."""
+
+    every: int  # steps of the motion from one look to the next
+
+    def look(self) -> None:
+        """At the end of a step; changes nothing."""
 
 
 class DynamicSimulation(Simulation):
@@ -117,26 +126,33 @@ class DynamicSimulation(Simulation):
         self._run(0, 0, self._still(0), _no_watch(self))
         self.control[:] = control
 
-    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0) -> None:
+    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None) -> None:
         """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
-        The books are closed in the middle of the last step, where places, velocities and forces are of one time. Raises
-        KeyboardInterrupt.
+        The books are closed in the middle of the last step, where places, velocities and forces are of one time; looks
+        along the way change no bit. Raises KeyboardInterrupt.
         """
         step, end = first, first + n_steps
+        done = round(self.time / self.dt) - first  # steps before that of number 0
         while step < end:
             look()
             last = step == end - 1
             if last:
                 before = self.ledger.copy()
-            step += self._run(step, 1 if last else end - 1 - step, ground, watch)
+            n = 1 if last else end - 1 - step
+            if looker is not None:
+                n = min(n, looker.every - (done + step) % looker.every)
+            advanced = self._run(step, n, ground, watch)
+            step += advanced
             if last:
                 self.centred = 0.5 * (before + self.ledger)
                 self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]
             if self.tracking.due(self.bodies):
                 self.detect()
-        self.steps += n_steps
-        self.time = self.dt * (round(self.time / self.dt) + n_steps)
+            self.steps += advanced
+            self.time = self.dt * (done + step)
+            if looker is not None and (done + step) % looker.every == 0:
+                looker.look()
 
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""

@@ -51,6 +51,21 @@ class HistorySettings:
 
 
 @dataclass(frozen=True)
+class SnapshotSettings:
+    """Snapshots of a time history: how many show its motion, where the case does not say it."""
+
+    per_second: float = 12.5  # [1/s], at least: what a movie of it needs
+    per_cycle: float = 8.0  # of the ground, by the mean frequency of its velocity
+    per_second_of_collapse: float = 25.0  # [1/s]
+    most_per_second: float = 100.0  # [1/s]
+    swing: float = 0.25  # of the largest displacement so far: who moves by it asks for one (16 in a cycle of that size)
+    visible: float = 2e-3  # of the size of the structure: a displacement that counts as such, at least
+    look: float = 2.5e-3  # s between two looks, at least
+    bytes: int = 100_000_000  # on disk, about: more of them are not kept ...
+    fewest: int = 100  # ... but so many in any case
+
+
+@dataclass(frozen=True)
 class RockingSettings:
     """Stiffness of "auto" joints in time histories (dynamics/rocking_stiffness.py), and how it is checked.
 

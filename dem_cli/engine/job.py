@@ -105,7 +105,7 @@ class Job:
 
     def track(self, sim: Simulation) -> Track:
         """Rows and frames of a simulation."""
-        return Track(sim, self.clock, self.monitors, self.case.output.frames)
+        return Track(sim, self.clock, self.monitors, self.case.output.snapshots)
 
     def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
         """The summary of all simulations of this job, audited."""

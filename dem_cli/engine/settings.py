@@ -16,6 +16,7 @@ from dem_cli.engine.dynamic_settings import (
     ModesSettings,
     RestitutionSettings,
     RockingSettings,
+    SnapshotSettings,
     StatisticsSettings,
 )
 from dem_cli.engine.static_settings import (
@@ -155,6 +156,7 @@ class Settings:
     frequency: FrequencySettings = field(default_factory=FrequencySettings)
     modes: ModesSettings = field(default_factory=ModesSettings)
     history: HistorySettings = field(default_factory=HistorySettings)
+    snapshots: SnapshotSettings = field(default_factory=SnapshotSettings)
     rocking: RockingSettings = field(default_factory=RockingSettings)
     restitution: RestitutionSettings = field(default_factory=RestitutionSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.engine import measures
-from dem_cli.output.record import HistoryRow, Observer
+from dem_cli.output.record import Frame, HistoryRow, Observer
 
 if TYPE_CHECKING:
     from dem_cli.engine.monitors import Monitors
@@ -33,9 +33,13 @@ class Track:
         self.kept.append(self.row(stage))
 
     def frame(self, stage: str) -> None:
-        """Hand over a frame where frames are wanted."""
+        """Hand over a frame of this instant where frames are wanted."""
         if self.frames > 0:
-            self.observer.frame(measures.frame(self.sim, stage))
+            self.hand_over(measures.frame(self.sim, stage))
+
+    def hand_over(self, frame: Frame) -> None:
+        """Hand over a frame."""
+        self.observer.frame(frame)
 
     def flush(self) -> None:
         """Hand over what was kept."""

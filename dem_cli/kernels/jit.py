@@ -13,14 +13,19 @@ import os
 import platform
 import sys
 import tempfile
+import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Protocol, cast
 
 import numba
+from numba.core import event
 from numba.extending import overload, register_jitable
 
-__all__ = ["always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "named", "overload"]
+__all__ = [
+    "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "named", "overload",
+]  # fmt: skip
 
 _ROOT = Path(__file__).resolve().parent.parent
 
@@ -56,6 +61,33 @@ def cache_folder() -> Path:
 def cache_is_cold() -> bool:
     """True where nothing was compiled yet for these sources."""
     return next(Path(CACHE).rglob("*.nbi"), None) is None
+
+
+class Compilation(event.Listener):
+    """Compilation that really happens, not what comes from the cache: told when it begins, its seconds counted.
+
+    `with Compilation(tell).heard():` listens; `tell` is called once for each kernel, with what it calls.
+    """
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self.tell, self.seconds, self._depth, self._begun = tell, 0.0, 0, 0.0
+
+    def heard(self) -> AbstractContextManager:
+        """Listens inside of it."""
+        return event.install_listener("numba:compile", self)
+
+    def on_start(self, event: event.Event) -> None:
+        """A kernel, or something inside of it."""
+        if not self._depth:
+            self._begun = time.perf_counter()
+            self.tell()
+        self._depth += 1
+
+    def on_end(self, event: event.Event) -> None:
+        """Its time counts where it stands in no other."""
+        self._depth -= 1
+        if not self._depth:
+            self.seconds += time.perf_counter() - self._begun
 
 
 def _load_numba_without_blas() -> None:

@@ -12,7 +12,8 @@ from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.motion import pulses
 from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
 from dem_cli.motion.record import Accelerogram, record
-from dem_cli.motion.record_file import RecordError, read_series
+from dem_cli.motion.record_file import read_series
+from dem_cli.motion.record_text import RecordError
 from dem_cli.motion.table import (
     ArtificialTable,
     HarmonicTable,
@@ -80,16 +81,24 @@ def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
         titles, factor = [f"artificial {k}" for k in range(1, table.count + 1)], table.scale
     along = _unit(table.direction)
     motions = [Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)]
-    return [_with_warning(motions[0], table)] if isinstance(table, RecordTable) else motions
+    return [_with_warnings(motions[0], table)] if isinstance(table, RecordTable) else motions
 
 
-def _with_warning(motion: Motion, table: RecordTable) -> Motion:
-    """A record, which may leave the base moving."""
-    warning = moving_at_the_end(motion)
-    if not warning:
-        return motion
-    advice = "; baseline = true takes a drift out" if table.baseline is False else ""
-    return replace(motion, warnings=(warning + advice,))
+def _with_warnings(motion: Motion, table: RecordTable) -> Motion:
+    """A record, which may begin at another time than 0 and may leave the base moving."""
+    assert isinstance(motion.shape, Accelerogram)
+    warnings = [shifted(motion.shape, table.start)]
+    if moving := moving_at_the_end(motion):
+        warnings.append(moving + ("; baseline = true takes a drift out" if table.baseline is False else ""))
+    return replace(motion, warnings=tuple(filter(None, warnings)))
+
+
+def shifted(shape: Accelerogram, start: float) -> str:
+    """A remark about a record whose times begin elsewhere than at 0, by more than a step; or nothing."""
+    if abs(shape.first) <= 1.5 * shape.step:  # many begin at 0, or a step later
+        return ""
+    keeps = f"; start = {shape.first:g} keeps the times of the file" if shape.first > 0.0 and start == 0.0 else ""
+    return f"begins at {shape.first:g} s in the file, and here at {start:g} s{keeps}"
 
 
 def _unit(direction: Pair) -> Pair:

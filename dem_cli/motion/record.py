@@ -15,10 +15,11 @@ MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 class Accelerogram:
     """Accelerogram as piecewise polynomial of time from 0 (the contract: motion.py, `Waveform`).
 
-    times (n,) are the samples [s], the first one 0.
+    times (n,) are the samples [s], the first one 0; first is what that was where the samples come from [s].
     """
 
-    def __init__(self, acceleration: PPoly):
+    def __init__(self, acceleration: PPoly, first: float = 0.0):
+        self.first = first
         self.times = acceleration.x
         self.duration = float(self.times[-1])
         self.step = float(np.diff(self.times).min())
@@ -52,14 +53,15 @@ def record(
     """
     from scipy.interpolate import CubicSpline, PPoly
 
-    times, values = np.asarray(times, float) - times[0], np.asarray(values, float)
+    first = float(times[0])
+    times, values = np.asarray(times, float) - first, np.asarray(values, float)
     if quantity == "acceleration":
         acceleration = PPoly(np.stack((np.diff(values) / np.diff(times), values[:-1])), times)
     elif quantity == "velocity":
         acceleration = CubicSpline(times, values - values[0]).derivative(1)
     else:
         acceleration = CubicSpline(times, values - values[0], bc_type=((1, 0.0), "not-a-knot")).derivative(2)
-    return Accelerogram(acceleration if baseline is None else corrected(acceleration, baseline))
+    return Accelerogram(acceleration if baseline is None else corrected(acceleration, baseline), first)
 
 
 def corrected(acceleration: PPoly, order: int) -> PPoly:

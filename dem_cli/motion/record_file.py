@@ -12,18 +12,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.motion.record_text import RecordError, apart, by_width, is_number, number, read_text
+
 EVEN_SHARE, EVEN_WITHIN = 0.8, 0.4  # so many steps that close to the median make a record that is meant to be even
 GAP = 1.6  # steps of the median: longer is a gap in such a record
 FEWEST = 20  # rows below which any steps are taken as meant
 PEER_QUANTITIES = {"ACCELERATION": "acceleration", "VELOCITY": "velocity", "DISPLACEMENT": "displacement"}
 PEER_UNITS = {"G": "g", "CM/S": "cm/s", "CM/SEC": "cm/s", "CM": "cm", "CM/S2": "cm/s2", "M/S2": "m/s2"}
+_POSITIVE = r"((?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?)"
 PEER_COUNT = re.compile(r"NPTS\s*=?\s*(\d+)", re.IGNORECASE)
-PEER_STEP = re.compile(r"DT\s*=?\s*([0-9.]+(?:E[-+]?\d+)?)", re.IGNORECASE)
-PEER_OLD = re.compile(r"^\s*(\d+)\s+([0-9.]+(?:E[-+]?\d+)?)\s+NPTS", re.IGNORECASE)
-
-
-class RecordError(ValueError):
-    """A record that cannot be used; the message says which file, where in it, and why."""
+PEER_STEP = re.compile(rf"DT\s*=?\s*{_POSITIVE}", re.IGNORECASE)
+PEER_OLD = re.compile(rf"^\s*(\d+)\s+{_POSITIVE}\s+NPTS", re.IGNORECASE)
+WORD = re.compile(r"\W*[^\W\d_]{2}")  # what a header begins with, not a digit that was mistyped
+DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?", re.ASCII)
+ALONG = "all"  # `column` of values that go on from line to line
 
 
 class RecordSamples(NamedTuple):
@@ -36,24 +38,19 @@ class RecordSamples(NamedTuple):
 
 
 def read_series(
-    path: Path, step: float | None = None, column: int | None = None, uneven: bool = False
+    path: Path, step: float | None = None, column: int | str | None = None, uneven: bool = False
 ) -> RecordSamples:
     """The samples in a file. Raises RecordError.
 
     step    time step of a file that has values only [s]
-    column  number of the column with the values, the first one is 1; may be left out when there is no choice
+    column  number of the column with the values, the first one is 1; may be left out when there is no choice; "all":
+            beside a step, values go on from line to line, several in each
     uneven  steps that differ are meant: no gaps are looked for
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise RecordError(f"{path.name}: not a text file (byte {error.start})") from None
-    except OSError as error:
-        raise RecordError(f"{path.name}: cannot be read ({error.strerror or error})") from None
-    lines = text.splitlines()
+    lines = read_text(path).splitlines()
     if any(PEER_COUNT.search(line) or PEER_OLD.search(line) for line in lines[:8]):
         return _peer(path.name, lines)
-    rows, numbers = _rows(path.name, lines)
+    rows, numbers = _rows(path.name, lines, along=column == ALONG)
     if step is None:
         times, values = _two_columns(path.name, rows, numbers, column)
         _check_times(path.name, times, numbers, uneven)
@@ -63,61 +60,68 @@ def read_series(
     return RecordSamples(times, values)
 
 
-def _rows(name: str, lines: list[str]) -> tuple[list[list[float]], list[int]]:
-    """The numbers in each line that has any, and the numbers of these lines."""
+def _rows(name: str, lines: list[str], along: bool) -> tuple[list[list[float]], list[int]]:
+    """The numbers in each line that has any, and the numbers of these lines; along: lines may differ in length."""
     rows: list[list[float]] = []
     numbers: list[int] = []
-    for number, line in enumerate(lines, 1):
+    for at, line in enumerate(lines, 1):
         fields = _fields(line)
-        if not fields:
+        if not fields or (not rows and _is_header(fields)):
             continue
-        try:
-            row = [float(field) for field in fields]
-        except ValueError:
-            if not rows and not any(map(_is_number, fields)):
-                continue  # a header
-            wrong = next(field for field in fields if not _is_number(field))
-            raise RecordError(f"{name}:{number}: '{wrong[:40]}' is not a number") from None
-        if not all(map(math.isfinite, row)):
-            wrong = next(field for field, value in zip(fields, row) if not math.isfinite(value))
-            raise RecordError(f"{name}:{number}: '{wrong}' is not allowed; a record has finite numbers only")
-        if rows and len(row) != len(rows[0]):
+        row = _finite(fields, f"{name}:{at}")
+        if rows and len(row) != len(rows[0]) and not along:
             columns = f"{len(row)} column{'s' * (len(row) > 1)} where the lines above have {len(rows[0])}"
-            raise RecordError(f"{name}:{number}: {columns}")
+            raise RecordError(f"{name}:{at}: {columns}")
         rows.append(row)
-        numbers.append(number)
-    if len(rows) < 2:
+        numbers.append(at)
+    if sum(map(len, rows)) < 2 or (len(rows) < 2 and not along):
         found = "no numbers" if not rows else "a single row of numbers"
         raise RecordError(f"{name}: {found}; a record has at least two")
     return rows, numbers
 
 
+def _is_header(fields: list[str]) -> bool:
+    """Whether a line before any numbers has none, or begins with a word, such as `Station 12`."""
+    return not any(map(is_number, fields)) or (not is_number(fields[0]) and bool(WORD.match(fields[0])))
+
+
+def _finite(fields: list[str], place: str) -> list[float]:
+    """The numbers in a line. Raises RecordError, which says where: FILE:LINE."""
+    row = []
+    for field in fields:
+        try:
+            row.append(number(field))
+        except ValueError:
+            raise RecordError(f"{place}: '{field[:40]}' is not a number") from None
+        if not math.isfinite(row[-1]):
+            raise RecordError(f"{place}: '{field}' is not allowed; a record has finite numbers only")
+    return row
+
+
 def _fields(line: str) -> list[str]:
-    """What stands between the separators of a line: ';', tab, ',' or blanks; beside the first two ',' is decimal."""
+    """What stands between the separators of a line: ';', tab, ',' or blanks; beside all but ',' ',' is decimal."""
     line = line.partition("#")[0].strip()
     if ";" in line or "\t" in line:
-        fields = [field.strip().replace(",", ".") for field in re.split(r"[;\t]", line)]
+        fields = [field.replace(",", ".") for field in re.split(r"[;\t]", line)]
     elif "," in line:
-        fields = [field.strip() for field in line.split(",")]
+        fields = line.split()
+        if len(fields) > 1 and all(map(DECIMAL_COMMA.fullmatch, fields)):
+            return [field.replace(",", ".") for field in fields]
+        fields = line.split(",")
     else:
-        return line.split()
+        return [part for field in line.split() for part in apart(field)]
+    fields = [field.strip(' "') for field in fields]
     while fields and not fields[-1]:  # a separator at the end of the line
         fields.pop()
     return fields
 
 
-def _is_number(field: str) -> bool:
-    try:
-        float(field)
-    except ValueError:
-        return False
-    return True
-
-
 def _two_columns(
-    name: str, rows: list[list[float]], numbers: list[int], column: int | None
+    name: str, rows: list[list[float]], numbers: list[int], column: int | str | None
 ) -> tuple[np.ndarray, np.ndarray]:
     width = len(rows[0])
+    if column == ALONG:
+        raise RecordError(f"{name}: column = 'all' needs a step = ... [s]; values only, several in a line")
     if width == 1:
         raise RecordError(f"{name}:{numbers[0]}: one column; time and value are two, or give step = ... [s]")
     if column == 1:
@@ -127,12 +131,17 @@ def _two_columns(
     return np.array([row[0] for row in rows]), _column(name, rows, numbers, column or 2)
 
 
-def _column(name: str, rows: list[list[float]], numbers: list[int], column: int | None) -> np.ndarray:
+def _column(name: str, rows: list[list[float]], numbers: list[int], column: int | str | None) -> np.ndarray:
     width = len(rows[0])
+    if isinstance(column, str):
+        return np.array([value for row in rows for value in row])
     if column is not None and column > width:
         raise RecordError(f"{name}:{numbers[0]}: there is no column {column}, only {width}")
     if column is None and width > 1:
-        raise RecordError(f"{name}:{numbers[0]}: {width} columns; beside 'step' there is one, or say column = ...")
+        raise RecordError(
+            f"{name}:{numbers[0]}: {width} columns beside 'step'; say which one holds the values, such as column = 2, "
+            "or column = 'all' where they go on from line to line"
+        )
     return np.array([row[(column or 1) - 1] for row in rows])
 
 
@@ -159,30 +168,33 @@ def _check_times(name: str, times: np.ndarray, numbers: list[int], uneven: bool)
 def _peer(name: str, lines: list[str]) -> RecordSamples:
     """A file of the PEER strong-motion database: header with NPTS and DT, then values, several in a line."""
     at = next(i for i, line in enumerate(lines[:8]) if PEER_COUNT.search(line) or PEER_OLD.search(line))
-    old = PEER_OLD.search(lines[at])
-    count_found, step_found = PEER_COUNT.search(lines[at]), PEER_STEP.search(lines[at])
-    if old:
-        count, step = int(old[1]), float(old[2])
-    elif count_found and step_found:
-        count, step = int(count_found[1]), float(step_found[1])
-    else:
-        raise RecordError(f"{name}:{at + 1}: DT is missing beside NPTS")
-    if step <= 0.0:
-        raise RecordError(f"{name}:{at + 1}: DT = {step:g} is not allowed; must be > 0")
-    values: list[float] = []
-    for number, line in enumerate(lines[at + 1 :], at + 2):
-        for field in line.split():
-            if not _is_number(field):
-                raise RecordError(f"{name}:{number}: '{field[:40]}' is not a number")
-            values.append(float(field))
-            if not math.isfinite(values[-1]):
-                raise RecordError(f"{name}:{number}: '{field}' is not allowed; a record has finite numbers only")
+    count, step = _peer_size(lines[at], f"{name}:{at + 1}")
+    values = by_width(lines[at + 1 :], count)  # columns of one width are certain even where they touch
+    if values is None:
+        values = []
+        for i, line in enumerate(lines[at + 1 :], at + 2):
+            values += _finite([part for field in line.split() for part in apart(field)], f"{name}:{i}")
     if len(values) != count:
         raise RecordError(f"{name}:{at + 1}: NPTS says {count} values, the file has {len(values)}")
     if count < 2:
         raise RecordError(f"{name}:{at + 1}: NPTS = {count}; a record has at least two values")
     quantity, unit = _peer_quantity("\n".join(lines[:at]).upper())
     return RecordSamples(step * np.arange(count), np.array(values), quantity, unit)
+
+
+def _peer_size(line: str, place: str) -> tuple[int, float]:
+    """Number of values and time step [s] as a header says. Raises RecordError."""
+    old = PEER_OLD.search(line)
+    count_found, step_found = PEER_COUNT.search(line), PEER_STEP.search(line)
+    if old:
+        count, step = int(old[1]), number(old[2])
+    elif count_found and step_found:
+        count, step = int(count_found[1]), number(step_found[1])
+    else:
+        raise RecordError(f"{place}: DT is missing beside NPTS")
+    if step <= 0.0:
+        raise RecordError(f"{place}: DT = {step:g} is not allowed; must be > 0")
+    return count, step
 
 
 def _peer_quantity(header: str) -> tuple[str | None, str | None]:

@@ -131,9 +131,10 @@ class RecordTable(MotionTable):
     step: Positive | None = Field(
         default=None, description="time step of a file that has values only [s]", examples=[0.01]
     )
-    column: Annotated[int, Field(ge=1)] | None = Field(
+    column: Annotated[int, Field(ge=1)] | Literal["all"] | None = Field(
         default=None,
-        description="number of the column of values, from 1; may be left out when there is no choice",
+        description="number of the column of values, from 1; may be left out when there is no choice; 'all' beside "
+        "step: values go on from line to line, several in each",
         examples=[2],
     )
     uneven: bool = Field(default=False, description="time steps that differ are meant; no gaps are looked for")

@@ -1,21 +1,22 @@
-"""collapse.gif: the structure from frame to frame, on the ground that moves where the run has a time history."""
+"""collapse.gif: the structure from frame to frame; of a time history as fast as it was, on the ground that moves."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra, UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.output.vertices import rest_vertices
 from dem_cli.post import frame_measures, style, view_box
+from dem_cli.post.playback import milliseconds, playback
 
-_FRAME_MS = 80  # of a picture: 12.5 per second
 _LAST_MS = 1200  # the last one stays longer
 _DPI = 100
 _WHITE = "#ffffff"
@@ -30,26 +31,27 @@ def draw_animation(results: Results, path: Path) -> None:
     """One picture per frame. Raises UsageError where the run kept no frames, or Pillow is missing."""
     if not len(results.frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to animate")
-    pictures = _pictures(results)
-    times = [_FRAME_MS] * (len(pictures) - 1) + [_LAST_MS]
+    movie = playback(results)
+    pictures = _pictures(results, movie.frames)
+    times = [*milliseconds(movie.stays[:-1]), _LAST_MS]
     with path.open("wb") as file:
         pictures[0].save(
             file, "GIF", save_all=True, append_images=pictures[1:], duration=times, loop=0, optimize=True, disposal=1
         )
 
 
-def _pictures(results: Results) -> list[Any]:
-    """All frames as images that share one palette."""
+def _pictures(results: Results, frames: Sequence[Frame]) -> list[Any]:
+    """Frames as images that share one palette."""
     with style.canvas() as make:
         try:
             from PIL import Image
         except ImportError:
-            raise UsageError("an animation needs Pillow: pip install 'dem-cli[plot]'") from None
-        scene = _Scene(results, make)
+            raise MissingExtra("an animation needs Pillow", "plot") from None
+        scene = _Scene(results, frames, make)
         palette = Image.new("P", (1, 1))
         palette.putpalette(_palette())
         pictures = []
-        for frame in results.frames:
+        for frame in frames:
             scene.show(frame)
             image = Image.frombuffer("RGBA", *scene.pixels()).convert("RGB")
             pictures.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
@@ -68,10 +70,9 @@ def _palette() -> list[int]:
 class _Scene:
     """A figure whose blocks move: the structure above, the acceleration of its base below."""
 
-    def __init__(self, results: Results, make: Any):
+    def __init__(self, results: Results, frames: Sequence[Frame], make: Any):
         model, self.results = results.model, results
         self.model = model
-        frames = results.frames
         self.scale = min(frame_measures.visible_scale(model, frame) for frame in frames)
         self.carried = view_box.carried(results, self.scale)
         corners = [self._corners(frame) for frame in frames]

@@ -51,8 +51,7 @@ def _draw_runs(axis: Any, runs: Sequence[Mapping[str, Any]]) -> None:
         if chosen:
             axis.plot(*zip(*chosen), mark, ms=7, color=colour, mec="white", mew=0.7, label=label, zorder=4)
     axis.set_yscale("log")
-    axis.yaxis.set_major_formatter("{x:,.0f}")
-    axis.yaxis.set_minor_formatter("{x:,.0f}")
+    style.number_logs(axis.yaxis, "{x:,.0f}")
 
 
 def _draw_answer(axis: Any, summary: Mapping[str, Any]) -> None:

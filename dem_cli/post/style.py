@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra
 
 INK, GREY, FAINT = "#26262b", "#7c7c86", "#d5d5da"
 STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
@@ -17,7 +17,8 @@ STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
 COLLAPSE = "#c0392b"
 DPI = 160
-_SHORT = 30.0  # ratio of the ends of a logarithmic axis up to which it has numbers between powers of ten as well
+# Ratio of the ends of a logarithmic axis, along x and y, up to which it has numbers between powers of ten as well.
+_SHORT, _SHORT_UP = 30.0, 3000.0
 _METADATA: Any = {  # nothing that differs from day to day
     ".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}
 }  # fmt: skip
@@ -65,7 +66,7 @@ def canvas() -> Iterator[Callable[..., Any]]:
 
         from dem_cli.post import verbatim_figure
     except ImportError:
-        raise UsageError("drawing needs matplotlib: pip install 'dem-cli[plot]'") from None
+        raise MissingExtra("drawing needs matplotlib", "plot") from None
 
     def make(**options: Any) -> Any:
         drawn = verbatim_figure.VerbatimFigure(layout="constrained", **options)
@@ -96,14 +97,15 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
     figure.suptitle(text, x=0.01, ha="left", fontsize=size, fontweight="bold")
 
 
-def number_logs(axis: Any) -> None:
-    """Plain numbers along a logarithmic x axis that never run into each other, however short it is."""
+def number_logs(axis: Any, text: str = "{x:g}") -> None:
+    """Plain numbers along a logarithmic axis (`axes.xaxis`) that never run into each other, however short it is."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    low, high = axis.get_xlim()
-    axis.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.xaxis.set_minor_formatter("{x:g}" if high < _SHORT * low else NullFormatter())
+    low, high = axis.get_view_interval()
+    short = _SHORT if axis.axis_name == "x" else _SHORT_UP
+    axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    axis.set_major_formatter(text)
+    axis.set_minor_formatter(text if high < short * low else NullFormatter())
 
 
 def _of_safety(summary: Mapping[str, Any]) -> str:

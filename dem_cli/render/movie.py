@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import MissingExtra
+from dem_cli.post.playback import milliseconds, ticks
 
-FPS = 12.5
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
 _COLOURS, _PAPER = 256, 242
 
@@ -19,13 +19,16 @@ _COLOURS, _PAPER = 256, 242
 def check(kind: str) -> None:
     """UsageError where what a format needs is not installed."""
     if kind == "mp4" and find_spec("imageio_ffmpeg") is None:
-        raise UsageError("MP4 needs imageio-ffmpeg: pip install 'dem-cli[movie]' (--movie gif works without)")
+        raise MissingExtra("MP4 needs imageio-ffmpeg", "movie", " (--movie gif works without)")
 
 
-def write(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
-    """Write pictures (height, width, 3) of bytes, of equal size; the format is that of the file's name."""
+def write(pages: Sequence[np.ndarray], path: Path, stays: Sequence[float]) -> None:
+    """Write pictures (height, width, 3) of bytes, of equal size, each shown for so long [s].
+
+    The format is that of the file's name.
+    """
     part = unfinished(path)
-    {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, fps)
+    {".gif": _write_gif, ".mp4": _write_mp4}[path.suffix](pages, part, list(stays))
     part.replace(path)
 
 
@@ -34,14 +37,13 @@ def unfinished(path: Path) -> Path:
     return path.with_name(f".part-{path.name}")
 
 
-def _write_gif(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
+def _write_gif(pages: Sequence[np.ndarray], path: Path, stays: list[float]) -> None:
     from PIL import Image
 
     palette = _palette(pages)
     images = [Image.fromarray(page).quantize(palette=palette, dither=Image.Dither.NONE) for page in pages]
-    each = max(20, 10 * round(100.0 / fps))  # ms; browsers slow down what is shorter
-    times = [each] * len(images)
-    times[0], times[-1] = max(each, round(1000 * _FIRST)), max(each, round(1000 * _LAST))
+    times = milliseconds(stays)
+    times[0], times[-1] = max(times[0], round(1000 * _FIRST)), max(times[-1], round(1000 * _LAST))
     with path.open("wb") as file:
         images[0].save(
             file, "GIF", save_all=True, append_images=images[1:], duration=times, loop=0, optimize=True, disposal=1
@@ -61,14 +63,15 @@ def _palette(pages: Sequence[np.ndarray]) -> Any:
     return palette
 
 
-def _write_mp4(pages: Sequence[np.ndarray], path: Path, fps: float) -> None:
+def _write_mp4(pages: Sequence[np.ndarray], path: Path, stays: list[float]) -> None:
     import imageio_ffmpeg
 
     height, width = pages[0].shape[:2]
+    fps, shown = ticks(stays)
     film = imageio_ffmpeg.write_frames(
         str(path), (width, height), fps=fps, codec="libx264", quality=7, macro_block_size=2, ffmpeg_log_level="error"
     )
     film.send(None)
-    for page in [pages[0]] * round(fps * _FIRST) + list(pages) + [pages[-1]] * round(fps * _LAST):
+    for page in [pages[0]] * round(fps * _FIRST) + [pages[i] for i in shown] + [pages[-1]] * round(fps * _LAST):
         film.send(np.ascontiguousarray(page))
     film.close()

@@ -18,12 +18,13 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.errors import DemError, OutputError, UsageError
+from dem_cli.errors import DemError, MissingExtra, OutputError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import collapse, frame_measures, style, view_box
+from dem_cli.post.playback import SHORTEST, Playback, playback
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
 
@@ -43,7 +44,7 @@ class RenderOptions:
     joints: bool = True  # coloured by state
     forces: str | None = None  # "bars", "arrows"
     size: tuple[int, int | None] | None = None  # of the whole picture [pixels]
-    fps: float = movie.FPS
+    fps: float | None = None  # of a movie; None: time histories as fast as they were, others 12.5
 
 
 def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
@@ -53,7 +54,7 @@ def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
     """
     for name in ("pyvista", "matplotlib", "PIL"):
         if find_spec(name) is None:
-            raise UsageError("rendering needs pyvista: pip install 'dem-cli[viz]'")
+            raise MissingExtra("rendering needs pyvista", "viz")
     movie.check(path.suffix[1:])
     try:
         in_own_process(render, folder, path, look)
@@ -106,13 +107,16 @@ def render(folder: Path, path: Path, look: RenderOptions) -> None:
     from dem_cli.render import opengl
 
     results = read(folder)
-    frames = chosen(results, look.frame) if path.suffix == ".png" else all_frames(results)
+    if path.suffix == ".png":
+        frames, stays = chosen(results, look.frame), [0.0]
+    else:
+        frames, stays = all_frames(results, look.fps)
     opengl.choose_window()
     pages = draw(results, frames, look, MOVIE_WIDTH if len(frames) > 1 else STILL_WIDTH)
     if path.suffix == ".png":
         _write_png(pages[0], path)
     else:
-        movie.write(pages, path, look.fps)
+        movie.write(pages, path, stays)
 
 
 def _write_png(page: np.ndarray, path: Path) -> None:
@@ -134,7 +138,7 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
     eye = camera(look.view, _seen(model, [view_box.corners(model, f, scale, m) for f, m in zip(frames, moves)]))
     colours, bar = block_colours.colours(results, frames, look.colour)
     handles = block_colours.legend(results, frames, look.joints, look.forces)
-    plan = layout(look.size or (width, None), eye.height / eye.width, bool(handles), bar is not None)
+    plan = layout(look.size or (width, None), eye.height / eye.width, len(handles), bar is not None)
     with style.canvas() as make:
         sheet = Sheet(make, plan, results.summary, handles, bar)
         scene = Scene(model, eye, plan.width, plan.picture, plan.points, deep=look.view != "front")
@@ -164,13 +168,13 @@ def _moved(results: Results, frame: Frame, scale: float) -> np.ndarray:
     return np.zeros(results.model.dimension)
 
 
-def all_frames(results: Results) -> list[Frame]:
-    """Of a movie. Raises UsageError where there is none to be made."""
+def all_frames(results: Results, fps: float | None = None) -> Playback:
+    """Of a movie, and how long each is shown [s]. Raises UsageError where there is none to be made."""
     if results.kind in _STANDALONE:
         raise UsageError(f"the frames of {results.kind!r} do not follow each other: no movie, but --frame N draws each")
     if len(results.frames) < 2:
         raise UsageError("a movie needs frames, and the run kept fewer than two (output.frames)")
-    return list(results.frames)
+    return playback(results, None if fps is None else max(1.0 / fps, SHORTEST))
 
 
 def chosen(results: Results, text: str) -> list[Frame]:

@@ -11,6 +11,7 @@ from dem_cli.post import style
 
 WIDTH = 8.0  # inches: text has the size that it would have on a sheet of this width
 _HEADER, _LEGEND, _BAR = 0.58, 0.34, 0.56  # inches
+_ROW = 0.16  # inches: an entry of a legend that stands beside a colour bar, one below the other
 _LOWEST, _HIGHEST = 0.3, 0.85  # of the width: the picture without what stands around it
 
 
@@ -33,14 +34,14 @@ class SheetLayout(NamedTuple):
     points: float  # pixels of a typographic point
 
 
-def layout(size: tuple[int, int | None], aspect: float, legend: bool, bar: bool) -> SheetLayout:
+def layout(size: tuple[int, int | None], aspect: float, entries: int, bar: bool) -> SheetLayout:
     """Everything around a picture that is `aspect` times as high as it is wide; all sizes even, as movies need it.
 
-    size: of the whole [pixels]; height None: as the picture asks for.
+    size: of the whole [pixels]; height None: as the picture asks for. entries: of the legend.
     """
     width = size[0] - size[0] % 2
     inch = width / WIDTH
-    below = round(inch * (_BAR if bar else _LEGEND if legend else 0.08))
+    below = round(inch * (max(_BAR, _ROW * entries + 0.08) if bar else _LEGEND if entries else 0.08))
     around = round(inch * _HEADER) + below
     height = size[1] or around + round(width * float(np.clip(aspect, _LOWEST, _HIGHEST)))
     height -= height % 2
@@ -73,7 +74,7 @@ class Sheet:
             middle = 0.5 * plan.below / plan.height
             self.figure.legend(
                 handles=handles, loc="center left", bbox_to_anchor=(0.0, middle), ncols=1 if bar else 5, fontsize=9,
-                handlelength=1.6, columnspacing=1.6, labelspacing=0.25,
+                handlelength=1.6, columnspacing=1.6, labelspacing=0.25, borderpad=0.2,
             )  # fmt: skip
 
     def _draw_bar(self, bar: ColourBar, plan: SheetLayout) -> None:

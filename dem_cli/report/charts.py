@@ -12,6 +12,7 @@ from dem_cli.output.series import BASE, MONITOR_UNITS
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
 from dem_cli.post.capacity import off_the_load, with_breaks
+from dem_cli.post.energy import across
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import of_quantity, thinned
 from dem_cli.report.packed_arrays import pack
@@ -170,20 +171,18 @@ def _row_of(history: Mapping[str, np.ndarray], frame: Mapping[str, Any]) -> int:
 def _energy(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
     history = results.history
     rows = np.arange(len(history.get("step", ())))
-    in_seconds = results.kind in IN_SECONDS
     if len(rows) < 2:
         return []
-    x = history["time" if in_seconds else "step"]
+    along = across(results)
     drawn = []
     for name in [*_ENERGY, *(name for name in results.energy if name not in _ENERGY)]:
         values = results.energy.get(name)
         if values is not None and (values != 0.0).any():
             text, colour = name.replace("_", " "), _ENERGY.get(name, "ink")
-            curve = with_breaks(history["step"], x.astype(float), values)
+            curve = with_breaks(history["step"], along.factor * history[along.column], values)
             drawn.append(line(text, curve[0], curve[1], colour))
-    marks = [[frame["time" if in_seconds else "step"], None] for frame in frames]
-    label = "time [s]" if in_seconds else "solver step"
-    chart = {"id": "energy", "title": "Energy ledger", "x": label, "y": "energy since the start [J]"}
+    marks = [[along.factor * frame[along.column], None] for frame in frames]
+    chart = {"id": "energy", "title": "Energy ledger", "x": along.label, "y": "energy since the start [J]"}
     return [{**chart, "lines": drawn, "marks": marks, "verticals": _collapse(results)}] if drawn else []
 
 

@@ -23,7 +23,7 @@ from dem_cli.render import marks
 from dem_cli.render.solids import surface
 from dem_cli.report.packed_arrays import pack
 
-MOST_BYTES = 3_000_000  # of all frames; where there is more, frames are left out
+MOST_BYTES = 8_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
 MODE = "mode"  # stage of frames that show natural modes
 SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no size

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from dem_cli.errors import SolverError, UsageError
+from dem_cli.errors import MissingExtra, SolverError, UsageError
 from dem_cli.interrupts import at_once, insist
 from dem_cli.sweep.identity import program
 from dem_cli.sweep.pool import ASK, WorkerDeath
@@ -30,7 +30,7 @@ def connected(address: str, folder: Path) -> Iterator[Any]:
     try:
         from dask.distributed import Client
     except ImportError:
-        raise UsageError("--scheduler needs Dask: pip install 'dem-cli[cluster]'") from None
+        raise MissingExtra("--scheduler needs Dask", "cluster") from None
     try:
         with at_once():
             client = Client(address, timeout=PATIENCE, set_as_default=False)

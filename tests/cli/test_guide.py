@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from shown import Reader, blocks
+from shown import NOT_RUN, Reader, blocks
 
 from dem_cli.cli.new import TEMPLATE_KINDS
 
@@ -16,10 +16,34 @@ PAGES = sorted((ROOT / "docs" / "guide").glob("*.md"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_page(page, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-    Reader(tmp_path).do(page)
+def test_page(page, tmp_path, one_core, can_render):
+    Reader(tmp_path, can_render).do(page)
+
+
+def test_what_is_not_run_is_shown_and_named():
+    """No line is left out unless NOT_RUN has it with its reason, and each of these is there."""
+    lines = [line.partition("  #")[0].rstrip() for page in [*PAGES, ROOT / "README.md"] for block in blocks(page)
+             if block.language == "bash" for line in block.text.splitlines()]  # fmt: skip
+    assert set(NOT_RUN) <= set(lines)
+    run = [line for line in lines if line and line not in NOT_RUN]
+    assert {line.split()[0] for line in run} == {"dem", "scripts/run"}
+    assert len(run) > 40
+
+
+def test_errors_of_imperfections_fit_a_wall(tmp_path, one_core):
+    """The pieces of docs/case_imperfections.md, in the wall that it draws."""
+    reader = Reader(tmp_path)
+    reader.read_case(next(block.text for block in blocks(ROOT / "docs" / "guide" / "joints.md")))
+    pieces = [block.text for block in blocks(ROOT / "docs" / "case_imperfections.md") if block.language == "toml"]
+    assert len(pieces) == 2
+    for piece in pieces:
+        reader.read_case(piece)
+
+
+def test_the_first_page_shows_the_first_command():
+    assert [block.text for block in blocks(ROOT / "docs" / "index.md") if block.language == "bash"] == [
+        next(blocks(ROOT / "README.md")).text.splitlines()[0] + "\n"
+    ]
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=lambda page: page.stem)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -10,6 +11,8 @@ from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.cli.main import main
 from dem_cli.output.store import ResultWriter
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
@@ -54,7 +57,7 @@ def test_plot_of_an_unfinished_run(folder):
 def test_plot_without_matplotlib(folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     code, output = dem("plot", folder)
-    assert (code, output) == (2, "error: drawing needs matplotlib: pip install 'dem-cli[plot]'\n")
+    assert (code, output) == (2, f"error: drawing needs matplotlib: pip install '{ROOT}[plot]'\n")
 
 
 @pytest.mark.parametrize("command", [("plot",), ("export", "--pvd")])

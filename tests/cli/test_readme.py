@@ -11,10 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
 
 
-def test_everything_shown_works(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-    Reader(tmp_path).do(README)
+def test_everything_shown_works(tmp_path, one_core, can_render):
+    Reader(tmp_path, can_render).do(README)
 
 
 def test_first_commands_are_the_wall_and_the_tests():

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +27,9 @@ from PIL import Image
 from dem_cli.post import style
 from dem_cli.render import block_colours, movie, opengl, render
 from dem_cli.render.render import RenderOptions
+from dem_cli.render.sheet import Sheet, layout
 
+ROOT = Path(__file__).resolve().parents[2]
 ASK = "from dem_cli.render.opengl import choose_window; choose_window()"
 
 
@@ -108,6 +111,30 @@ def test_a_still_of_its_size(graphics, folder, tmp_path):
         assert picture.size == (640, 480)
 
 
+@pytest.mark.parametrize("colour", ["stone", "displacement", "rotation"])
+@pytest.mark.parametrize("forces", [None, "bars", "arrows"])
+@pytest.mark.parametrize("width", [320, 960, 1440])
+def test_no_legend_is_cut(folder, colour, forces, width):
+    """Four entries beside a colour bar lost half of the first and of the last."""
+    results = read(folder)
+    frames = render.chosen(results, "last")
+    handles = block_colours.legend(results, frames, True, forces)
+    _, bar = block_colours.colours(results, frames, colour)
+    plan = layout((width, None), 0.6, len(handles), bar is not None)
+    with style.canvas() as make:
+        figure = Sheet(make, plan, results.summary, handles, bar).figure
+        figure.canvas.draw()
+        boxes = [text.get_window_extent() for legend in figure.legends for text in legend.get_texts()]
+        axes = [axis.get_tightbbox() for axis in figure.axes]
+    assert len(boxes) == len(handles)
+    for box in boxes + axes:
+        assert box.x0 >= 0.0
+        assert box.x1 <= plan.width
+        assert box.y0 >= 0.0
+        assert box.y1 <= plan.below + 1.0
+    assert all(box.x1 < axis.x0 for box in boxes for axis in axes)
+
+
 def test_a_movie_has_all_frames(graphics, folder):
     assert dem("render", folder, "--movie", "gif", "--size", "400", "--fps", "10")[0] == 0
     delays = []
@@ -130,6 +157,7 @@ def test_mp4_of_a_shaken_wall(graphics, tmp_path):
     film.close()
     assert facts["size"] == (400, 300)
     assert facts["fps"] == pytest.approx(12.5)
+    assert facts["duration"] == pytest.approx(5.0 + 0.6 + 1.4, abs=0.25)  # as long as it shook, and the ends
 
 
 def test_no_graphics_libraries(monkeypatch):
@@ -205,7 +233,8 @@ def test_an_extra_that_is_missing(folder, tmp_path, monkeypatch, missing):
     monkeypatch.setattr(movie, "find_spec", whether["find_spec"])
     code, output = dem("render", folder, "--movie", "mp4", "-o", tmp_path / "a.mp4")
     assert code == 2
-    assert "pip install 'dem-cli[" in output
+    extra = {"pyvista": "viz", "imageio_ffmpeg": "movie"}[missing]
+    assert f"pip install '{ROOT}[{extra}]'" in output
     assert len(output.splitlines()) == 1
 
 

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import io
 import json
-import os
-import shutil
 import sys
 import time
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from shown.browser import chromium
 from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.pages import HOSTILE, evil, sweep, wall
 from synthetic.shaking import write_shaking
@@ -28,36 +27,16 @@ STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css a
 JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}
 SKY, DARK_SKY = (0xE9, 0xEE, 0xF3), (0x1E, 0x20, 0x23)
 TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
-OPTIONS = (
-    "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-    "--disable-gpu-compositing", "--disable-dev-shm-usage", "--disable-background-networking", "--no-first-run",
-    "--disable-component-update", "--force-device-scale-factor=1", "--window-size=900,1250",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def browser():
     """One Chromium for all tests of this file."""
-    chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    driver = shutil.which("chromedriver")
-    if not chromium or not driver:
-        missing = "no chromium and chromedriver on this machine"
-        (pytest.fail if os.environ.get("CI") else pytest.skip)(missing)
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for option in OPTIONS:
-        options.add_argument(option)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    session = webdriver.Chrome(options=options, service=Service(driver))
-    session.execute_cdp_cmd("Network.enable", {})
-    offline = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
-    session.execute_cdp_cmd("Network.emulateNetworkConditions", offline)
-    yield session
-    session.quit()
+    with chromium() as session:
+        session.execute_cdp_cmd("Network.enable", {})
+        offline = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
+        session.execute_cdp_cmd("Network.emulateNetworkConditions", offline)
+        yield session
 
 
 @pytest.fixture(scope="module")

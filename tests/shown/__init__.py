@@ -1,10 +1,10 @@
-"""What a page of the documentation shows is done as a reader would: its cases are read, its commands run, in order.
+"""What a page of the documentation shows is done as a reader would, as it is printed: cases are written, commands run.
 
-* A toml block with a title is a whole case. One without changes the last whole case of the page: its tables replace or
-  extend those there. Each must be valid; one whose first line is `# NAME.toml` is written to that file.
-* A bash block is run, line by line. A line whose remark says how many minutes it takes is only parsed, one that says
-  `exit 2` must end so; `dem render`, which needs graphics libraries, is only parsed.
-* Every line of a text block right after a bash block must be in what its commands printed; times may differ.
+* A toml block whose first line is `# NAME.toml` is that file, and a whole case. One without a name is a piece of the
+  last such file: put there, in place of what it replaces, it makes a valid case; the file stays as it was.
+* A bash block is run, line by line, in a folder that has the project's cases. A line with the remark `# exit 2` must
+  end so. `NOT_RUN` names what cannot be run here, line by line and why; what of it is a command of dem is parsed.
+* Every line of a text block must be in what the last bash block printed; times may differ.
 """
 
 from __future__ import annotations
@@ -26,35 +26,42 @@ from dem_cli.cli.main import main
 ROOT = Path(__file__).resolve().parents[2]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NAME = re.compile(r"# ([\w./-]+\.toml)\n")
-MINUTES = re.compile(r"#.*\b(min|minutes?|h|hours?)\b")
 EXIT = re.compile(r"# exit (\d)$")
 TIMES = re.compile(r"\d[\d.,]* (ms|s|min|h)\b")
-MANY = ("sweep", "verify")  # run in one process here: starting more costs more than the runs that are shown
-ELSEWHERE = ("python3 ", "pip ", "source ", "git ", "cd ", "scripts/test", "sbatch ", "dask ", "sudo ", "xdg-open ")
+INSTALLS, A_CLUSTER, LONG = "installs", "a cluster", "takes minutes"
+NOT_RUN = {  # everything else is run
+    "scripts/test": LONG,
+    "python3 -m venv .venv": INSTALLS,
+    "source .venv/bin/activate": INSTALLS,
+    "pip install --constraint constraints.txt '.[plot]'": INSTALLS,
+    "dask scheduler --port 8786": A_CLUSTER,
+    "dask worker tcp://head:8786 --nworkers 16 --nthreads 1": A_CLUSTER,
+    "dem sweep wall.toml --scheduler tcp://head:8786": A_CLUSTER,
+    "sbatch --array=1-8 --wrap 'dem sweep wall.toml -o sweep --shard $SLURM_ARRAY_TASK_ID/8'": A_CLUSTER,
+    "dem verify --write docs/verification.md": LONG,
+}
+RUN_SCRIPT = 'exec "$venv/bin/dem" run "$@" --plot'  # what scripts/run does, once everything is installed
 
 
 class Block(NamedTuple):
     language: str
     text: str
-    after: str  # language of the block right before, with nothing but blank lines between; else ""
 
 
 def blocks(page: Path) -> Iterator[Block]:
     """The fenced blocks of a page, in order."""
-    text, end, before = page.read_text(encoding="utf-8"), 0, ""
-    for found in FENCE.finditer(text):
-        alone = not text[end : found.start()].strip()
-        yield Block(found[1], found[2], before if alone else "")
-        end, before = found.end(), found[1]
+    for found in FENCE.finditer(page.read_text(encoding="utf-8")):
+        yield Block(found[1], found[2])
 
 
 class Reader:
     """Somebody who does what a page says, in a folder of their own that has the project's cases."""
 
-    def __init__(self, folder: Path):
-        self.folder = folder
+    def __init__(self, folder: Path, can_render: bool = True):
+        self.folder, self.can_render = folder, can_render
         self.case: dict = {}
         self.printed = ""
+        self.left_out: list[str] = []  # lines of NOT_RUN that were met
         shutil.copytree(ROOT / "cases", folder / "cases")
 
     def do(self, page: Path) -> None:
@@ -66,38 +73,42 @@ class Reader:
                 self.printed = ""
                 for line in filter(None, map(str.strip, block.text.replace("\\\n", " ").splitlines())):
                     self.run(line)
-            elif block.language == "text" and block.after == "bash":
+            elif block.language == "text":
                 self.compare(block.text)
 
     def read_case(self, text: str) -> None:
-        """Check a case; keep it where the text says its file."""
-        found = tomllib.loads(text)
-        self.case = found if "title" in found else changed(self.case, found)
-        name = NAME.match(text)
-        path = self.folder / (name[1] if name else "shown.toml")
-        path.write_text(text if "title" in found else tomli_w.dumps(self.case), encoding="utf-8")
-        if "motion" not in found or "file" not in str(found["motion"]):
-            code, said = dem("check", str(path))
-            assert code == 0, f"{text}\n{said}"
+        """Write a file as it is printed, or put a piece into the last one; either must be a valid case."""
+        found, name = tomllib.loads(text), NAME.match(text)
+        if name:
+            assert "title" in found, f"{name[1]} is not a whole case:\n{text}"
+            self.case, path = found, self.folder / name[1]
+            path.write_text(text, encoding="utf-8")
+        else:
+            assert self.case, f"a piece of no file:\n{text}"
+            path = self.folder / "shown.toml"
+            path.write_text(tomli_w.dumps(pasted(self.case, found)), encoding="utf-8")
+        code, said = dem("check", str(path))
+        assert code == 0, f"{text}\n{said}"
 
     def run(self, line: str) -> None:
         """One command; its output is added to what was printed."""
-        if line.startswith(ELSEWHERE):
-            return
         words, target, given = shlex.split(line, comments=True), None, None
+        if line.partition("  #")[0].rstrip() in NOT_RUN:
+            self.left_out.append(line.partition("  #")[0].rstrip())
+            parse(words[1:]) if words[0] == "dem" else None
+            return
         if "|" in words:  # what one command prints is the case of the other
             first, words = words[: words.index("|")], words[words.index("|") + 1 :]
             given = dem(*first[1:])[1]
         if ">" in words:
             words, target = words[: words.index(">")], words[words.index(">") + 1]
         if words[0] == "scripts/run":
+            assert RUN_SCRIPT in (ROOT / "scripts" / "run").read_text(encoding="utf-8").splitlines()
             words = ["dem", "run", *words[1:], "--plot"]
         assert words[0] == "dem", f"no test knows how to run {line!r}"
-        if MINUTES.search(line) or words[1] == "render":
-            parse(words[1:])
-            return
-        one = [] if words[1] not in MANY or "-j" in words else ["-j", "1"]
-        code, said = dem(*words[1:], *one, given=given)
+        if words[1] == "render" and not self.can_render:
+            return parse(words[1:])
+        code, said = dem(*words[1:], given=given)
         assert code == int(wanted[1] if (wanted := EXIT.search(line)) else 0), f"{line}\n{said}"
         if target:
             (self.folder / target).write_text(said, encoding="utf-8")
@@ -107,7 +118,7 @@ class Reader:
         """Every line shown must have been printed."""
         printed = {plain(line) for line in self.printed.splitlines()}
         for line in filter(str.strip, text.splitlines()):
-            assert plain(line) in printed or line.strip() == "...", f"not printed: {line}\n{self.printed}"
+            assert plain(line) in printed, f"not printed: {line}\n{self.printed}"
 
 
 def dem(*words: str, given: str | None = None) -> tuple[int, str]:
@@ -134,11 +145,10 @@ def plain(line: str) -> str:
     return " ".join(TIMES.sub("… s", line).split())
 
 
-def changed(old: dict, new: dict) -> dict:
-    """A case with other tables: their keys replace those there, a table of another kind as a whole."""
+def pasted(old: dict, new: dict) -> dict:
+    """A case into which tables are pasted: each replaces the one of its name, as [joints.dry] that of the other."""
     found = dict(old)
     for key, value in new.items():
-        there = found.get(key)
-        replaces = not isinstance(value, dict) or not isinstance(there, dict) or {"kind", "law"} & value.keys()
-        found[key] = value if replaces else changed(there, value)
+        named = key in ("joints", "materials") and key in found
+        found[key] = {**found[key], **value} if named else value
     return found

@@ -14,13 +14,14 @@ from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.cli.words.limit_loads import limit_rows
 from dem_cli.cli.words.modes import mode_rows
 from dem_cli.cli.words.numbers import load_text, metres, seconds
+from dem_cli.cli.words.pace import Pace
 from dem_cli.cli.words.safety import safety_rows
 from dem_cli.cli.words.sureness import sureness_rows
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
 _LINE_EVERY = 10.0  # s
-_COMPILING = "compiling"
+_COMPILING = "compiling"  # begins the name of the stage
 
 
 class Progress:
@@ -32,11 +33,13 @@ class Progress:
         self.on_terminal = self.stream.isatty()
         self.start = time.monotonic()
         self._next = self.start + (_FIRST_BAR if self.on_terminal else _LINE_EVERY)
+        self._pace = Pace()
         self._bar: Any = None
 
     def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Say where the run stands; cheap enough to be called often."""
         now = time.monotonic()
+        self._pace.look(now, stage, fraction)
         if not self.quiet and stage.startswith(_COMPILING):  # said at once: it takes seconds
             self.stop()
             print(stage, file=self.stream, flush=True)
@@ -50,22 +53,24 @@ class Progress:
         if self.on_terminal:
             self._draw(stage, where, fraction)
         else:
-            says = f"{where}{self._left(now, fraction)}".removeprefix(", ")
-            print(f"{stage}: {says}", file=self.stream, flush=True)
+            said = [where, "" if fraction is None else f"{100 * fraction:.0f} %", self._left()]
+            said += [] if said[-1] else [f"{seconds(now - self.start)} so far"]
+            print(f"{stage}: {', '.join(filter(None, said))}", file=self.stream, flush=True)
 
-    def _left(self, now: float, fraction: float | None) -> str:
-        elapsed = now - self.start
-        if not fraction:
-            return f", {seconds(elapsed)} so far"
-        return f", {100 * fraction:.0f} %, about {seconds(elapsed * (1 - fraction) / fraction)} left"
+    def _left(self) -> str:
+        """How long the stage still takes, where that can be known."""
+        left = self._pace.left()
+        return "" if left is None else f"about {seconds(left)} left"
 
     def _draw(self, stage: str, where: str, fraction: float | None) -> None:
         if self._bar is None:
             self._bar = _new_bar(self.stream)
-            self._task = self._bar.add_task(stage, total=None, where=where)
+            self._task = self._bar.add_task(stage, total=None, where=where, left="")
             self._bar.start()
         total = None if fraction is None else 1.0
-        self._bar.update(self._task, description=stage, total=total, completed=fraction or 0.0, where=where)
+        self._bar.update(
+            self._task, description=stage, total=total, completed=fraction or 0.0, where=where, left=self._left()
+        )
 
     def stop(self) -> None:
         """Take the bar away."""
@@ -82,7 +87,7 @@ class Progress:
 
 def _new_bar(stream: TextIO) -> Any:
     from rich.console import Console
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
     columns = (
@@ -90,8 +95,7 @@ def _new_bar(stream: TextIO) -> Any:
         BarColumn(bar_width=24),
         TextColumn("{task.fields[where]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TextColumn("{task.fields[left]}"),
     )
     return Bar(*columns, console=Console(file=stream), transient=True)
 

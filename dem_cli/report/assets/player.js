@@ -116,10 +116,12 @@ class Player {
     if (this.data.modes) return this.scene.set(this.at, this.scale() * Math.cos((2 * Math.PI * passed) / SWING));
     const { frames } = this.data;
     if (this.at === frames.length - 1) return this.play();
-    const step = this.data.in_seconds ? frames[this.at + 1].time - frames[this.at].time : 1 / FRAMES_A_SECOND;
-    if (passed < step) return;
-    this.since = performance.now();
-    this.go(this.at + 1);
+    const step = (i) => (this.data.in_seconds ? frames[i + 1].time - frames[i].time : 1 / FRAMES_A_SECOND);
+    let at = this.at, left = passed;
+    while (at < frames.length - 1 && left >= step(at)) left -= step(at++); // frames may be closer than what a screen shows
+    if (at === this.at) return;
+    this.since = performance.now() - (1000 * left) / speed;
+    this.go(at);
   }
 
   say() {

@@ -76,7 +76,8 @@ def joint(**changes) -> dict:
 def test_defaults():
     case = MODEL.model_validate(tables())
     assert isinstance(case, Case)
-    assert (case.dimension, case.gravity, case.seed, case.output.frames) == (2, 9.81, 1, 20)
+    assert (case.dimension, case.gravity, case.seed, case.output.snapshots) == (2, 9.81, 1, 20)
+    assert case.output.frames is None  # a time history keeps what shows its motion
     assert case.joints["dry"].law == "coulomb"
     assert case.analysis == Pushover()
     assert isinstance(case.materials["stone"].density, float)

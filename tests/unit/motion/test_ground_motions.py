@@ -258,3 +258,32 @@ def test_a_case_without_files_is_loaded_from_its_text_alone():
     source = CaseSource(Path("case.toml"), CASE + PULSE + "frequency = 1.0")
     case = validate(parse_toml(source.path, source.text), make_case_model(), source)
     assert LoadedCase(case, source).case.motion[0].frequency == 1.0
+
+
+@pytest.mark.parametrize(
+    ("first", "start", "remark"),
+    [
+        (5.0, 0.0, "begins at 5 s in the file, and here at 0 s; start = 5 keeps the times of the file"),
+        (5.0, 2.0, "begins at 5 s in the file, and here at 2 s"),
+        (-1.5, 0.0, "begins at -1.5 s in the file, and here at 0 s"),
+        (0.01, 0.0, None),  # one step: nothing is meant by it
+        (0.0, 0.0, None),
+    ],
+)
+def test_a_record_that_begins_elsewhere_is_shifted_with_a_remark(folder, first, start, remark):
+    rows = [f"{first + 0.01 * i:.2f},{0.3 * np.sin(0.1 * np.pi * i):.6f}" for i in range(201)]
+    (folder / "records" / "east.csv").write_text("\n".join(rows))
+    case = loaded(folder, RECORD + f"start = {start}\nbaseline = true\n")
+    build_model(case)
+    (motion,) = motions_of(case.case)
+    assert motion.samples()[-1] == pytest.approx(start + 2.0)
+    said = [line.partition("motion.file: ")[2] for line in case.warnings if "motion.file: begins" in line]
+    assert said == ([remark] if remark else [])
+
+
+def test_values_that_go_on_from_line_to_line(folder):
+    (folder / "records" / "east.csv").write_text("0.1 0.2 -0.1\n0.3 0.05\n")
+    (motion,) = motions_of(loaded(folder, RECORD + 'step = 0.01\ncolumn = "all"\n').case)
+    assert motion.samples().tolist() == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04])
+    assert "column: 'some' is not allowed" in refused(folder, RECORD + 'step = 0.01\ncolumn = "some"\n')
+    assert "column = 'all' needs a step" in refused(folder, RECORD + 'column = "all"\n')

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.motion.record_file import RecordError, read_series
+from dem_cli.motion.record_file import read_series
+from dem_cli.motion.record_text import RecordError
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
 FORMS = {
@@ -16,6 +17,9 @@ FORMS = {
     "tab": ("{}\t{}", "{!r}", "time\tvalue\n"),
     "semicolon": ("{};{};", "{!r}", "t;a\n\n"),
     "decimal comma": ("{};{}", "{!r}", "Zeit;Wert\n"),
+    "decimal comma, blanks": ("{}  {}", "{:.17f}", "Zeit Wert\n"),
+    "Fortran": ("  {}  {}", "{:.17E}", "Station 12, Tolmezzo\n"),
+    "quoted": ('"{}","{}"', "{!r}", '"time","value"\n'),
     "two header lines": ("{} , {}  # remark", "{!r}", "time, acceleration\ns, g\n"),
 }
 
@@ -28,13 +32,52 @@ def test_columns_are_read_back(tmp_path, form, rows):
     times = np.cumsum([step for step, _ in rows])
     values = np.array([value for _, value in rows])
     pairs = [[number.format(x) for x in pair] for pair in zip(times.tolist(), values.tolist())]
-    if form == "decimal comma":
+    if form.startswith("decimal comma"):
         pairs = [[x.replace(".", ",") for x in pair] for pair in pairs]
+    if form == "Fortran":
+        pairs = [[x.replace("E", "D") for x in pair] for pair in pairs]
     path = tmp_path / "r.csv"
     path.write_text(header + "\n".join(line.format(*pair) for pair in pairs) + "\n")
     found = read_series(path)
-    assert found.times.tolist() == times.tolist()
-    assert found.values.tolist() == values.tolist()
+    blank = form == "decimal comma, blanks"  # written with so many decimals, not with every digit
+    assert found.times.tolist() == (pytest.approx(times.tolist(), rel=1e-14) if blank else times.tolist())
+    assert found.values.tolist() == (pytest.approx(values.tolist(), abs=1e-17) if blank else values.tolist())
+
+
+HEADERS = {
+    "UTF-8": "t [s];a [m/s²]\n".encode(),
+    "UTF-8 with a mark": "t [s];a [m/s²]\n".encode("utf-8-sig"),
+    "Latin-1": "Zeit [s];Beschleunigung [m/s²], Größe\n".encode("latin-1"),
+    "Windows": "“Peñón” … 5 €\n".encode("cp1252"),
+    "no character of Windows": b"\x81\x8d\n",
+}
+
+
+@pytest.mark.parametrize("header", HEADERS)
+def test_a_header_in_any_encoding(tmp_path, header):
+    (tmp_path / "r.csv").write_bytes(HEADERS[header] + b"0;1,5\r\n0,1;-2,5\r\n\x1a")
+    found = read_series(tmp_path / "r.csv")
+    assert (found.times.tolist(), found.values.tolist()) == ([0.0, 0.1], [1.5, -2.5])
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_unicode_text_of_a_spreadsheet(tmp_path, encoding):
+    mark = "" if encoding == "utf-16" else "\ufeff"
+    (tmp_path / "r.txt").write_bytes(f"{mark}t\ta\n0\t1\n0.1\t2\n".encode(encoding))
+    assert read_series(tmp_path / "r.txt").values.tolist() == [1.0, 2.0]
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
+@given(
+    values=st.lists(st.floats(-0.999, 0.999).map(lambda x: round(x, 4)), min_size=2, max_size=40),
+    per_line=st.integers(1, 9),
+)
+def test_values_that_go_on_from_line_to_line(tmp_path, values, per_line):
+    lines = ["".join(f"{v:9.4f}" for v in values[i : i + per_line]) for i in range(0, len(values), per_line)]
+    (tmp_path / "r.txt").write_text("Station 12\n" + "\n".join(lines))
+    found = read_series(tmp_path / "r.txt", step=0.02, column="all")
+    assert found.values.tolist() == values
+    assert found.times.tolist() == (0.02 * np.arange(len(values))).tolist()
 
 
 def peer(count, step, values, header="ACCELERATION TIME SERIES IN UNITS OF G", sizes="NPTS=  {}, DT=   {} SEC"):
@@ -66,6 +109,49 @@ def test_peer_quantities(tmp_path, header, quantity, unit):
     assert (found.quantity, found.unit) == (quantity, unit)
 
 
+def fortran(value: float, width: int, decimals: int, letter: str) -> str:
+    """As Fortran's Ew.d and Fw.d write a number, the first without a 0 before the point."""
+    if letter == "F":
+        return f"{value:{width}.{decimals}f}"
+    mantissa, exponent = f"{value:.{decimals - 1}E}".split("E")
+    digits = mantissa.lstrip("-").replace(".", "")
+    power = 0 if value == 0.0 else int(exponent) + 1
+    return f"{'-' * (value < 0)}.{digits}{letter}{power:+03d}".rjust(width)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150)
+@given(
+    values=st.lists(st.floats(-999.0, 999.0, allow_subnormal=False).filter(lambda x: not 0 < abs(x) < 1e-6),
+                    min_size=2, max_size=33),
+    per_line=st.integers(1, 8),
+    written=st.sampled_from([("E", 13, 7), ("D", 13, 7), ("E", 12, 7), ("F", 8, 3), ("F", 9, 4)]),
+)  # fmt: skip
+def test_columns_of_a_peer_file_may_touch(tmp_path, values, per_line, written):
+    letter, width, decimals = written
+    fields = [fortran(v, width, decimals, letter) for v in values]
+    if any(len(field) > width for field in fields):
+        fields = [fortran(abs(v), width, decimals, letter) for v in values]
+    lines = ["".join(fields[i : i + per_line]) for i in range(0, len(fields), per_line)]
+    text = "\n".join(["PEER", "Peña", "UNITS OF G", f"NPTS= {len(fields)}, DT= .5D-02 SEC", *lines])
+    (tmp_path / "r.AT2").write_bytes(text.encode("latin-1"))
+    found = read_series(tmp_path / "r.AT2")
+    assert found.values.tolist() == [float(field.replace("D", "E")) for field in fields]
+    assert found.times[1] == 0.005
+
+
+@pytest.mark.parametrize(
+    ("line", "values"),
+    [
+        ("  .1234567E-02  .7654321E-02 -.2345678E-02", [0.001234567, 0.007654321, -0.002345678]),
+        (" -.1234567E-02 -.7654321E-02-.2345678E-02", [-0.001234567, -0.007654321, -0.002345678]),  # a blank was lost
+        ("1.5-103 -2.5+001-3.5E+00", [1.5e-103, -25.0, -3.5]),
+    ],
+)
+def test_numbers_that_touch_at_a_sign(tmp_path, line, values):
+    (tmp_path / "r.AT2").write_text(f"PEER\nNPTS= {len(values)}, DT= 0.01\n{line}\n")
+    assert read_series(tmp_path / "r.AT2").values.tolist() == values
+
+
 def test_values_only(tmp_path):
     (tmp_path / "r.txt").write_text("a\n1\n2\n3\n")
     found = read_series(tmp_path / "r.txt", step=0.5)
@@ -93,6 +179,9 @@ BAD = {
     "a row missing": ("\n".join(EVEN[:40] + EVEN[41:]), ":41: a gap in time, from 0.39 s to 0.41 s where the step is"),
     "two gaps": ("\n".join(EVEN[:40] + EVEN[50:60] + EVEN[70:]), "and 1 more gaps; uneven = true if that is meant"),
     "one column": ("1\n2\n", ":1: one column; time and value are two, or give step"),
+    "1_000 is no number": ("0,1_000\n1,2\n", ":1: '1_000' is not a number"),
+    "two points": ("0 1.25.5\n1 2\n", ":1: '1.25.5' is not a number"),
+    "whole numbers that touch": ("0 12-34\n1 2\n", ":1: '12-34' is not a number"),
     "three columns": ("1,2,3\n2,3,4\n", ":1: 3 columns; say which one holds the values"),
     "PEER too short": (peer(100, "0.01", np.ones(93)), ":4: NPTS says 100 values, the file has 93"),
     "PEER too long": (peer(90, "0.01", np.ones(93)), ":4: NPTS says 90 values, the file has 93"),
@@ -100,6 +189,7 @@ BAD = {
     "PEER DT 0": (peer(5, "0.0", np.ones(5)), ":4: DT = 0 is not allowed"),
     "PEER word": (peer(5, "0.1", np.ones(5)) + "\nend", ":6: 'end' is not a number"),
     "PEER NaN": (peer(5, "0.1", [1, 2, np.nan, 3, 4]), ":5: 'NAN' is not allowed"),
+    "PEER touching, one missing": ("NPTS= 4, DT= .1\n.1E+00.2E+00\n.3E+00\n", ":2: '.1E+00.2E+00' is not a number"),
 }
 
 
@@ -125,11 +215,22 @@ def test_times_that_were_rounded_are_no_gaps(tmp_path):
 
 
 def test_not_text_and_not_there(tmp_path):
-    (tmp_path / "r.bin").write_bytes(b"0,1\n\xff\xfe")
+    (tmp_path / "r.bin").write_bytes(b"0,1\n\x00\xff")
     with pytest.raises(RecordError, match=r"r.bin: not a text file \(byte 4\)"):
         read_series(tmp_path / "r.bin")
     with pytest.raises(RecordError, match="cannot be read"):
         read_series(tmp_path)
+
+
+def test_several_values_beside_a_step_are_asked_for(tmp_path):
+    (tmp_path / "r.txt").write_text("1 2 3\n4 5\n")
+    with pytest.raises(RecordError, match=r":2: 2 columns where the lines above have 3"):
+        read_series(tmp_path / "r.txt", step=0.1)
+    (tmp_path / "r.txt").write_text("1 2 3\n4 5 6\n")
+    with pytest.raises(RecordError, match=r":1: 3 columns beside 'step'; say .* column = 'all'"):
+        read_series(tmp_path / "r.txt", step=0.1)
+    with pytest.raises(RecordError, match=r"column = 'all' needs a step"):
+        read_series(tmp_path / "r.txt", column="all")
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

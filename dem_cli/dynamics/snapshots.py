@@ -1,0 +1,142 @@
+"""Snapshots of a time history: enough frames per second for the motion, and always the one where it went farthest.
+
+Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
+the ground would be lost, or when a block has moved by a part of its swings; beside these, a swing that goes farther
+than all before it leaves the frame of its turning point.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.engine import measures
+
+if TYPE_CHECKING:
+    from dem_cli.dynamics.ground import GroundMotion
+    from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.engine.dynamic_settings import SnapshotSettings
+    from dem_cli.engine.track import Track
+    from dem_cli.output.record import Frame
+
+
+class EvenTimes:
+    """Snapshots as a case asks for them: at even times from a start to an end, each once."""
+
+    def __init__(self, start: float, end: float, count: int):
+        self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
+
+    def due(self, time: float, _: float) -> bool:
+        """Whether a snapshot was due up to now [s] since the last one."""
+        before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
+        return self.shown > before
+
+
+class Intervals:
+    """Snapshots no further apart than an interval [s], and one at the end."""
+
+    def __init__(self, interval: float, end: float):
+        self.interval, self.end = interval, end
+
+    def due(self, time: float, since: float) -> bool:
+        """Whether the last one is long ago [s], or this is the end."""
+        return since >= self.interval or time >= self.end
+
+
+class Snapshots:
+    """The frames that a time history keeps, in the order of time; the simulation calls `look` along the way.
+
+    wanted: as many at even times as a case asks for; None: as many as the motion needs.
+    """
+
+    def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
+        self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
+        self.settings: SnapshotSettings = sim.settings.snapshots
+        self.wanted, self.stage, self.every = wanted, "shaking", 1
+        self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
+        self.visible = self.settings.visible * size_of(sim)
+        self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)  # frames that may still be kept
+
+    def begin(self, duration: float, sampled: int) -> None:
+        """Of a motion that lasts `duration` [s]; the frame of its start is kept by others.
+
+        sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
+        """
+        settings, sim = self.settings, self.sim
+        self.every = sampled * max(1, round(settings.look / (sampled * sim.dt)))
+        self.last, self.last_step = self._places(), sim.steps  # of the last one kept
+        self.farthest = _largest(self.last)  # [m]
+        of_ground = settings.per_cycle * frequency_of(self.ground, duration)
+        self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
+        self.times = self._until(duration, duration, self.per_second)
+
+    def collapsed(self, end: float) -> None:
+        """A collapse is followed from now until `end` [s]."""
+        self.stage, self.ahead, left = "collapse", None, end - self.sim.time
+        self.times = self._until(end, left, max(self.per_second, self.settings.per_second_of_collapse))
+        self.look()
+
+    def _until(self, end: float, left: float, per_second: float) -> EvenTimes | Intervals:
+        """What is due until an end that is so far off [s]."""
+        if self.wanted is None:
+            return Intervals(max(1.0 / per_second, left / max(self.room, 1)), end)
+        return EvenTimes(end - left, end, self.wanted if self.stage == "shaking" else self.wanted // 2)
+
+    def look(self) -> None:
+        """Keep this instant, or remember it."""
+        sim, places = self.sim, self._places()
+        moved, since = _largest(places), sim.dt * (sim.steps - self.last_step)
+        if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
+            return
+        record, self.farthest = moved > self.farthest, max(moved, self.farthest)
+        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt) or self._swung(places):
+            if self.ahead is not None and not record:
+                self._keep(self.ahead)
+            self.ahead, self.last, self.last_step = None, places, sim.steps
+            self._keep(self._frame())
+        elif record and self.stage == "shaking":
+            self.ahead = self._frame()
+
+    def _places(self) -> np.ndarray:
+        return measures.displacements(self.sim)[self.sim.free]
+
+    def _swung(self, places: np.ndarray) -> bool:
+        """Whether a block moved so far since the last snapshot that its swings would be lost between even times."""
+        limit = self.settings.swing * max(self.farthest, self.visible)
+        return self.wanted is None and self.room > 0 and _largest(places - self.last) > limit
+
+    def _frame(self) -> Frame:
+        self.sim.show_base(self.ground.along(self.sim.time), self.gravity)
+        return measures.frame(self.sim, self.stage)
+
+    def _keep(self, frame: Frame) -> None:
+        self.room -= 1
+        self.track.hand_over(frame)
+
+
+def _largest(displacements: np.ndarray) -> float:
+    return math.sqrt((displacements**2).sum(axis=1).max(initial=0.0))
+
+
+def frequency_of(ground: GroundMotion, duration: float) -> float:
+    """Mean frequency of the sign of the velocity of the ground (Rice): σ(a) / 2πσ(v), of its fastest motion [Hz]."""
+    found = 0.0
+    for motion in [*ground.base, *(motion for motions in ground.own.values() for motion in motions)]:
+        times = np.linspace(motion.start, min(motion.duration, max(duration, motion.start)), 4001)
+        deviations = [float(np.std(values(times))) for values in (motion.acceleration, motion.velocity)]
+        found = max(found, deviations[0] / (2.0 * math.pi * deviations[1]) if deviations[1] > 0.0 else 0.0)
+    return found
+
+
+def size_of(sim: DynamicSimulation) -> float:
+    """Largest extent of the free blocks at the start [m]."""
+    model = sim.model
+    corners = (model.centroids[model.vertex_blocks] + model.vertices)[~model.fixed[model.vertex_blocks]]
+    return float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
+
+
+def bytes_of(sim: DynamicSimulation) -> int:
+    """About what a frame takes on disk, both files together."""
+    return 2000 + 160 * len(sim.contacts.normal) + 90 * sim.model.n_blocks + 40 * len(sim.model.vertices)
