@@ -10,8 +10,10 @@ from pathlib import Path
 import numpy as np
 from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
 
+from dem_cli.case.reference import Reference
 from dem_cli.structures.placement import place
 from dem_cli.structures.registry import GENERATORS
+from dem_cli.tables.analysis import PushoverAnalysis
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(CASES.rglob("*.toml"))
@@ -35,9 +37,16 @@ def references(path: Path) -> list[dict]:
 
 
 def failure_load(path: Path, kind: str = "exact") -> dict | None:
-    """The first of its references that is a failure load of this kind, as a table; None: none is."""
-    found = (one for one in references(path) if "failure_load" in one and one.get("kind", "exact") == kind)
-    return next(found, None)
+    """The first of its references that is a failure load of this kind, as a table with its tolerance; None: none is."""
+    found = next((one for one in references(path) if "failure_load" in one and one.get("kind", "exact") == kind), None)
+    return found and {**found, "tolerance": allowance(path, found)}
+
+
+def allowance(path: Path, table: dict) -> float | None:
+    """What a reference of a pushover allows, by its own tolerance or the rule of its kind."""
+    reference = Reference.model_validate(table)
+    reference.resolved_to(read(path)["analysis"].get("resolution", PushoverAnalysis().resolution))
+    return reference.allowance
 
 
 def case_id(path: Path) -> str:

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from studies.places import ROOT
+from studies.seeds import page as seeds_page
 from studies.site import case_keys, commands, gallery_page, readme
 
 PAGES: dict[str, Callable[[], str]] = {
     "docs/case.md": case_keys.text,
     "docs/commands.md": commands.text,
     "docs/gallery.md": gallery_page.text,
+    "docs/seeds.md": seeds_page.text,
     "README.md": readme.text,
 }
 
