@@ -192,23 +192,23 @@ def code_of(records: Sequence[Record]) -> int:
 
 
 def show(records: Sequence[Record], took: float, as_json: bool) -> None:
-    """The answer on stdout."""
-    from dem_cli.verify.records import counts
+    """The answer on stdout; references of inference are counted by themselves."""
+    from dem_cli.verify.records import apart, counts
 
+    others, of_inference = apart(records)
     found = counts(records)
     if as_json:
+        found |= {key: number for key, number in counts(others).items() if key not in ("cases", "not solved")}
+        found |= {"inference": counts(of_inference)["references"]} if of_inference else {}
         answer: dict[str, Any] = {"version": __version__, "counts": found, "wall_seconds": took, "cases": records}
         console.show(json.dumps(answer, indent=2, ensure_ascii=False))
         return
     from dem_cli.cli.words.verify_table import show_tables
-    from dem_cli.verify.records import apart
 
     show_tables(records)
-    others, of_inference = apart(records)
-    what = f"{many(found['cases'], 'case')}, {in_words(others)}"
     besides = f"; besides, of inference: {in_words(of_inference)}" if of_inference else ""
     unsolved = f"; {many(found['not solved'], 'case')} NOT SOLVED" if found["not solved"] else ""
-    console.show(f"{what}{besides}{unsolved}; {seconds(took)}")
+    console.show(f"{many(found['cases'], 'case')}, {in_words(others)}{besides}{unsolved}; {seconds(took)}")
 
 
 def in_words(records: Sequence[Record]) -> str:
