@@ -27,7 +27,8 @@ def pushovers() -> list[Path]:
 
 def known(tables: dict[str, Any]) -> bool:
     """Whether all joints are Coulomb's and closed: limit analysis has no other law, and knows the drawing alone."""
-    return "imperfection" not in tables and all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
+    coulomb = all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
+    return coulomb and "imperfection" not in tables
 
 
 def name_of(file: Path) -> str:

@@ -19,6 +19,8 @@ from studies.seeds.computed import COMPUTED
 FILE = Path(__file__).with_name("rows.toml")
 KINDS = {"experiment": "experiment", "DEM (author)": "code", "exact": "exact"}  # of the data book, of [reference]
 RESOLUTION = 0.002  # of loads that studies find: the usual one of a pushover
+UNITS = ("m", "s", "N", "Pa", "Pa/m", "rad", "deg", "Hz", "g")
+SECOND = {"mode": "failure mode", "top_displacement_m": "displacement of the top before failure [m]"}
 MET, MISSED, INPUT, NOT, UNKNOWN = "met", "missed", "input", "not computed", "not run"
 
 
@@ -68,7 +70,10 @@ def result_of(name: str, key: str) -> tuple[dict[str, Any], Any]:
 def row_of(name: str, key: str, said: Mapping[str, Any]) -> SeedRow:
     """What is said of a result, with the verdict."""
     result, value = result_of(name, key)
-    what = result["quantity"] if key == result["id"] else f"{result['quantity']}: {key.rpartition('.')[2]}"
+    unit = result["unit"] if result["unit"] in UNITS else ""
+    what = (
+        SECOND[key.rpartition(".")[2]] if key != result["id"] else f"{result['quantity']} [{unit}]".replace(" []", "")
+    )
     common = {"book": name, "name": key, "what": what, "where": result["where"], "kind": KINDS[result["kind"]]}
     common["printed"] = value
     if "input" in said:
