@@ -14,6 +14,7 @@ from dem_cli.case.reference import Reference
 from dem_cli.structures.placement import place
 from dem_cli.structures.registry import GENERATORS
 from dem_cli.tables.analysis import PushoverAnalysis
+from dem_cli.tables.safety import SafetyAnalysis
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(CASES.rglob("*.toml"))
@@ -43,9 +44,10 @@ def failure_load(path: Path, kind: str = "exact") -> dict | None:
 
 
 def allowance(path: Path, table: dict) -> float | None:
-    """What a reference of a pushover allows, by its own tolerance or the rule of its kind."""
-    reference = Reference.model_validate(table)
-    reference.resolved_to(read(path)["analysis"].get("resolution", PushoverAnalysis().resolution))
+    """What a reference of a pushover or safety analysis allows, by its own tolerance or the rule of its kind."""
+    reference, analysis = Reference.model_validate(table), read(path)["analysis"]
+    usual = {one().kind: one().resolution for one in (PushoverAnalysis, SafetyAnalysis)}
+    reference.resolved_to(analysis.get("resolution", usual[analysis.get("kind", "pushover")]))
     return reference.allowance
 
 
