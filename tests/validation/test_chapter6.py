@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from reference import book, value
 from studies import storage
-from studies.chapter6 import arch, blocks, column, records, shaken_case
+from studies.chapter6 import arch, blocks, column, family, records, shaken_case
 from studies.chapter6.study import STUDY
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -116,6 +116,24 @@ def test_the_page_owns_up_to_every_difference():
         ours, stands = TABLE["arch"]["harmonic"][name]["collapsed"], name != "harm_25"
         line = next(line for line in TEXT.split("\n") if line.startswith(f"| {frequency:g} Hz, a = {a:g} |"))
         assert ("**no**" in line) == (ours == stands)
+
+
+def test_the_case_is_one_of_a_family():
+    """An arch of it again, radius and outcome; more than one meets all that is printed, and no semicircle does."""
+    members = {(one["angle"], one["ring"]): one for one in TABLE["family"]}
+    complete = {key for key, one in members.items() if family.one_slides(one) and family.met(one["motions"]) == 4}
+    assert (120, 0.10) in complete
+    assert len(complete) > 1
+    assert all(family.met(one["motions"]) < 3 for (angle, _), one in members.items() if angle == 180)
+    other = members[110, 0.10]
+    assert family.radius_of(110, 0.10) == other["radius"]
+    assert family.load_of(other["static"]) == pytest.approx(thesis("static_exp_num"), rel=0.005)
+
+
+def test_records_collapse_it_in_the_range_of_the_thesis():
+    """Mean within a level of 0.05 of the printed one."""
+    found = records.capacities(TABLE["records"]["20 s"])
+    assert found.mean() == pytest.approx(thesis("dem_mean"), abs=0.05)
 
 
 def test_the_length_of_records_does_not_explain_the_tests():

@@ -19,7 +19,10 @@ TRIED = {"harm_25": (2.5, 1.1), "harm_5_15": (5.0, 1.5), "harm_5": (5.0, 2.0), "
 FALLS = "harm_25"  # the only one of them in which the thesis's arch collapses
 HEADS = tuple(f"{frequency:g} Hz, a = {a:g}" for frequency, a in TRIED.values())
 FREQUENCIES = (2.0, 2.5, 3.5, 5.0, 7.0, 10.0)  # Hz
+RING = ("arch-left-1", *(f"arch-{k}" for k in range(1, 7)), "arch-right-1")  # blocks of the ring, from the left
+JOINTS = {"springings": (0, 6), "1 on 2 and 6 on 5": (1, 5), "2 on 3 and 5 on 4": (2, 4)}  # by their left block
 LADDER = tuple(round(0.5 + 0.1 * k, 2) for k in range(31))  # a, up to the first collapse
+EDGE = (0.9, 1.0, 1.2, 1.3)  # a, where it falls
 REPEATS = 20
 
 
@@ -63,7 +66,9 @@ def measure() -> dict[str, Any]:
         "static": {name: run("arch_8_static", *more).answer for name, more in ARCHES.items()},
         "harmonic": {name: outcome(name) for name in TRIED},
         "perturbed": {name: perturbed(name) for name in TRIED},
+        "edge": {f"{a:g}": perturbed(FALLS, a=a) for a in EDGE},
         "variants": {name: four(*more) for group in VARIANTS.values() for name, more in group.items()},
+        "slips": {name: _slips(*more) for name, more in ARCHES.items()},
         "ladders": {name: [_ladder(f, *more) for f in FREQUENCIES] for name, more in ARCHES.items()},
     }
 
@@ -95,9 +100,10 @@ def shaken(frequency: float, a: float, *more: str) -> dict[str, Any]:
     return answer
 
 
-def perturbed(name: str, *more: str, repeats: int = REPEATS) -> dict[str, Any]:
-    """One of the motions on slightly different structures."""
-    frequency, a = TRIED[name]
+def perturbed(name: str, *more: str, repeats: int = REPEATS, a: float | None = None) -> dict[str, Any]:
+    """One of the motions on slightly different structures; a: another amplitude of it."""
+    frequency, usual = TRIED[name]
+    a = usual if a is None else a
     return run("arch_8_harmonic", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
                f"analysis.repeats={repeats}", "output.frames=0", *more).answer  # fmt: skip
 
@@ -109,6 +115,17 @@ def _ladder(frequency: float, *more: str) -> dict[str, Any]:
         if found.get("collapsed") is not False:
             return {"frequency": frequency, "a": a, "run": found}
     return {"frequency": frequency, "a": None, "run": found}
+
+
+def _slips(*more: str) -> dict[str, list[float]]:
+    """Slip of the joints at 5 Hz, a = 1.5, means of the first four cycles and of both sides [mm]."""
+    monitors = ", ".join(f'{{ between = ["{a}", "{b}"], quantity = "slip" }}' for a, b in zip(RING[:-1], RING[1:]))
+    frequency, a = TRIED["harm_5_15"]
+    found = run("arch_8_harmonic", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
+                "analysis.after_collapse=0.0", f"monitor=[{monitors}]", *more)  # fmt: skip
+    cycles = np.floor(found.times * frequency + 1e-9)
+    slip = 1e3 * np.array([np.abs(found.values[cycles == k].mean(axis=0)) for k in range(4)])
+    return {name: rounded(slip[:, sides].mean(axis=1), 3) for name, sides in JOINTS.items()}
 
 
 def as_thesis(name: str, answer: dict[str, Any]) -> bool:
@@ -169,10 +186,17 @@ def _harmonic(found: dict[str, Any]) -> dict[str, Any]:
         for i, rung in enumerate(found["ladders"]["arch of 120°"])
     ]
     steady = found["harmonic"]["harm_5_15"]
+    slips = [
+        (name, joints, *(f"{slip:.1f}" for slip in row))
+        for name, one in found["slips"].items()
+        for joints, row in one.items()
+    ]
     return {
         "harmonic": table(("motion", "thesis", "dem", "perturbed", "as the thesis"), rows),
         "ladders": table(("frequency", *found["ladders"]), ladders),
         "steady": {key: 1e3 * steady[key] for key in ("crown", "left", "right")},
+        "edge": ", ".join(f"{one['repeats']['collapsed']} at {a}" for a, one in found["edge"].items()),
+        "slips": table(("", "joints", *(f"cycle {k}" for k in range(1, 5))), slips),
         "harmonic_commands": commands(*found["harmonic"].values()),
     }
 
@@ -196,7 +220,7 @@ def _variants(found: dict[str, Any]) -> dict[str, Any]:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Lowest collapses over frequency, beside what the thesis tried."""
-    with style.figure(path, figsize=(6.4, 4.0)) as figure:
+    with style.figure(path, figsize=(6.8, 4.6)) as figure:
         axis = figure.subplots()
         for (name, row), colour in zip(found["ladders"].items(), (style.THRUST, style.GREY)):
             known = [(r["frequency"], r["a"]) for r in row if r["a"] is not None]
@@ -209,8 +233,9 @@ def draw(found: dict[str, Any], path: Path) -> None:
                       color=style.COLLAPSE if falls else style.INK)  # fmt: skip
         axis.plot([], [], "X", ms=9, color=style.COLLAPSE, label="thesis: collapses")
         axis.plot([], [], "s", ms=9, mfc="none", color=style.INK, label="thesis: stands")
-        axis.set(xlabel="frequency [Hz]", ylabel="a = peak over 0.325 g", ylim=(0.4, 3.7), xticks=(2, 2.5, 3.5, 5, 7, 10))
-        axis.legend(loc="upper left")
+        axis.set(xlabel="frequency [Hz]", ylabel="a = peak over 0.325 g", ylim=(0.4, 3.7), xticks=FREQUENCIES)
+        axis.plot([], [], "^", ms=8, color=style.THRUST, label=f"arch of 120° stands up to {LADDER[-1]:g}")
+        figure.legend(loc="outside lower center", ncols=2)
 
 
 PICTURES = {"arch": draw}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from dem_cli.bench.table import percent
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import limit_loads
 from dem_cli.post import style
-from studies.chapter6.arch import HEADS, TRIED, as_thesis, four, load_of, marked, perturbed, sizes, sliding
+from studies.chapter6.arch import FALLS, HEADS, TRIED, as_thesis, four, load_of, perturbed, sizes, sliding
 from studies.chapter6.shaken_case import draw_blocks, run
 from studies.places import CASES
 from studies.solution import from_file
@@ -27,7 +26,7 @@ RADII = (0.12, 0.45)  # m: where the radius of the load is looked for
 LOAD = 0.325  # of the thesis
 CASE = {(120, 0.10): 0.2293}  # that of the cases, from the data book
 REPEATS = 5
-FRICTION_ANGLE = math.degrees(math.atan(0.6))
+KEPT = ("command", "status", "collapsed", "collapse_time", "crown", "seconds")
 
 
 def measure() -> list[dict[str, Any]]:
@@ -57,12 +56,17 @@ def limit(*more: str) -> float:
 
 def _member(angle: float, ring: float, radius: float) -> dict[str, Any]:
     more = sizes(angle, ring, radius)
-    static, motions = run("arch_8_static", *more), four(*more)
-    found = {"angle": angle, "ring": ring, "radius": radius, "shape": static.frames[0]["blocks"],
+    static = run("arch_8_static", *more)
+    motions = {name: {key: one.get(key) for key in KEPT} for name, one in four(*more).items()}
+    found = {"angle": angle, "ring": ring, "radius": radius, "shape": static.frames[0]["blocks"][2:],
              "static": static.answer, "motions": motions}  # fmt: skip
     if met(motions) == len(TRIED):
-        found["perturbed"] = {name: perturbed(name, *more, repeats=REPEATS) for name in TRIED}
+        found["perturbed"] = {name: _collapsed(perturbed(name, *more, repeats=REPEATS)) for name in TRIED}
     return found
+
+
+def _collapsed(answer: Mapping[str, Any]) -> dict[str, int]:
+    return {key: answer["repeats"][key] for key in ("runs", "collapsed")}
 
 
 def met(motions: Mapping[str, Any]) -> int:
@@ -86,19 +90,26 @@ def values(found: list[dict[str, Any]]) -> dict[str, Any]:
     rows = [
         (f"{one['angle']}°", f"{one['ring']:.2f}", f"{one['radius']:.4f}",
          " and ".join(f"{slope:.0f}°" for slope in slopes(one["angle"])), f"{load_of(one['static']):.4f}",
-         sliding(one["static"]), *(marked(*motion) for motion in one["motions"].items()), _of_four(one))
+         sliding(one["static"]), *(_short(*motion) for motion in one["motions"].items()), _of_four(one))
         for one in found
     ]  # fmt: skip
     head = ("angle", "ring [m]", "inner radius [m]", "lowest joints slope", "λ", "slides", *HEADS, "as the thesis")
     thesis = results("thesis_arch_shaking")["static_exp_num"]["value"]
     worst = max((load_of(one["static"]) / thesis - 1.0 for one in found), key=abs)
+    both = [f"{one['angle']}° with {one['ring']:.2f} m" for one in found
+            if one_slides(one) and met(one["motions"]) == len(TRIED)]  # fmt: skip
     flat, round_ = [[one for one in found if (one["angle"] <= 150) is low] for low in (True, False)]
     return {
-        "family": table(head, rows), "n": len(found), "worst": percent(worst), "friction_angle": FRICTION_ANGLE,
+        "family": table(head, rows), "n": len(found), "repeats": REPEATS, "worst": percent(abs(worst)).lstrip("+"),
         "flat": _share(flat), "round": _share(round_), "one": sum(map(one_slides, found)),
-        "both": sum(one_slides(one) and met(one["motions"]) == len(TRIED) for one in found),
-        "commands": commands(found[0]["static"], found[0]["motions"]["harm_25"], more=5 * len(found) - 2),
+        "both": len(both), "names": ", ".join(both),
+        "commands": commands(found[0]["static"], found[0]["motions"][FALLS], more=5 * len(found) - 2),
     }  # fmt: skip
+
+
+def _short(name: str, answer: Mapping[str, Any]) -> str:
+    text = f"{answer['collapse_time']:.1f} s" if answer["collapsed"] else "stands"
+    return text if as_thesis(name, dict(answer)) else f"**{text}**"
 
 
 def _of_four(one: Mapping[str, Any]) -> str:
@@ -106,8 +117,8 @@ def _of_four(one: Mapping[str, Any]) -> str:
         return f"{met(one['motions'])} of {len(TRIED)}"
     agreed = runs = 0
     for name, found in one["perturbed"].items():
-        n, fell = found["repeats"]["runs"], found["repeats"]["collapsed"]
-        agreed, runs = agreed + (fell if name == "harm_25" else n - fell), runs + n
+        n, fell = found["runs"], found["collapsed"]
+        agreed, runs = agreed + (fell if name == FALLS else n - fell), runs + n
     return f"**all**; perturbed {agreed} of {runs}"
 
 
@@ -117,15 +128,16 @@ def _share(members: list[dict[str, Any]]) -> tuple[int, int]:
 
 def draw(found: list[dict[str, Any]], path: Path) -> None:
     """Every arch, coloured by how many of the four outcomes are those of the thesis."""
-    colours = (style.COLLAPSE, style.COLLAPSE, style.LIMIT, style.STONE_EDGE, style.THRUST)
-    with style.figure(path, figsize=(12.0, 4.6)) as figure:
+    colours = (style.COLLAPSE, style.COLLAPSE, style.STATE_COLOURS["sliding"], style.GREY, style.THRUST)
+    with style.figure(path, figsize=(14.0, 6.4)) as figure:
         axes = figure.subplots(len(RINGS), len(ANGLES))
         for axis in axes.flat:
             axis.axis("off")
         for one in found:
             axis = axes[RINGS.index(one["ring"]), ANGLES.index(one["angle"])]
             n = met(one["motions"])
-            draw_blocks(axis, one["shape"], f"{one['angle']}°, {one['ring']:g} m: {n} of 4", edge=colours[n])
+            draw_blocks(axis, one["shape"], f"{one['angle']}°, {one['ring']:.2f} m\n{n} of 4", edge=colours[n])
+            axis.set(xlim=(-0.42, 0.42), ylim=(0.0, 0.64))
 
 
 PICTURES = {"family": draw}

@@ -30,12 +30,18 @@ def measure() -> dict[str, Any]:
     stood, fell = _record()
     return {
         "steady": _picked(steady, [5.0 - PERIOD * (1.0 - k / 4) for k in range(4)])
-        | {"curve": _curve(steady), "slid": _slid(steady)},
+        | {"late": _late(steady), "slid": _slid(steady)},
         "falls": _picked(falls, [0.4 * end, 0.6 * end, 0.8 * end, end]),
         "stood": {"run": stood[1].answer, "a": stood[0], "curve": _curve(stood[1])},
         "record": _picked(fell[1], [(fell[1].summary["collapse_time"] or 20.0) - before for before in BEFORE])
         | {"a": fell[0], "curve": _curve(fell[1])},
     }
+
+
+def _late(found: ShakenCase) -> list[list[float]]:
+    """Mean and half of the range in the last second: rotations of the right and the left column [rad], crown [m]."""
+    last = found.values[found.times > found.times[-1] - 1.0, :3]
+    return rounded(np.column_stack([last.mean(axis=0), np.ptp(last, axis=0) / 2.0]))
 
 
 def _slid(found: ShakenCase) -> list[float]:
@@ -71,21 +77,23 @@ def _curve(found: ShakenCase) -> list[list[float]]:
 
 def values(found: dict[str, Any]) -> dict[str, Any]:
     """What near_collapse.md.j2 shows."""
-    steady, record = np.array(found["steady"]["curve"]), found["record"]
-    late = steady[steady[:, 0] > 4.0]
+    steady, record = found["steady"], found["record"]
+    names = ("right column [mrad]", "left column [mrad]", "crown [mm]")
     rows = [
-        (name, f"{1e3 * late[:, k].mean():.1f}", f"{1e3 * np.ptp(late[:, k]) / 2:.1f}")
-        for k, name in ((1, "right column [mrad]"), (2, "left column [mrad]"), (3, "crown [mm]"))
+        (name, f"{1e3 * mean:.1f}", f"{1e3 * half:.1f}")
+        for name, (mean, half) in zip(names, steady["late"], strict=True)
     ]
+    left, right, left_haunch, right_haunch = map(abs, steady["slid"])
     stood, curve = np.array(found["stood"]["curve"]), np.array(record["curve"])
     until = curve[curve[:, 0] < record["run"]["collapse_time"] - 0.5]
     return {
         "steady": table(("", "mean", "half of the range"), rows),
+        "springings": (left, right), "haunches": (left_haunch, right_haunch),
         "stood": found["stood"]["a"], "fell": record["a"], "at": record["run"]["collapse_time"],
         "block": record["run"]["collapse_block"], "how": record["run"]["collapse"],
         "rest": 1e3 * np.abs(stood[-1, 1:3]).max(), "crown": -1e3 * stood[-1, 3],
         "peak": np.abs(until[:, 1]).max(),
-        "commands": commands(found["falls"]["run"], found["steady"]["run"], found["stood"]["run"], record["run"]),
+        "commands": commands(steady["run"], found["falls"]["run"], found["stood"]["run"], record["run"]),
     }  # fmt: skip
 
 
@@ -114,7 +122,7 @@ def draw_rotation(found: dict[str, Any], path: Path) -> None:
             times, right = np.array(found[name]["curve"])[:, :2].T
             axis.plot(times, 1e3 * right, color=colour, lw=1.0, label=f"a = {found[name]['a']:g}, {word}")
         axis.axvline(found["record"]["run"]["collapse_time"], color=style.GREY, ls=":", lw=1.0)
-        axis.set(xlabel="time [s]", ylabel="rotation of the right column [mrad]", xlim=(0, 20.5))
+        axis.set(xlabel="time [s]", ylabel="rotation of the right column [mrad]", xlim=(0, 20.5), ylim=(-200, 30))
         axis.legend(loc="lower left")
 
 

@@ -40,6 +40,7 @@ FAST_MOTION = (
     f'{{ kind = "artificial", spectrum = {FASTER}, duration = 8.0, rise = 0.8, plateau = 4.0, time_step = 0.004,'
     " count = 10 }"
 )
+SEMI, FAST = "20 s, semicircle, 10 records", "20 s in 8 s: time × 0.4, 10 records"
 TEN = ("motion.count=10",)
 SUITES: dict[str, tuple[str, ...]] = {
     "20 s": (),
@@ -47,8 +48,8 @@ SUITES: dict[str, tuple[str, ...]] = {
     "20 s, spectrum of 1994": (f"motion={ENV_MOTION}",),
     "20 s, 110°, ring 0.10 m, 10 records": (*sizes(110.0, 0.10, 0.2312), *TEN),
     "20 s, 90°, ring 0.08 m, 10 records": (*sizes(90.0, 0.08, 0.2019), *TEN),
-    "20 s, semicircle, 10 records": (*SEMICIRCLE, *TEN),
-    "20 s in 8 s: time × 0.4, 10 records": (f"motion={FAST_MOTION}",),
+    SEMI: (*SEMICIRCLE, *TEN),
+    FAST: (f"motion={FAST_MOTION}",),
 }
 
 
@@ -75,7 +76,8 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
         a = capacities(one)
         rows.append((name, f"{a.min():.2f} to {_upper(a.max())}", _mean(a), f"{np.median(a):.2f}",
                      "–" if one["dispersion"] is None else f"{one['dispersion']:.2f}"))  # fmt: skip
-    short, long = (float(capacities(found[name]).mean()) for name in ("8 s", "20 s"))
+    mean = {name: float(capacities(one).mean()) for name, one in found.items()}
+    short, long = mean["8 s"], mean["20 s"]
     thesis = [
         ("*thesis DEM, 20 records of 20 s*", "1.15 to 1.40", "1.27", "–", "–"),
         ("*tests, one record of 8 s, Table 6-3*", "2.76 to 2.95", "2.85", "–", "–"),
@@ -85,6 +87,9 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
         "capacities": table(("records", "range", "mean", "median", "dispersion"), [*rows, *thesis]),
         "tests": _tests(found),
         "short": short, "long": long, "change": percent(short / long - 1.0),
+        "within": int(((a := capacities(found["20 s"])) >= 1.15).sum() - (a > 1.40).sum()),
+        "thesis_error": percent(long / results("thesis_arch_shaking")["dem_mean"]["value"] - 1.0),
+        "env": mean["20 s, spectrum of 1994"], "semicircle": mean[SEMI], "fast": mean[FAST],
         "commands": commands(found["20 s"], found["8 s"], more=len(found) - 2),
     }  # fmt: skip
 
@@ -117,8 +122,8 @@ def draw(found: dict[str, Any], path: Path) -> None:
     """As Figure 6-8."""
     with style.figure(path, figsize=(7.0, 4.8)) as figure:
         axis = figure.subplots()
-        for (name, one), colour in zip(found.items(), COLOURS):
-            a = np.sort(capacities(one))
+        for name, colour in zip(("20 s", "8 s", SEMI, FAST), COLOURS):
+            a = np.sort(capacities(found[name]))
             share = np.arange(1, len(a) + 1) / len(a)
             near = np.isfinite(a)
             ends = np.append(LEVELS[0], a[near]), np.append(0.0, share[near])
