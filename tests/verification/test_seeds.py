@@ -72,7 +72,7 @@ INFERRED_FROM = {  # case: numbers from which an input of it was inferred (data 
     "church_wall_d_before": [0.115], "church_buttress": [0.165],
     "top_load_b2": [[0.32, 0.34]], "top_load_b5": [[0.3, 0.33]], "top_load_b8": [[0.32, 0.34]],
     "top_load_b10": [[0.49, 0.51]], "top_load_b11": [[0.56, 0.58]],
-    "column_14_profile": [0.132], "column_arch_rocking": [-0.0978],
+    "column_14_profile": [0.132], "column_arch_rocking": [-0.0978], "arch_8_static": [0.325],
 }  # fmt: skip
 
 
