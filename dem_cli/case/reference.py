@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
+from dem_cli.case.tolerance_rules import ReferenceKind, allowance
 from dem_cli.case.wording import show
 
 Word = Annotated[str, Field(min_length=1)]
-NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes; or 'relative', a share of the value)"
+NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes), as a share of 0 is nothing"
 
 
 class Reference(CaseModel):
@@ -30,14 +31,27 @@ class Reference(CaseModel):
         examples=[0.012],
     )
     tolerance: Positive | None = Field(
-        default=None, description="largest difference that passes [unit of the quantity]", examples=[0.001]
+        default=None,
+        description="largest difference that passes [unit of the quantity]; default: by the rule of its kind",
+        examples=[0.001],
     )
     relative: Positive | None = Field(
         default=None, description="instead of tolerance: its share of the value [-]", examples=[0.01]
     )
-    kind: Literal["exact", "experiment", "code"] = Field(
+    reason: Word | None = Field(
+        default=None,
+        description="why the tolerance is not that of the rule; `dem verify` prints it",
+        examples=["the reference leaves out the thickness of the hinge"],
+    )
+    kind: ReferenceKind = Field(
         default="exact",
-        description="where the value comes from: exact (mechanics), experiment, or another code's answer",
+        description="where the value comes from: exact (mechanics), experiment, another code's answer, or inference: "
+        "an input of this case was inferred from it, so that it proves nothing",
+    )
+    scatter: Positive | None = Field(
+        default=None,
+        description="of an experiment: standard deviation of repeated tests [unit of the quantity]; two of them pass",
+        examples=[0.0137],
     )
     source: str = Field(
         default="", description="where the value comes from, in words", examples=["closed form: slides at tan φ"]
@@ -47,6 +61,7 @@ class Reference(CaseModel):
         description="why the value is known to be missed; fails as soon as it is met",
         examples=["the test had wedges under its first course"],
     )
+    _resolution: float | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _one_form(self) -> Reference:
@@ -65,14 +80,31 @@ class Reference(CaseModel):
         given = [key for key in ("tolerance", "relative") if getattr(self, key) is not None]
         if len(given) == 2:
             raise KeyProblem(f"{show(self.relative)} is not allowed beside 'tolerance'", "relative")
-        if isinstance(self.expected, (bool, str)) and given:
-            raise KeyProblem(f"{show(getattr(self, given[0]))} is not allowed; words and truths have none", given[0])
         if isinstance(self.expected, tuple) and self.expected[0] >= self.expected[1]:
             raise KeyProblem(f"{show(self.expected)} is not allowed; must be [lowest, highest]", "value")
-        if type(self.expected) is float and not given:
-            raise KeyProblem(NO_TOLERANCE, "tolerance")
-        if self.relative is not None and self.allowance == 0.0:
+        if isinstance(self.expected, (bool, str)):
+            extra = [*given, *(("scatter",) if self.scatter is not None else ())]
+            if extra:
+                raise KeyProblem(
+                    f"{show(getattr(self, extra[0]))} is not allowed; words and truths have none", extra[0]
+                )
+        elif self.expected == 0.0 and self.relative is not None:
             raise KeyProblem(f"{show(self.relative)} is not allowed; a share of 0 is nothing", "relative")
+        elif self.expected == 0.0 and not given and self.scatter is None:
+            raise KeyProblem(NO_TOLERANCE, "tolerance")
+        self._check_words(given)
+
+    def _check_words(self, given: list[str]) -> None:
+        if self.scatter is not None and self.kind != "experiment":
+            raise KeyProblem(f"{show(self.scatter)} is not allowed; only an experiment has a scatter", "scatter")
+        if self.scatter is not None and given:
+            raise KeyProblem(f"{show(self.scatter)} is not allowed beside '{given[0]}'", "scatter")
+        if self.reason is not None and not given:
+            raise KeyProblem(f"{show(self.reason)} is not allowed without 'tolerance' or 'relative'", "reason")
+
+    def resolved_to(self, resolution: float | None) -> None:
+        """Say how finely the analysis of its case resolves a load or factor, a share of it; None: it does not."""
+        self._resolution = resolution
 
     @property
     def path(self) -> str:
@@ -92,4 +124,8 @@ class Reference(CaseModel):
         if isinstance(self.expected, (bool, str)):
             return None
         bounds = self.expected if isinstance(self.expected, tuple) else (self.expected,)
-        return self.tolerance or (self.relative or 0.0) * max(map(abs, bounds))
+        if self.tolerance is not None:
+            return self.tolerance
+        if self.relative is not None:
+            return self.relative * max(map(abs, bounds))
+        return allowance(self.kind, self.path, bounds, self.scatter, self._resolution)

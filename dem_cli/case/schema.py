@@ -229,6 +229,12 @@ class Case(CaseModel):
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: Sweep | None = Field(default=None, description="the runs of `dem sweep`; other commands ignore it")
 
+    @model_validator(mode="after")
+    def _references_know_the_resolution(self) -> Case:
+        for one in self.reference:
+            one.resolved_to(getattr(self.analysis, "resolution", None))
+        return self
+
     @property
     def default_joint(self) -> str:
         """The joint between materials that no [[interface]] names."""

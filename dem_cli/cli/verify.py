@@ -20,14 +20,20 @@ if TYPE_CHECKING:
     from dem_cli.verify.records import Record
 
 PAGE = Path("docs/verification.md")
-SHELF = click.Choice(["verification", "validation", "cross-code"])
+SHELF = click.Choice(["verification", "validation", "cross-code", "inference"])
 
 
 @click.command("verify", short_help="Run all cases with a [reference] and compare.")
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[PATH]...")
 @click.option("-k", "--match", "pattern", default="", metavar="TEXT",
               help="Only files with this in their path; * and ? are wildcards.")  # fmt: skip
-@click.option("--shelf", "shelves", multiple=True, type=SHELF, help="Only exact references, experiments, or codes.")
+@click.option(
+    "--shelf",
+    "shelves",
+    multiple=True,
+    type=SHELF,
+    help="Only exact references, experiments, codes, or arithmetic of inference.",
+)
 @click.option("--at-most", type=click.FloatRange(min=0.0), metavar="SECONDS",
               help="Leave out cases that took longer when docs/verification.md was written.")  # fmt: skip
 @click.option("--changed", is_flag=True, help="Only cases that changed since docs/verification.md was written.")
@@ -186,22 +192,33 @@ def code_of(records: Sequence[Record]) -> int:
 
 
 def show(records: Sequence[Record], took: float, as_json: bool) -> None:
-    """The answer on stdout."""
-    from dem_cli.verify.records import counts
+    """The answer on stdout; references of inference are counted by themselves."""
+    from dem_cli.verify.records import apart, counts
 
+    others, of_inference = apart(records)
     found = counts(records)
     if as_json:
+        found |= {key: number for key, number in counts(others).items() if key not in ("cases", "not solved")}
+        found |= {"inference": counts(of_inference)["references"]} if of_inference else {}
         answer: dict[str, Any] = {"version": __version__, "counts": found, "wall_seconds": took, "cases": records}
         console.show(json.dumps(answer, indent=2, ensure_ascii=False))
         return
     from dem_cli.cli.words.verify_table import show_tables
 
     show_tables(records)
+    besides = f"; besides, of inference: {in_words(of_inference)}" if of_inference else ""
+    unsolved = f"; {many(found['not solved'], 'case')} NOT SOLVED" if found["not solved"] else ""
+    console.show(f"{many(found['cases'], 'case')}, {in_words(others)}{besides}{unsolved}; {seconds(took)}")
+
+
+def in_words(records: Sequence[Record]) -> str:
+    """How many references there are in which state."""
+    from dem_cli.verify.records import counts
+
+    found = counts(records)
     states = {"passed": found["passed"], "missed, as known": found["missed"], "FAILED": found["failed"] + found["met"]}
     listed = ", ".join(f"{number} {name}" for name, number in states.items() if number or name == "passed")
-    unsolved = f"; {many(found['not solved'], 'case')} NOT SOLVED" if found["not solved"] else ""
-    what = f"{many(found['cases'], 'case')}, {many(found['references'], 'reference')}"
-    console.show(f"{what}: {listed}{unsolved}; {seconds(took)}")
+    return f"{many(found['references'], 'reference')}: {listed}"
 
 
 def many(number: int, noun: str) -> str:

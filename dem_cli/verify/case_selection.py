@@ -11,7 +11,13 @@ from typing import Any, NamedTuple
 from dem_cli.case.reader import near_file, parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
 
-SHELVES = {"exact": "verification", "experiment": "validation", "code": "cross-code"}  # [reference] kind -> its shelf
+SHELVES = {  # [reference] kind -> its shelf
+    "exact": "verification",
+    "experiment": "validation",
+    "code": "cross-code",
+    "inference": "inference",
+}
+APART = "inference"  # a shelf that proves nothing: counted by itself, in no summary
 
 
 class CaseSelection(NamedTuple):

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
-from dem_cli.verify.records import Record, counts, on_shelves
+from dem_cli.case.tolerance_rules import RULES
+from dem_cli.verify.case_selection import APART, SHELVES
+from dem_cli.verify.records import Record, apart, counts, on_shelves
 from dem_cli.verify.verdict_words import VERDICTS, allowed, off, share, shown
 
 ABOUT = {
@@ -15,7 +17,10 @@ ABOUT = {
     "validation": "Experiments. They say whether these are the right equations, with the properties that the authors "
     "give.",
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
+    APART: "Numbers from which an input of their own case was inferred, as sizes of a lost figure or a calibrated "
+    "joint. That they come out shows that the arithmetic was done and nothing about dem: they count nowhere else.",
 }
+TITLES = {APART: "Arithmetic of inference"}
 KEPT = "\N{NO-BREAK SPACE}"
 TABLE_HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
@@ -24,21 +29,32 @@ Written by `dem verify cases --write docs/verification.md`; do not edit. Every c
 `[reference]` was run as it stands and compared. A test fails when this page does not belong to the case files.
 
 *difference*: ours less the reference, in the unit of the quantity; *error*: the same over the reference; of a range,
-beyond its nearer end. *allowed*: what passes, as the case file says and explains: of exact answers it follows from the
-resolution of the failure load, the joint stiffness and the time between samples, of others from the digits that are
-printed. A *known miss* is declared in its case file with the reason; if it is suddenly met, that fails too.
+beyond its nearer end. *allowed*: what passes, by one rule for each kind (`dem_cli/case/tolerance_rules.py`); a star
+marks a tolerance of the case's own, whose reason stands below the table. A *known miss* is declared in its case file
+with what is known of the cause; if it is suddenly met, that fails too.
+
 """
+RULE_TITLES = {kind: f"**{kind}** ({SHELVES[kind]})" for kind in RULES}
 
 
 def page(records: Iterable[Record], version: str) -> str:
     """The page as Markdown. Paths of cases are taken as seen from the page."""
     records = sorted(records, key=lambda record: record["case"])
-    lines = [INTRO, *_summary(records), ""]
+    rules = [f"* {RULE_TITLES[kind]}: {rule}." for kind, rule in RULES.items()]
+    lines = [INTRO + "\n".join(rules), "", *_summary(records), ""]
     for shelf in ABOUT:
         of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
         if of_shelf:
             of_shelf.sort(key=lambda record: f"/{shelf}/" not in record["case"])
-            lines += [f"## {shelf.capitalize()}", "", ABOUT[shelf], "", *_table(of_shelf), "", *_sources(of_shelf)]
+            lines += [
+                f"## {TITLES.get(shelf, shelf.capitalize())}",
+                "",
+                ABOUT[shelf],
+                "",
+                *_table(of_shelf),
+                "",
+                *_sources(of_shelf),
+            ]
     broken = [record for record in records if "error" in record]
     if broken:
         lines += ["## Not solved", "", *(f"* {_link(r)}: {_cell(r['error'])}" for r in broken), ""]
@@ -50,7 +66,7 @@ def _summary(records: Sequence[Record]) -> list[str]:
     rows = []
     for shelf in ABOUT:
         of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
-        if not of_shelf:
+        if not of_shelf or shelf == APART:
             continue
         found = counts(of_shelf)
         answers = [answer for record in of_shelf for answer in record["references"] if answer["state"] == "passed"]
@@ -61,7 +77,14 @@ def _summary(records: Sequence[Record]) -> list[str]:
         rows.append([f"[{shelf}](#{shelf})", *map(str, cells), middle, worst])
     head = ("shelf", "cases", "references", "met", "known misses", "failed", "median error", "largest error")
     remark = f"{len(records)} cases; some stand on more than one shelf. Errors are those of references that are met."
-    return [*_rows(head, rows), "", remark]
+    return [*_rows(head, rows), "", " ".join([remark, *_of_inference(records)])]
+
+
+def _of_inference(records: Sequence[Record]) -> list[str]:
+    """How many references there are that prove nothing."""
+    found = counts(apart(records)[1])
+    link = f"[arithmetic of inference](#{TITLES[APART].lower().replace(' ', '-')})"
+    return [f"Not counted: {found['references']} references of {link}."] if found["references"] else []
 
 
 def _table(records: Sequence[Record]) -> list[str]:
@@ -81,7 +104,7 @@ def _answer(answer: dict[str, Any]) -> list[str]:
         f"`{answer['quantity']}`",
         *map(_cell, values),
         _percent(size) if size is not None and off(answer) != "inside" else "",
-        allowed(answer).replace(" ", KEPT),
+        (allowed(answer) + "\\*" * bool(answer.get("reason"))).replace(" ", KEPT),
         verdict if answer["state"] == "passed" else f"**{verdict}**",
     ]
 
@@ -93,13 +116,20 @@ def _sources(records: Sequence[Record]) -> list[str]:
         said = [answer["source"] for answer in record["references"] if answer["source"]]
         if said:
             lines.append(f"* {_link(record)}: {'; '.join(dict.fromkeys(map(_cell, said)))}.")
+    own = [
+        f"* {_link(record)}, `{answer['quantity']}`: {_cell(answer['reason'])}."
+        for record in records
+        for answer in record["references"]
+        if answer.get("reason")
+    ]
     missed = [
         f"* {_link(record)}, `{answer['quantity']}`: {_cell(answer['missed'])}."
         for record in records
         for answer in record["references"]
         if answer["state"] == "missed"
     ]
-    return [*lines, "", *(["Known misses:", "", *missed, ""] if missed else [])]
+    lists = {"Known misses:": missed, "\\* Tolerances of their own:": own}
+    return [*lines, "", *(line for title, those in lists.items() if those for line in (title, "", *those, ""))]
 
 
 def _link(record: Record) -> str:

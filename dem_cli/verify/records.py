@@ -13,7 +13,7 @@ from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
 from dem_cli.output.reference import as_declared, error, unexpected_fall, verdicts
 from dem_cli.output.scalars import plain
-from dem_cli.verify.case_selection import SHELVES
+from dem_cli.verify.case_selection import APART, SHELVES
 
 Record = dict[str, Any]  # of a case: see `record`
 VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
@@ -22,11 +22,12 @@ VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed
 def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
     """A case that was solved: file, title, kind of analysis, status, seconds, and one dict for each reference.
 
-    Those are the verdicts of output/reference.py with `source`, and `error`: what was found less what was expected.
+    Those are the verdicts of output/reference.py with `source`, `error`, what was found less what was expected, and,
+    where the tolerance is the case's own, the `reason` for it.
     """
     status = str(summary["status"])
     answers = [
-        {**answer, "source": reference.source, "error": error(answer["found"], answer["value"])}
+        {**answer, **_told(reference), "error": error(answer["found"], answer["value"])}
         for answer, reference in zip(verdicts(summary, references), references, strict=True)
     ]
     kept = {"case": path.as_posix(), "sha256": digest(path), "title": title, "kind": summary["kind"], "status": status}
@@ -36,6 +37,12 @@ def record(path: Path, title: str, summary: Mapping[str, Any], references: Seque
     elif unexpected_fall(summary, answers):
         kept["error"] = f"{status}, which no [reference] expects"
     return plain(kept)
+
+
+def _told(reference: Any) -> dict[str, str]:
+    """Words of a [reference] that the page prints."""
+    own = reference.tolerance is not None or reference.relative is not None
+    return {"source": reference.source} | ({"reason": reference.reason or "not said"} if own else {})
 
 
 def failed(path: Path, reason: str, bad: bool) -> Record:
@@ -71,6 +78,14 @@ def on_shelves(records: Iterable[Record], shelves: Sequence[str]) -> list[Record
         return list(records)
     wanted = [dict(r, references=[a for a in r["references"] if SHELVES[a["kind"]] in shelves]) for r in records]
     return [r for r in wanted if r["references"] or "error" in r]
+
+
+def apart(records: Iterable[Record]) -> tuple[list[Record], list[Record]]:
+    """Records with the references that say something about dem, and those with references on the shelf of inference."""
+    records = list(records)
+    of_inference = [record for record in on_shelves(records, [APART]) if record["references"]]
+    others = on_shelves(records, [shelf for shelf in SHELVES.values() if shelf != APART])
+    return others, of_inference
 
 
 def counts(records: Iterable[Record]) -> dict[str, int]:

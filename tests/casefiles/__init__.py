@@ -10,8 +10,11 @@ from pathlib import Path
 import numpy as np
 from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
 
+from dem_cli.case.reference import Reference
 from dem_cli.structures.placement import place
 from dem_cli.structures.registry import GENERATORS
+from dem_cli.tables.analysis import PushoverAnalysis
+from dem_cli.tables.safety import SafetyAnalysis
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(CASES.rglob("*.toml"))
@@ -35,9 +38,17 @@ def references(path: Path) -> list[dict]:
 
 
 def failure_load(path: Path, kind: str = "exact") -> dict | None:
-    """The first of its references that is a failure load of this kind, as a table; None: none is."""
-    found = (one for one in references(path) if "failure_load" in one and one.get("kind", "exact") == kind)
-    return next(found, None)
+    """The first of its references that is a failure load of this kind, as a table with its tolerance; None: none is."""
+    found = next((one for one in references(path) if "failure_load" in one and one.get("kind", "exact") == kind), None)
+    return found and {**found, "tolerance": allowance(path, found)}
+
+
+def allowance(path: Path, table: dict) -> float | None:
+    """What a reference of a pushover or safety analysis allows, by its own tolerance or the rule of its kind."""
+    reference, analysis = Reference.model_validate(table), read(path)["analysis"]
+    usual = {one().kind: one().resolution for one in (PushoverAnalysis, SafetyAnalysis)}
+    reference.resolved_to(analysis.get("resolution", usual[analysis.get("kind", "pushover")]))
+    return reference.allowance
 
 
 def case_id(path: Path) -> str:

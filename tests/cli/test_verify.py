@@ -215,6 +215,35 @@ def test_page_and_its_record(folder):
     ]  # fmt: skip
 
 
+INFERRED = GOOD.replace("tolerance = 0.001", 'kind = "inference"')
+OWN = GOOD.replace("tolerance = 0.001", 'tolerance = 0.02\nreason = "the floor is soft"')
+
+
+def test_what_an_input_was_inferred_from_is_counted_by_itself(folder):
+    write(folder, good=GOOD, inferred=INFERRED)
+    result = verify("--write", "docs/verification.md")
+    assert "2 cases, 1 reference: 1 passed; besides, of inference: 1 reference: 1 passed; " in result.stdout
+    text = (folder / "docs" / "verification.md").read_text(encoding="utf-8")
+    summary, _, shelves = text.partition("## Verification")
+    assert "Not counted: 1 references of [arithmetic of inference](#arithmetic-of-inference)." in summary
+    assert "| [verification](#verification) | 1 | 1 | 1 | 0 | 0 |" in summary
+    assert "## Arithmetic of inference" in shelves
+    found, _ = answers()
+    assert (found["counts"]["references"], found["counts"]["inference"]) == (1, 1)
+    assert answers("--shelf", "inference")[1].keys() == {"inferred"}
+
+
+def test_the_page_says_the_rules_and_why_a_tolerance_is_another(folder):
+    write(folder, own=OWN, ruled=GOOD.replace("tolerance = 0.001\n", ""))
+    verify("--write", "docs/verification.md")
+    text = (folder / "docs" / "verification.md").read_text(encoding="utf-8")
+    assert "* **code** (cross-code): 5 %, of a bracket beyond its ends." in text
+    own, ruled = (line for line in text.splitlines() if line.startswith("| [cases/"))
+    assert "±\N{NO-BREAK SPACE}0.02\\*" in own
+    assert "±\N{NO-BREAK SPACE}0.0012 |" in ruled
+    assert "* [cases/own](../cases/own.toml), `failure_load`: the floor is soft." in text
+
+
 def test_a_part_of_the_page_written_again(folder):
     write(folder, good=GOOD, missed=MISSED, stands=STANDS)
     verify("--write", "docs/verification.md")

@@ -11,10 +11,12 @@ from engine import solve
 from reference import value
 from studies import storage
 from studies.church import cases
-from studies.church.geometry import Slice
+from studies.church.geometry import FITTED_SIDE, Slice
 from studies.church.mechanism import solved
 from studies.church.seven_bodies import body_of, mass_and_centroid, seven_bodies
 from studies.church.study import STUDY
+
+from dem_cli.case.tolerance_rules import OF_A_CODE
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -22,6 +24,7 @@ BOOK = "thesis_church"
 RESULT = {"church_a": "modelA", "church_a_no_slip": "modelA_no_slip", "church_b": "modelB"}
 QUICK = {name: path for name, path in cases.PRINTED.items() if name not in ("church_wall_b", "church_wall_c")}
 TABLE = storage.read("church")
+FITTED = replace(Slice(), side=FITTED_SIDE)
 
 
 def of_the_book(name: str) -> float:
@@ -53,8 +56,9 @@ def test_single_walls_turn_as_printed(name):
 
 
 def test_seven_bodies():
-    """The one load that the height of the side walls is fitted to; hinges move together, so one degree of freedom."""
-    assert seven_bodies(Slice()) == pytest.approx(value(BOOK, "modelA_vw"), rel=0.005)
+    """The one load that side walls of 7.26 m are fitted to, in no case; hinges move together: one degree of freedom."""
+    assert seven_bodies(FITTED) == pytest.approx(value(BOOK, "modelA_vw"), rel=0.005)
+    assert seven_bodies(Slice()) < 0.9 * value(BOOK, "modelA_vw")
     heavier = seven_bodies(replace(Slice(), right=2.0))
     assert heavier > 1.2 * seven_bodies(Slice())
 
@@ -77,9 +81,9 @@ def test_seven_bodies_of_walls_alone():
 
 
 def test_roofs_slide_and_nave_walls_turn():
-    """Model A: a tenth above the thesis, on lengths that are inferred; the mechanism is of its kind."""
+    """Model A: the load of the thesis, on lengths that are inferred from others; the mechanism is of its kind."""
     found = solved("church_a", cases.model("church_a"))
-    assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelA")), rel=0.10)
+    assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelA")), rel=0.05)
     turns, slips = found["moves"]["turns"], found["moves"]["slips"]
     assert turns["b"] == pytest.approx(turns["c"], rel=0.02)
     assert turns["b"] > 0.5
@@ -90,7 +94,7 @@ def test_roofs_slide_and_nave_walls_turn():
 
 def test_light_aisle_roofs_slide_off_the_left_wall():
     """The mechanism of the thesis, at its load."""
-    found = solved("church_a", cases.model("church_a", replace(Slice(), aisle_roof=52.0)))
+    found = solved("church_a", cases.model("church_a", replace(FITTED, aisle_roof=52.0)))
     assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, "modelA")), rel=0.02)
     assert abs(found["moves"]["turns"]["a"]) < 0.01
     assert found["moves"]["slips"]["left beam on side wall"] < -0.3
@@ -104,11 +108,11 @@ def test_the_buttress_holds_the_left_nave_wall():
 
 @pytest.mark.slow
 def test_without_slip_seven_bodies_turn():
-    """A little above virtual work, as beams are no lines, and below what dilating joints carry."""
-    found = solved("church_a_no_slip", cases.model("church_a_no_slip", resolution=0.01))
+    """On fitted walls, a little above virtual work, as beams are no lines, and below what dilating joints carry."""
+    found = solved("church_a_no_slip", cases.model("church_a_no_slip", FITTED, resolution=0.01))
     low, high = found["bracket"]
     assert 0.5 * (low + high) == pytest.approx(np.mean(value(BOOK, "modelA_no_slip")), rel=0.05)
-    assert seven_bodies(Slice()) < high
+    assert seven_bodies(FITTED) < high
     assert low < found["associated"]
     assert found["mode"] == "rocking"
     turns = found["moves"]["turns"]
@@ -118,4 +122,5 @@ def test_without_slip_seven_bodies_turn():
 def test_the_page_is_what_was_measured():
     assert (ROOT / "docs/church.md").read_text(encoding="utf-8") == STUDY.page(TABLE), "scripts/study church --write"
     for name, one in TABLE["models"]["cases"]["runs"].items():
-        assert np.mean(one["bracket"]) == pytest.approx(np.mean(value(BOOK, RESULT[name])), rel=cases.ALLOWED[name])
+        off = np.mean(one["bracket"]) / np.mean(value(BOOK, RESULT[name])) - 1.0
+        assert (abs(off) > OF_A_CODE) == (name in cases.MISSED)

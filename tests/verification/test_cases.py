@@ -19,7 +19,8 @@ from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
 
 REFERENCED = [path for path in FILES if failure_load(path) and known_to_the_oracle(path)]
-GUESSES = [CASES / "verification" / f"wall_21_imperfect_{letter}.toml" for letter in "ab"]
+GUESSES = {CASES / "verification" / f"wall_21_imperfect_{letter}.toml": slack for letter, slack in
+           (("a", 0.0102), ("b", 0.0054))}  # fmt: skip
 NO_REFERENCE = {  # in cases/verification and cases/validation: why
     "two_blocks": "the time of a closure is no number of a summary: two_blocks_angles",
     "arch_8_record": "the thesis's record is not kept",
@@ -77,10 +78,10 @@ def test_reference_is_what_the_oracle_says(path):
 
 @pytest.mark.parametrize("path", GUESSES, ids=case_id)
 def test_which_block_the_thesis_means_is_a_guess(path):
-    """Its load is between those without and with friction in the head joints, by the tolerance."""
-    reference = failure_load(path, "code")
+    """The thesis's load is between those without and with friction in the head joints, by 1 to 2 %."""
+    load, slack = failure_load(path, "code")["failure_load"], GUESSES[path]
     lower, upper = (scene(path).limit(heads=heads).multiplier for heads in (False, True))
-    assert lower - reference["tolerance"] <= reference["failure_load"] <= upper + reference["tolerance"]
+    assert lower - slack <= load <= upper + slack
 
 
 @pytest.mark.parametrize("name", ["overhang_falls", "leaning_column"])

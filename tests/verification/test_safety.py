@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from casefiles import CASES, blocks_of, case_id, read
+from casefiles import CASES, allowance, blocks_of, case_id, read
 from engine import Records, block, rectangle, scene, solve, tables
 from oracle.limit_lp import limit_load
 from reference import result
@@ -34,7 +34,7 @@ def test_known_answers(path):
     if isinstance(value, list):
         assert value[0] <= summary[name] <= value[1]
     else:
-        slack = reference.get("tolerance", reference.get("relative", 0.0) * value)
+        slack = allowance(path, reference)
         assert summary[name] == pytest.approx(value, abs=slack)
         assert low - slack <= value <= high + slack
     assert high - low <= summary_resolution(path) * high

@@ -22,7 +22,7 @@ def one_line(answer: Mapping[str, Any]) -> str:
 
 def expected(answer: Mapping[str, Any]) -> str:
     """`0.64 ± 0.001`, `[0.3, 0.4] ± 0.01`, `ok` or `false`."""
-    slack = f" ± {answer['tolerance']:g}" if answer["tolerance"] else ""
+    slack = f" ± {answer['tolerance']:.2g}" if answer["tolerance"] else ""
     return f"{shown(answer['value'])}{slack}"
 
 

@@ -12,7 +12,7 @@ from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 from dem_cli.post import style
-from studies.chapter7.walls import FACE
+from studies.chapter7.walls import FACE, JOINT
 from studies.places import CASES
 from studies.solution import bracket_of, command_of, corners_of, from_file, solve
 from studies.template import bracket, commands, table
@@ -23,11 +23,16 @@ CORNER = 0.040  # displacement of the corner on the top right at which joints ar
 LAYERS = 5  # from the top
 OPEN = (1e-3, 2e-3, 3e-3)  # widths from which a vertical joint "appears opened" [m]
 SOFT = "joints.rough.softening={{ residual = {}, slip_start = 0.0009, slip_length = 0.0001 }}"
-CONDITIONS = {  # as Figure 7-72
+CONDITIONS = {  # as Figure 7-72, polygons over joints as in the case
     "a": ("no profile", ("joints.rough={ law = 'coulomb', friction = 0.6 }",)),
-    "b": ("profile", (FACE,)),
-    "c": ("profile, β = 0.9", (FACE, SOFT.format(0.9))),
-    "d": ("profile, β = 0.8", (FACE, SOFT.format(0.8))),
+    "b": ("profile", (JOINT,)),
+    "c": ("profile, β = 0.9", (JOINT, SOFT.format(0.9))),
+    "d": ("profile, β = 0.8", (JOINT, SOFT.format(0.8))),
+}
+FACES = {  # the other reading
+    f"{key}_face": (f"{what}, over faces", (FACE, *words[1:]))
+    for key, (what, words) in CONDITIONS.items()
+    if key != "a"
 }
 FALL = (
     "analysis.follow=0.046", "analysis.collapse=load", "analysis.step=0.05", "analysis.resolution=0.02",
@@ -36,8 +41,8 @@ FALL = (
 
 
 def measure() -> dict[str, Any]:
-    """Counts of open joints and the places of all blocks of the four cases."""
-    return {key: fall(*overrides) for key, (_, overrides) in CONDITIONS.items()}
+    """Counts of open joints and the places of all blocks of the four cases, of three with both readings."""
+    return {key: fall(*overrides) for key, (_, overrides) in (CONDITIONS | FACES).items()}
 
 
 def fall(*overrides: str) -> dict[str, Any]:
@@ -78,15 +83,15 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
     """What band.md.j2 shows."""
     thesis = results("thesis_231_block")
     rows = []
-    for key, (what, _) in CONDITIONS.items():
-        one, counted = found[key], thesis[f"T77_{key}"]["value"]
+    for key, (what, _) in (CONDITIONS | FACES).items():
+        one, counted = found[key], thesis[f"T77_{key[0]}"]["value"]
         counts = [[sum(w > width for w in layer) for layer in one["widths"]] for width in OPEN]
         open_ = [np.maximum(layer, 0.0) for layer in one["widths"]]
         effective = np.mean([w.sum() ** 2 / (w**2).sum() for w in open_])
-        rows.append((f"({key}) {what}", bracket(one["bracket"]), *map(_sum, (counted, *counts)), f"{effective:.2f}"))
+        rows.append((f"({key[0]}) {what}", bracket(one["bracket"]), *map(_sum, (counted, *counts)), f"{effective:.2f}"))
     wider = (f"dem, > {1e3 * width:g} mm" for width in OPEN)
     head = ("case", "failure load", "thesis, open joints", *wider, "effective")
-    return {"bands": table(head, rows), "commands": commands(*(found[key] for key in CONDITIONS))}
+    return {"bands": table(head, rows), "commands": commands(*(found[key] for key in CONDITIONS | FACES))}
 
 
 def _sum(counts: list[int]) -> str:

@@ -75,7 +75,7 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
         "loads": table(head, rows),
         "onsets": table(("wall", "thesis", "dem, over joints", "over faces"), onsets),
         "own": _own(storage.read("thesis_joint").get("runs", [])),
-        "onset": face["visible"], "six": _six(face), "face": middle, "face_error": percent(middle / 0.54 - 1.0),
+        "onset": face["visible"], "six": six_of(face), "face": middle, "face_error": percent(middle / 0.54 - 1.0),
         "deep": 0.5 * sum(deep["bracket"]),
         "most": _compared(found["walls"]["110"]["joint"], results(WALLS["110"])["nc"]["value"])[1],
         "commands": commands(*runs, *found["deep"].values()),
@@ -90,7 +90,7 @@ def _first(run: dict[str, Any]) -> str:
     return "–" if run["visible"] is None else f"{run['visible']:.2f}"
 
 
-def _six(run: dict[str, Any]) -> float:
+def six_of(run: dict[str, Any]) -> float:
     """Load step with the largest motion of the block on the top right before failure."""
     load, moved = np.array(run["curve"])[:, :2].T
     held = load <= run["bracket"][0] * (1 - 0.05)

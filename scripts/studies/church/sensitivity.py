@@ -17,6 +17,7 @@ from studies.template import bracket, table
 LOAD_KEPT = ("status", "bracket", "path", "seconds")
 
 CHANGES: dict[str, dict[str, Any]] = {
+    "side walls 5 m high": {"side": 5.0},
     "side walls 6.5 m high": {"side": 6.5},
     "side walls 8 m high": {"side": 8.0},
     "aisles 3 m": {"aisle": 3.0},

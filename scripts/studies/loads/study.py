@@ -18,7 +18,7 @@ FOLDERS = (CASES / "verification", CASES / "gallery")
 
 
 def pushovers() -> list[Path]:
-    """Case files that look for a failure load with joints that limit analysis knows."""
+    """Case files that look for a failure load with joints that limit analysis knows, and no gap that may close."""
     files = [file for folder in FOLDERS for file in sorted(folder.glob("*.toml"))]
     tables = {file: tomllib.loads(file.read_text(encoding="utf-8")) for file in files}
     kinds = {file: tables[file]["analysis"].get("kind", "pushover") for file in files}
@@ -26,8 +26,9 @@ def pushovers() -> list[Path]:
 
 
 def known(tables: dict[str, Any]) -> bool:
-    """Whether all joints are Coulomb's: limit analysis has no other law."""
-    return all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
+    """Whether all joints are Coulomb's and closed: limit analysis has no other law, and knows the drawing alone."""
+    coulomb = all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
+    return coulomb and "imperfection" not in tables
 
 
 def name_of(file: Path) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from studies.places import ROOT
+from studies.seeds import page as seeds_page
 from studies.site import case_keys, commands, gallery_page, readme, results_files
 
 PAGES: dict[str, Callable[[], str]] = {
@@ -13,6 +14,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/commands.md": commands.text,
     "docs/gallery.md": gallery_page.text,
     "docs/results.md": results_files.text,
+    "docs/seeds.md": seeds_page.text,
     "README.md": readme.text,
 }
 
