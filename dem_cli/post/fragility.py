@@ -34,7 +34,7 @@ def draw_fragility(results: Results, path: Path) -> None:
         if unit != 1.0:
             above = axis.secondary_xaxis("top", functions=(lambda a: a * unit, lambda a: a / unit))
             above.set_xlabel("peak ground acceleration [m/s²]")
-        axis.legend(loc="upper left", fontsize=9)
+        figure.legend(loc="outside lower center", ncols=2, fontsize=9)
         _headline(figure, summary)
 
 
