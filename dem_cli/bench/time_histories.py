@@ -144,7 +144,7 @@ def page(records: list[Measurement]) -> list[str]:
         "column": "Eight blocks under an artificial record of 10 s, which they rock under, with dashpots of 0.35 of"
         " critical and with none. Error: root mean square of the difference of the top's motion from a run with"
         f" {FINEST:g} of the stable step, over that motion; then that of its peak.",
-        "arch": "The arch of the thesis's shaking table (`cases/validation/arch_8_record.toml`) under such a record:"
+        "arch": "The semicircular arch of `cases/verification/portal.toml` under such a record:"
         " rotation of a column, measured in the same way.",
     }
     found = [text]

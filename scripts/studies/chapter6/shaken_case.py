@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from dem_cli.analyses.solve import solve as solve_model
 from dem_cli.errors import SolverError
 from dem_cli.output import vertices
 from dem_cli.output.record import Frame
+from dem_cli.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import command_of, from_file
@@ -67,3 +69,12 @@ def extremes(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndar
     ends = np.flatnonzero(values[:-1] * values[1:] < 0.0) + 1
     at = [int(first + np.abs(values[first:last]).argmax()) for first, last in zip(ends[:-1], ends[1:])]
     return times[at], np.abs(values[at])
+
+
+def draw_blocks(axis: Any, blocks: Sequence[Any], title: str, edge: str = style.STONE_EDGE) -> None:
+    """Blocks of the arch by their corners, all at the same scale."""
+    for corners in blocks:
+        axis.fill(*np.array(corners).T, facecolor=style.STONE, edgecolor=edge, lw=0.7)
+    axis.set(xlim=(-0.62, 0.62), ylim=(-0.06, 0.66), aspect="equal")
+    axis.set_title(title, fontsize=9, fontweight="normal")
+    axis.axis("off")
