@@ -1,8 +1,8 @@
 """Column of rigid blocks on soft joints without tension, bent by a push: statics at prescribed displacements.
 
-Finite rotations. The foot is on the ground, the right side of the top is held by a spring, the left side of one block is
-pushed. Joints are elastic at given points, normal and shear, open, and carry shear up to their friction. Newton's method
-on the forces of all blocks, from one displacement to the next.
+Finite rotations. The foot is on the ground, the right side of the top is held by a spring, the left side of one block
+is pushed. Joints are elastic at given points, normal and shear, open, and carry shear up to their friction. Newton's
+method on the forces of all blocks, from one displacement to the next.
 """
 
 from __future__ import annotations

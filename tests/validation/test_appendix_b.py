@@ -8,25 +8,24 @@ import numpy as np
 import pytest
 from reference import result, results, value
 from studies import storage
-from studies.appendix_b import failure_loads, sweep
+from studies.appendix_b import failure_loads, softness, sweep
 from studies.appendix_b.study import STUDY
 
 from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
-from dem_cli.sweep.plan import plan_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
 BOOK = "thesis_appendix_b"
 TABLE = storage.read("appendix_b")
 ROWS = {row["name"]: row for row in TABLE["failure_loads"]["rows"]}
+SOFT = TABLE["softness"]
 LOADS = {name: failure_loads.load_of(row) for name, row in ROWS.items()}
 
 
 @pytest.fixture(scope="module")
 def planned():
-    case = load_case(sweep.CASE).case
-    return {run.values["name"]: run for run in plan_of(case.sweep, case.seed).runs}
+    return sweep.planned()
 
 
 def test_every_test_is_one_run(planned):
@@ -58,33 +57,60 @@ def test_blocks_and_masses(planned, name, bricks, top):
     assert place == pytest.approx([0.03 if name == "test 12" else 0.2, 0.659])
 
 
-@pytest.mark.parametrize("name", ["test 1", "test 2", pytest.param("test 8", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["test 1", pytest.param("test 4", marks=pytest.mark.slow)])
 def test_runs_near_the_thesis(name):
-    """A coarse bracket; within what docs/appendix_b.md says of them."""
-    row = ROWS[name]
-    kg = {} if row["condition"] == "A" else {"materials.load.density": 61035.0 * row["kg"] / 250}
-    found = sweep.changed(row["bricks"], row["condition"], kg | {"analysis.resolution": 0.01, "analysis.limit": False})
+    """A coarse bracket, as docs/appendix_b.md has it; on joints on which the top moves as far as the thesis says."""
+    found = sweep.changed(name, {"analysis.resolution": 0.01})
     assert found["status"] == "ok"
     assert np.mean(found["bracket"]) == pytest.approx(LOADS[name], rel=0.01)
-    assert np.mean(found["bracket"]) == pytest.approx(np.mean(value(BOOK, f"B{name.split()[-1]}_num")), rel=0.065)
+    assert 0.5 * softness.STATED < softness.top_at_failure(name, found) < 1.1 * softness.STATED
+
+
+def test_joints_by_one_rule(planned):
+    """The largest stress on the base under the dead loads over 4 um, two digits; resultants by hand."""
+    for name, run in planned.items():
+        row = ROWS[name]
+        thickness = 0.04 if row["bricks"] == "stretchers" else 0.08
+        beam = 0.4 * 0.024 * thickness * 2700.0 if row["condition"] == "D" else 0.0
+        wall = 2143.0 * 0.4 * 0.595 * thickness + beam
+        place = (row["kg"] * (0.03 if row["condition"] == "D" else 0.2) + wall * 0.2) / (row["kg"] + wall)
+        pressed = min(0.4, 3.0 * place)  # a triangle where the far side opens
+        peak = 1.0 if place == pytest.approx(0.2) else 2.0
+        stress = peak * 9.81 * (row["kg"] + wall) / (pressed * thickness)
+        joints = load_case(sweep.CASE, run.overrides).case.joints
+        assert [joint.kn for joint in joints.values()] == pytest.approx([stress / 4e-6] * 2, rel=0.025), name
+
+
+def test_the_top_moves_as_the_thesis_says():
+    """At most 0.5 % of the height, half a step of its loads below failure; stiffer joints change loads the less."""
+    tops = [softness.top_at_failure(one["name"], one) for one in SOFT["others"] if one["share"] == 1.0]
+    assert len(tops) == len(softness.COMPUTED)
+    assert max(tops) == pytest.approx(softness.STATED, rel=0.05)
+    assert min(tops) > 0.5 * softness.STATED
+    for name in ("test 1", "test 4"):
+        shares = {one["share"]: softness.middle(one) for one in SOFT["others"] if one["name"] == name}
+        ordered = [shares[share] for share in sorted(shares)] + [softness.middle(SOFT["rigid"][name])]
+        assert ordered == sorted(ordered)
 
 
 def test_all_runs_came_to_an_answer_below_the_bound():
-    for row in ROWS.values():
+    """Rigid joints as the path has them; softer ones carry less."""
+    for name, row in ROWS.items():
         low, high = row["bracket"]
         assert row["status"] == "ok"
         assert low < high
-        assert low < 1.002 * row["associated"]
-        if row["path"] is not None:
-            assert low == pytest.approx(row["path"], rel=0.005)
+        stiff = failure_loads.rigid_run(name)["bracket"]
+        assert max(low, stiff[0]) < 1.002 * row["associated"]
+        assert low < 1.01 * stiff[1]
+        if row["path"] is not None and name != "test 4":  # there the way of loading matters
+            assert stiff[0] == pytest.approx(row["path"], rel=0.01)
 
 
 def test_conditions_as_in_the_thesis():
-    """Walls that turn within 7 % of its DEM; sliding at the friction; a beam makes square bricks turn as one."""
+    """Sliding at the friction; a beam makes square bricks turn as one; the load on top changes little."""
     for name, row in ROWS.items():
         if row["condition"] != "A" and (theirs := failure_loads.thesis_dem(row)) is not None:
-            assert LOADS[name] == pytest.approx(np.mean(theirs), rel=0.07), name
-    assert (ROWS["test 10"]["mode"], ROWS["test 11"]["mode"]) == ("sliding", "rocking")
+            assert failure_loads.rigid_load(name) == pytest.approx(np.mean(theirs), rel=0.07), name
     assert LOADS["test 10"] == pytest.approx(0.5, rel=0.005)
     assert ROWS["square B"]["moving"] < 20 < 100 < ROWS["square C"]["moving"]
     assert LOADS["square C"] / LOADS["square B"] > 1.4
@@ -93,16 +119,19 @@ def test_conditions_as_in_the_thesis():
 
 
 def test_measured_loads_are_lower_by_a_tenth():
-    ratios = failure_loads.our_ratios(list(ROWS.values()))
-    mean = np.mean([ratios[name] for name in failure_loads.RATIOS])
-    assert mean == pytest.approx(value(BOOK, "ratio_exp_num"), abs=0.02)
+    """On rigid joints as in the thesis; softer ones bring loaded walls nearer to the tests."""
+    rows = list(ROWS.values())
+    printed = value(BOOK, "ratio_exp_num")
+    assert failure_loads.mean_ratio(rows, rigid=True) == pytest.approx(printed, abs=0.02)
+    assert printed < failure_loads.mean_ratio(rows) < 0.95
 
 
-def test_self_weight_is_not_explained():
-    """Headers under self weight: 16 % above the thesis, as limit analysis without dilation is."""
-    row = ROWS["test 4"]
-    assert row["path"] == pytest.approx(LOADS["test 4"], rel=0.005)
-    assert 1.1 < LOADS["test 4"] / np.mean(value(BOOK, "B4_num")) < 1.2
+def test_self_weight_on_stated_joints():
+    """Nothing is lost of it: stretchers as the thesis, headers 8 % above instead of 15."""
+    for name, error, rigid in (("test 1", 0.03, 0.05), ("test 4", 0.09, 0.13)):
+        theirs = np.mean(value(BOOK, f"B{name[-1]}_num"))
+        assert 0.0 < LOADS[name] / theirs - 1.0 < error
+        assert failure_loads.rigid_load(name) / theirs - 1.0 > rigid
 
 
 def test_the_page_is_what_was_measured():

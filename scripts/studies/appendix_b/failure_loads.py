@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,8 @@ from reference import results, value
 from dem_cli.bench.table import percent
 from dem_cli.limit.rigid_wall import TopLoad, split_load
 from dem_cli.post import style
+from studies import storage
+from studies.appendix_b.softness import power
 from studies.appendix_b.sweep import outlines, swept
 from studies.template import bracket, table
 
@@ -29,7 +31,7 @@ GROUPS = {"A 4.6": (1,), "B 4.6": (2, 3), "A 2.3": (4,), "B 2.3": (5, 6, 7), "C 
 
 
 def measure() -> dict[str, Any]:
-    """The sweep."""
+    """The sweep, on joints as the thesis states them."""
     return {"rows": swept(), "outlines": outlines()}
 
 
@@ -62,10 +64,10 @@ def by_rule(row: dict[str, Any]) -> float:
 def values(found: dict[str, Any]) -> dict[str, Any]:
     """What failure_loads.md.j2 shows."""
     rows = found["rows"]
-    head = ("test", "bricks b/h", "condition", "load [kg]", "μ", "thesis DEM", "dem", "error", "measured", "error",
-            "rigid part: thesis", "by its rule", "dem over it")  # fmt: skip
-    limits = ("test", "dem", "path, no dilation", "associated", "mode", "moving bricks and loads",
-              "top at failure [mm]")  # fmt: skip
+    head = ("test", "bricks b/h", "condition", "load [kg]", "μ", "kn [Pa/m]", "thesis DEM", "dem", "error",
+            "rigid joints", "error", "measured", "error of dem", "rigid part: thesis", "by its rule")  # fmt: skip
+    limits = ("test", "dem", "rigid joints", "path, no dilation", "associated", "mode", "moving bricks and loads",
+              "top at the last load held [mm]")  # fmt: skip
     return {
         "loads": table(head, map(cells, rows)),
         "limits": table(limits, map(limit_cells, rows)),
@@ -74,22 +76,48 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def rigid_load(name: str) -> float:
+    """Middle of the bracket on rigid joints; test 13 is test 12 again."""
+    return middle(rigid_run(name)["bracket"])
+
+
+def rigid_run(name: str) -> dict[str, Any]:
+    """The run on rigid joints."""
+    return storage.read("appendix_b")["softness"]["rigid"]["test 12" if name == "test 13" else name]  # type: ignore[no-any-return]
+
+
 def errors(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Numbers of the text: errors over the thesis's DEM, and what changes the load."""
     named = {row["name"]: row for row in rows}
-    off = {row["name"]: load_of(row) / middle(thesis_dem(row)) - 1.0 for row in rows if thesis_dem(row) is not None}
-    worst = max(off, key=lambda name: abs(off[name]))
-    turning = [abs(off[name]) for name in off if named[name]["condition"] != "A"]
+    known = {row["name"]: middle(thesis_dem(row)) for row in rows if thesis_dem(row) is not None}
+    off = {name: load_of(named[name]) / load - 1.0 for name, load in known.items()}
+    rigid = {name: rigid_load(name) / load - 1.0 for name, load in known.items()}
+    turning = [name for name in off if named[name]["condition"] != "A"]
     b = [load_of(named[f"test {i}"]) for i in (5, 7)]
     sb, sc = load_of(named["square B"]), load_of(named["square C"])
     return {
-        "dem": 100 * np.mean(np.abs(list(off.values()))), "n": len(off), "largest": 100 * abs(off[worst]),
-        "worst": worst.removeprefix("test "), "ratio": mean_ratio(rows), "load": 100 * (b[0] / b[1] - 1.0), "sb": sb,
-        "sc": sc, "up": 100 * (sc / sb - 1.0),
-        "four": f"{percent(off['test 1'])} for stretchers, {percent(off['test 4'])} for headers",
-        "four_path": named["test 4"]["path"], "turning": f"{100 * min(turning):.1f} to {100 * max(turning):.1f} %",
+        "dem": mean_size(off.values()), "rigid": mean_size(rigid.values()), "n": len(off),
+        "own": mean_size(off[name] for name in ("test 1", "test 4")),
+        "own_rigid": mean_size(rigid[name] for name in ("test 1", "test 4")),
+        "one": f"{percent(off['test 1'])} (rigid {percent(rigid['test 1'])})",
+        "four": f"{percent(off['test 4'])} (rigid {percent(rigid['test 4'])})",
+        "onset": named["test 4"]["onset"], "turning": span(off[name] for name in turning),
+        "turning_rigid": span(rigid[name] for name in turning), "ratio": mean_ratio(rows),
+        "ratio_rigid": mean_ratio(rows, rigid=True),
+        "load": 100 * (b[0] / b[1] - 1.0), "sb": sb, "sc": sc, "up": 100 * (sc / sb - 1.0),
         "ten": f"{load_of(named['test 10']):.3f}", "twelve": f"{load_of(named['test 12']):.3f}",
     }  # fmt: skip
+
+
+def mean_size(errors: Iterable[float]) -> float:
+    """Of their absolute values, in per cent."""
+    return float(100 * np.mean(np.abs(list(errors))))
+
+
+def span(errors: Iterable[float]) -> str:
+    """From the lowest to the highest."""
+    found = sorted(errors)
+    return f"{percent(found[0])} to {percent(found[-1])}"
 
 
 def shown(value: Any) -> str:
@@ -104,44 +132,52 @@ def load_of(row: dict[str, Any]) -> float:
 
 def cells(row: dict[str, Any]) -> tuple[str, ...]:
     """One line of the table."""
-    dem, theirs = load_of(row), thesis_dem(row)
+    dem, theirs, stiff = load_of(row), thesis_dem(row), rigid_load(row["name"])
     test, mark = experiment(row)
     printed = RIGID.get((row["bricks"], row["condition"]))
     rigid = None if printed is None else value(BOOK, printed)
     ratio = {"stretchers": "4.6", "headers": "2.3", "square": "1"}[row["bricks"]]
     return (
         row["name"].removeprefix("test "), ratio, row["condition"], f"{row['kg']}", f"{row['friction']:g}",
-        shown(theirs), f"{dem:.3f}", "–" if theirs is None else percent(dem / middle(theirs) - 1.0), shown(test) + mark,
-        "–" if test is None else percent(dem / test - 1.0), shown(rigid), f"{by_rule(row):.3f}",
-        percent(dem / by_rule(row) - 1.0),
+        power(row["kn"]), shown(theirs), f"{dem:.3f}", over(dem, theirs), f"{stiff:.3f}",
+        over(stiff, theirs), shown(test) + mark, over(dem, test), shown(rigid), f"{by_rule(row):.3f}",
     )  # fmt: skip
+
+
+def over(load: float, known: Any) -> str:
+    """Error over what is known."""
+    return "–" if known is None else percent(load / middle(known) - 1.0)
 
 
 def limit_cells(row: dict[str, Any]) -> tuple[str, ...]:
     loads = ("not found" if load is None else f"{load:.4f}" for load in (row["path"], row["associated"]))
-    return (row["name"].removeprefix("test "), bracket(row["bracket"]), *loads, row["mode"],
+    stiff = bracket(rigid_run(row["name"])["bracket"])
+    return (row["name"].removeprefix("test "), bracket(row["bracket"]), stiff, *loads, row["mode"],
             f"{row['moving']} of {row['blocks']}", f"{row['top_mm']:.2f}")  # fmt: skip
 
 
 def ratios(rows: list[dict[str, Any]]) -> str:
     """Test over dem, by brick and condition."""
-    lines = [(name, shown(RATIOS.get(name)), f"{ratio:.2f}") for name, ratio in our_ratios(rows).items()]
-    lines.append(("mean without D", f"{value(BOOK, 'ratio_exp_num'):.2f}", f"{mean_ratio(rows):.2f}"))
-    return table(("condition, b/h", "thesis", "dem"), lines)
+    stated, rigid = our_ratios(rows), our_ratios(rows, rigid=True)
+    lines = [(name, shown(RATIOS.get(name)), f"{stated[name]:.2f}", f"{rigid[name]:.2f}") for name in GROUPS]
+    printed = f"{value(BOOK, 'ratio_exp_num'):.2f}"
+    lines.append(("mean without D", printed, f"{mean_ratio(rows):.2f}", f"{mean_ratio(rows, rigid=True):.2f}"))
+    return table(("condition, b/h", "thesis", "dem", "rigid joints"), lines)
 
 
-def mean_ratio(rows: list[dict[str, Any]]) -> float:
+def mean_ratio(rows: list[dict[str, Any]], rigid: bool = False) -> float:
     """Of the groups that the thesis prints."""
-    return float(np.mean([ratio for name, ratio in our_ratios(rows).items() if name in RATIOS]))
+    return float(np.mean([ratio for name, ratio in our_ratios(rows, rigid).items() if name in RATIOS]))
 
 
-def our_ratios(rows: list[dict[str, Any]]) -> dict[str, float]:
-    """Mean measured load over our mean load, by group; lost cells as inferred."""
+def our_ratios(rows: list[dict[str, Any]], rigid: bool = False) -> dict[str, float]:
+    """Mean measured load over our mean load, on joints as stated or rigid ones, by group; lost cells as inferred."""
     by_number = {int(row["name"].split()[-1]): row for row in rows if row["name"].startswith("test")}
     found = {}
     for name, numbers in GROUPS.items():
         tests = [experiment(by_number[i])[0] for i in numbers]
-        found[name] = float(np.mean(tests) / np.mean([load_of(by_number[i]) for i in numbers]))
+        ours = [rigid_load(f"test {i}") if rigid else load_of(by_number[i]) for i in numbers]
+        found[name] = float(np.mean(tests) / np.mean(ours))
     return found
 
 

@@ -1,31 +1,38 @@
-"""The sweep of Appendix B: carried out by `dem sweep`, and its rows with what is drawn of them."""
+"""The sweep of Appendix B: carried out by `dem sweep`, its rows and pictures, and single runs of it again."""
 
 from __future__ import annotations
 
 import csv
 import subprocess
 import sys
-import tomllib
+from functools import cache
 from typing import Any
 
-from dem_cli.output.reader import read
-from dem_cli.output.vertices import rest_vertices
+import numpy as np
+
+from dem_cli import api
+from dem_cli.case.overrides import override_of
+from dem_cli.output.reader import Results, read
+from dem_cli.output.vertices import placed_vertices, rest_vertices
+from dem_cli.sweep.plan import SweepRun, plan_of
 from studies.places import CASES, ROOT
 from studies.polygons import rectangle
-from studies.solution import bracket_of, corners_of, from_tables, solve
+from studies.solution import Solution, bracket_of, corners_of, solve
 
 CASE = CASES / "validation" / "appendix_b.toml"
 RESULTS = ROOT / "results" / "appendix_b"  # a second call goes on there
 
 DRAWN = ("test 1", "test 4", "test 5", "test 8", "test 10", "test 11", "square B", "square C")
 PLACES = 3  # digits kept of what is drawn
+TOP = (0.4, 0.595)  # corner of the wall that the load pushes away from it [m]
+RIGID = {"joints.dry.kn": "auto", "joints.mortar.kn": "auto", "analysis.kinematics": "auto"}
 
 
 def swept() -> list[dict[str, Any]]:
     """One row per run, in the order of the case."""
     command = [sys.executable, "-m", "dem_cli", "sweep", str(CASE), "-o", str(RESULTS)]
     subprocess.run([*command, "--keep", "all", "--jobs", "1", "--quiet"], check=False, cwd=ROOT)
-    return [row_of(row) for row in rows_of_sweep()]
+    return [row_of(row, read(RESULTS / "runs" / row["run"])) for row in rows_of_sweep()]
 
 
 def rows_of_sweep() -> list[dict[str, str]]:
@@ -34,24 +41,34 @@ def rows_of_sweep() -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def row_of(row: dict[str, str]) -> dict[str, Any]:
+def row_of(row: dict[str, str], results: Results) -> dict[str, Any]:
     """What the page needs of a run."""
     low, high = (number(row[f"failure_load_bracket.{end}"]) for end in (0, 1))
     command = f"dem sweep cases/validation/appendix_b.toml: {row['name']}"
+    followed = row["limit_analysis.non_associated_status"] == "ok"
     return {
         "command": command, "name": row["name"], "bricks": row["bricks"], "condition": row["condition"],
-        "kg": int(row["kg"]), "friction": float(row["joints.dry.friction"]), "status": row["status"],
-        "bracket": [low, high], "mode": row["failure_mode"],
-        "path": number(row["limit_analysis.non_associated"]) if row["start.status"] == "ok" else None,
+        "kg": int(row["kg"]), "friction": float(row["joints.dry.friction"]), "kn": kn_of(row["name"]),
+        "status": row["status"], "bracket": [low, high], "mode": row["failure_mode"],
+        "path": number(row["limit_analysis.non_associated"]) if followed else None,
         "associated": number(row["limit_analysis.associated"]),
         "moving": int(float(row["mechanism.moving_blocks.count"] or 0)), "blocks": int(row["blocks"]) - 1,
-        "steps": int(row["steps"]), "start": row["start.kind"],
-        "top_mm": round(1e3 * float(row["monitors.(0.4, 0.595) displacement.value"]), 3),
+        "steps": int(row["steps"]), "onset": number(row["onset_of_displacements"]), "top_mm": top_of(results),
     }  # fmt: skip
 
 
 def number(text: str) -> float | None:
     return round(float(text), 6) if text else None
+
+
+def top_of(results: Results) -> float:
+    """How far the top of the wall has moved along the load, at the highest load that it held [mm]."""
+    model = results.model
+    held = [frame for frame in results.frames if frame.stage == "loading"][-1]
+    bricks = np.array([name == "peperino" for name in model.material_names])[model.block_material[model.vertex_blocks]]
+    away = np.abs(rest_vertices(model) - TOP).sum(axis=1)
+    corner = int(np.where(bricks, away, np.inf).argmin())
+    return round(1e3 * float(placed_vertices(model, held.positions, held.orientations)[corner, 0] - TOP[0]), 3)
 
 
 def outlines() -> dict[str, Any]:
@@ -72,25 +89,36 @@ def outlines() -> dict[str, Any]:
     return found
 
 
-def changed(bricks: str, condition: str, changes: dict[str, Any]) -> dict[str, Any]:
-    """One run of the sweep with further changes, keys as in [sweep]: bracket, limit loads, steps."""
-    case = tomllib.loads(CASE.read_text(encoding="utf-8"))
-    bundles = case.pop("sweep")["bundle"]
-    case["analysis"] |= {"follow": 0.0}
-    case["output"] = {"frames": 0}
-    for key, value in (bundles["bricks"][bricks] | bundles["condition"][condition] | changes).items():
-        *way, last = key.split(".")
-        node: Any = case
-        for name in way:
-            node = node[int(name) if isinstance(node, list) else name]
-        node[last] = value
-    summary = solve(from_tables(case)).summary
+@cache
+def planned() -> dict[str, SweepRun]:
+    """The runs of the sweep by name."""
+    case = api.load_case(CASE).case
+    return {str(run.values["name"]): run for run in plan_of(case.sweep, case.seed).runs}
+
+
+def kn_of(name: str) -> float:
+    """Normal stiffness of the joints of a run of the sweep [Pa/m]."""
+    return float(api.load_case(CASE, planned()[name].overrides).case.joints["dry"].kn)
+
+
+def again(name: str, changes: dict[str, Any]) -> Solution:
+    """One run of the sweep with further changes, keys as in [sweep]; without the collapse."""
+    wanted = {"analysis.follow": 0.0, "analysis.limit": False, "output.frames": 0} | changes
+    return solve(api.load_case(CASE, [*planned()[name].overrides, *(override_of(*one) for one in wanted.items())]))
+
+
+def changed(name: str, changes: dict[str, Any]) -> dict[str, Any]:
+    """The same: bracket, limit loads, how the top moved on the way."""
+    solution = again(name, changes)
+    summary = solution.summary
     limit = summary.get("limit_analysis") or {}
     return {
-        "command": f"{bricks}, {condition}: {', '.join(changes)}", "status": summary["status"],
-        "bracket": bracket_of(summary),
-        "path": limit.get("non_associated"), "associated": limit.get("associated"), "mode": summary["failure_mode"],
-        "onset": summary["onset_of_displacements"], "seconds": round(summary["solve_seconds"], 2),
+        "command": f"{name}: {', '.join(changes) or 'as swept'}", "status": summary["status"],
+        "bracket": bracket_of(summary), "path": limit.get("non_associated"), "associated": limit.get("associated"),
+        "mode": summary["failure_mode"], "onset": summary["onset_of_displacements"],
+        "held": [[round(row.load, 5), round(1e3 * row.monitors[0], 3)]
+                 for row in solution.seen.rows if row.stage == "loading"],
+        "steps": summary["steps"], "seconds": round(summary["solve_seconds"], 2),
     }  # fmt: skip
 
 
