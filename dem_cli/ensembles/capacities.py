@@ -55,9 +55,11 @@ def distribution(
 ) -> dict[str, Any]:
     """Keys of the summary: the lognormal fit, its confidence and the curve.
 
-    bounds: (n_records, n_structures, 2).
+    bounds: (n_records, n_structures, 2). Of one run for each level nothing is fitted: it is one draw.
     """
-    found = fit(bounds[:, :, 0].ravel(), bounds[:, :, 1].ravel(), statistics.narrowest)
+    found = None
+    if bounds[:, :, 0].size > 1:
+        found = fit(bounds[:, :, 0].ravel(), bounds[:, :, 1].ravel(), statistics.narrowest)
     if found is None:
         return {"median": None, "dispersion": None, "confidence": None, "curve": None}
     at = _range(found, levels, statistics.points)

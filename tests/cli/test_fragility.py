@@ -103,6 +103,18 @@ def test_files_and_keys(straight):
     assert not journal(folder).exists()
 
 
+def test_one_record_is_one_draw(case):
+    """No curve is fitted to it: it stood at one level and fell at the next."""
+    folder = case.parent / "one"
+    done = dem("run", case, "-o", folder, "-q", "--set", f"motion=[{QUAKE}]", "--plot")
+    assert done.exit_code == 0, done.output
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert (summary["median"], summary["dispersion"], summary["curve"]) == (None, None, None)
+    assert "one record is one draw; more are needed" in done.output
+    fell, stood = summary["collapse_intensities"][0], summary["stood_up_to"][0]
+    assert f"collapse at    {fell:.4g}, and it stood at {stood:.4g}; 1 record" in done.output
+
+
 def test_words(straight):
     _, printed = straight
     assert "peak ground acceleration over 9.81 m/s²" in printed

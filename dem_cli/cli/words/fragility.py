@@ -34,6 +34,9 @@ def _study(summary: Mapping[str, Any]) -> Rows:
     if found:
         never = len(summary["collapse_intensities"]) - len(found)
         text = f"{min(found):.4g} to {max(found):.4g}, mean {sum(found) / len(found):.4g}, {len(found)} records"
+        if len(summary["collapse_intensities"]) == 1:
+            stood = summary["stood_up_to"][0]
+            text = f"{found[0]:.4g}" + (f", and it stood at {stood:.4g}" if stood else "") + "; 1 record"
         rows.append(("collapse at", text + (f"; {never} never collapsed" if never else "")))
     rows += _shares(summary)
     split = (summary.get("repeats") or {}).get("dispersion")
@@ -49,6 +52,8 @@ def _study(summary: Mapping[str, Any]) -> Rows:
 def _why_no_median(summary: Mapping[str, Any]) -> str:
     if all(value is None for value in summary["collapse_intensities"]):
         return "nothing collapsed; higher intensities are needed"
+    if len(summary["collapse_intensities"]) == 1 and summary["stood_up_to"][0]:
+        return "one record is one draw; more are needed"
     return "every record collapsed at the lowest intensity; lower ones are needed"
 
 

@@ -48,4 +48,4 @@ def _of_load(summary: Mapping[str, Any]) -> list[str]:
     parts = [within, "a second history agrees"] if agrees else [f"{within} under this history"]
     bound = (summary.get("limit_analysis") or {}).get("associated")
     above = bound is not None and bound > 1.005 * bracket[1]
-    return [*parts, f"not above {load_text(bound)} on any"] if above else parts
+    return [*parts, f"no history carries more than {load_text(bound)}"] if above else parts
