@@ -60,7 +60,8 @@ class CollapseStates:
         self.upper = upper
         forces = np.abs(statics.live.reshape(-1, n_dof) / (own / structure.scales).reshape(-1, n_dof)).max(axis=1)
         lightest = max(float(forces[forces > 0.0].min()), settings.slightest * float(forces.max()))
-        self.fastest = settings.rates / lightest  # rate of a joint, while live loads have unit power
+        self.alone = 1.0 / lightest  # its rate if it moves alone, while the live loads have unit power
+        self.fastest = settings.rates[0] * self.alone  # rate of a joint
         joint, self.limits = statics.joint, statics.strength
         n_points, n_joints = statics.n_points, statics.n_joints
         self.crushed = np.flatnonzero(np.isfinite(self.limits.compression))
