@@ -94,7 +94,8 @@ class LeastSettings:
     rates: tuple[float, ...] = (10.0, 100.0)
     slightest: float = 0.02  # ... where no block counts as less loaded than this share of the most loaded one
     whole: int = 40  # joints, up to which all mechanisms are searched
-    nodes: int = 2_000  # of one search
+    nodes: int = 10_000  # of a search of all states
+    near: int = 2_000  # nodes of a search around a state
     changed: int = 2  # states of contact points and joints that a local search may change at once
     rounds: int = 30  # of the local search
     weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path
