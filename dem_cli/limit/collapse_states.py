@@ -204,7 +204,11 @@ class CollapseStates:
             given.append(LinearConstraint(row[None], -np.inf, changed - near.choices[counted].sum()))
         cost, whole = np.zeros(self.n), np.zeros(self.n)
         cost[self.load], whole[self.choices] = 1.0, 1.0
-        options = {"node_limit": settings.nodes if near is None else settings.near, "mip_rel_gap": settings.gap, "presolve": True}
+        options = {
+            "node_limit": settings.nodes if near is None else settings.near,
+            "mip_rel_gap": settings.gap,
+            "presolve": True,
+        }
         answer = milp(cost, integrality=whole, bounds=Bounds(low, high), constraints=given, options=options)
         nodes = int(answer.mip_node_count or 0)
         if answer.status == 2:
