@@ -22,10 +22,6 @@ class Envelope(NamedTuple):
     compression: np.ndarray  # fc A [N]; infinite: cannot be crushed
     dilation: np.ndarray  # tan ψ: opening per slip, at most μ [-]
 
-    def where(self, points: np.ndarray) -> Envelope:
-        """Those of some points."""
-        return Envelope(*(values[points] for values in self))
-
 
 def frictional(friction: np.ndarray) -> Envelope:
     """Friction and nothing else: N ≥ 0, |T| ≤ μ N; (n_points,)."""

@@ -60,7 +60,8 @@ class CollapseStates:
         self.upper = upper
         forces = np.abs(statics.live.reshape(-1, n_dof) / (own / structure.scales).reshape(-1, n_dof)).max(axis=1)
         lightest = max(float(forces[forces > 0.0].min()), settings.slightest * float(forces.max()))
-        self.fastest = settings.rates / lightest  # rate of a joint, while live loads have unit power
+        self.alone = 1.0 / lightest  # its rate if it moves alone, while the live loads have unit power
+        self.fastest = settings.rates[0] * self.alone  # rate of a joint
         joint, self.limits = statics.joint, statics.strength
         n_points, n_joints = statics.n_points, statics.n_joints
         self.crushed = np.flatnonzero(np.isfinite(self.limits.compression))
@@ -203,7 +204,11 @@ class CollapseStates:
             given.append(LinearConstraint(row[None], -np.inf, changed - near.choices[counted].sum()))
         cost, whole = np.zeros(self.n), np.zeros(self.n)
         cost[self.load], whole[self.choices] = 1.0, 1.0
-        options = {"node_limit": settings.nodes, "mip_rel_gap": settings.gap, "presolve": True}
+        options = {
+            "node_limit": settings.nodes if near is None else settings.near,
+            "mip_rel_gap": settings.gap,
+            "presolve": True,
+        }
         answer = milp(cost, integrality=whole, bounds=Bounds(low, high), constraints=given, options=options)
         nodes = int(answer.mip_node_count or 0)
         if answer.status == 2:

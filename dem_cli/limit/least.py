@@ -32,6 +32,7 @@ class LeastLoad(NamedTuple):
     residual: float | None  # of the state, in mean weights
     velocities: np.ndarray | None  # mechanism; the live loads have unit power, (n_blocks, n_dof)
     bounded: bool  # whether statics bounds all forces; else states with larger ones are left out
+    rates: float  # largest rate of a joint, over that of the least loaded block if it moves alone; no faster ones
     nodes: int
     seconds: float
 
@@ -44,6 +45,7 @@ class LeastLoad(NamedTuple):
             "least_changed": self.changed,
             "least_residual": self.residual,
             "least_forces_bounded": self.bounded,
+            "least_rates": self.rates,
             "least_nodes": self.nodes,
             "least_seconds": self.seconds,
         }
@@ -64,7 +66,7 @@ def least_load(
     states = CollapseStates(structure, strength, upper, settings)
     found, nodes = StateSearch(None, 0.0, False, 0), 0
     if states.statics.n_joints <= settings.whole:
-        found = states.search(upper)
+        found = _of_all(states, upper)
         nodes = found.nodes
     best = _believed(found.state, settings)
     if found.whole and (best is not None or found.state is None):
@@ -76,6 +78,26 @@ def least_load(
     best, changed, more = _locally(states, best)
     known = SOME if changed is None else LOCAL
     return _told(states, best, known, found.proved, nodes + more, begun)._replace(changed=changed)
+
+
+def _of_all(states: CollapseStates, upper: float) -> StateSearch:
+    """The least of all states with slow joints; then whether faster ones make any lower, if that comes to an end."""
+    settings = states.settings
+    slow, *faster = (rate * states.alone for rate in settings.rates)
+    states.fastest = slow
+    found = states.search(upper)
+    for fastest in faster:
+        if not found.whole:
+            break
+        load = upper if found.state is None else (1.0 - settings.better) * found.state.load
+        before, states.fastest = states.fastest, fastest
+        more = states.search(load)
+        if not more.whole:
+            states.fastest = before
+            return found._replace(nodes=found.nodes + more.nodes)
+        lower = more if more.state is not None else found
+        found = lower._replace(nodes=found.nodes + more.nodes)
+    return found
 
 
 def _locally(states: CollapseStates, best: CollapseState) -> tuple[CollapseState, int | None, int]:
@@ -130,6 +152,7 @@ def _told(
         None if best is None else best.residual,
         moved,
         states.bounded,
+        states.fastest / states.alone,
         nodes,
         time.perf_counter() - begun,
     )

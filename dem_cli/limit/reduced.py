@@ -29,7 +29,7 @@ from dem_cli.limit.joint_forces import SOLVED, JointForces
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, ReducedSettings
 
-OK, NONE = "ok", "no load proved: forces of the reduced domain do not balance the dead loads"
+OK, NONE = "ok", "no load proved: the reduced domain does not carry the dead loads, or carries any load"
 
 
 class LowerBound(NamedTuple):
@@ -37,7 +37,9 @@ class LowerBound(NamedTuple):
 
     status: str  # OK or NONE
     multiplier: float | None  # of the live loads, as users know it; None where none was proved
-    reduced_domain: float | None  # the domain of the thesis, of joints that keep their cohesion where they open
+    reduced_domain: (
+        float | None
+    )  # of the thesis, for joints that keep their cohesion where they open; None: without any
     programs: int  # linear programs solved
     seconds: float
 
@@ -80,7 +82,9 @@ class ReducedDomain:
         """Intervals from zero on, each from what the last one reached."""
         begun, settings = time.perf_counter(), self.settings
         low, high = 0.0, associated
-        thesis = self.reach(self.untied, 0.0, associated, self.kept.strength.cohesion)
+        own = self.kept.strength
+        some = own.cohesion.any() or own.dilation.any()  # else it has no shear strength at all
+        thesis = self.reach(self.untied, 0.0, associated, own.cohesion) if some else None
         first = self.reach(self.untied, 0.0, associated)
         if first is not None:
             low = first
@@ -129,4 +133,4 @@ class ReducedDomain:
         last = kept.solve(-cost, bounds, rows, tops)
         if last.status != SOLVED:
             return None  # without an upper end any load, as far as these forces tell: none to name
-        return max(float(-last.fun * kept.load) * (1.0 - self.settings.margin), low)
+        return max(float(-last.fun * kept.load) * (1.0 - self.settings.margin), low) + 0.0

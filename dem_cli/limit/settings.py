@@ -90,10 +90,12 @@ class LeastSettings:
     """The least load of joints that do not dilate, as a mixed-integer program: bounds, effort, accuracy."""
 
     forces: float = 20.0  # largest normal force of a contact point, in all dead and live loads together
-    rates: float = 10.0  # largest rate of a joint, over the motion of the least loaded block if it moves alone ...
-    slightest: float = 0.02  # ... but no block counts as less loaded than this share of the most loaded one
+    # Largest rate of a joint, over that of the least loaded block if it moves alone: to search and to prove with ...
+    rates: tuple[float, ...] = (10.0, 100.0)
+    slightest: float = 0.02  # ... where no block counts as less loaded than this share of the most loaded one
     whole: int = 40  # joints, up to which all mechanisms are searched
-    nodes: int = 2_000  # of one search
+    nodes: int = 10_000  # of a search of all states
+    near: int = 2_000  # nodes of a search around a state
     changed: int = 2  # states of contact points and joints that a local search may change at once
     rounds: int = 30  # of the local search
     weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path

@@ -122,3 +122,39 @@ def test_a_profile_is_ignored_aloud():
     case = WALL.parents[1] / "validation" / "wall_21_profile.toml"
     answer = dem("limit", case, "--associated-only", "--json")
     assert any("takes joint 'rough' as plane" in line for line in json.loads(answer.stdout)["warnings"])
+
+
+def test_each_load_says_what_it_bounds():
+    """An arch whose bounds meet, in lines and in JSON."""
+    small = (CASES / "verification" / "arch_21_mu040.toml", "--lower", "--least")
+    lines = dict(line.split(maxsplit=1) for line in dem("limit", *small).stdout.splitlines()[1:])
+    assert "(upper bound, between 0.05216" in lines["associated"]
+    assert "of all collapse states of joints that do not dilate" in lines["least"]
+    assert "collapse at no lower load" in lines["lower"]
+    limits = json.loads(dem("limit", *small, "--json").stdout)["limit_analysis"]
+    assert limits["lower_bound_status"] == "ok"
+    assert limits["lower_bound"] <= limits["least"] <= limits["associated_bounds"][1]
+    assert (limits["least_of"], limits["least_changed"], limits["least_forces_bounded"]) == ("all", None, True)
+    assert limits["reduced_domain"] is None  # without cohesion it does not even carry the dead loads
+
+
+def test_joints_with_strength_have_bounds_and_no_path():
+    glued = (CASES / "verification" / "cohesion_block.toml", "--lower", "--least")
+    answer = dem("limit", *glued)
+    assert answer.exit_code == 0
+    assert "non-associated not looked for: the path knows friction alone, and law 'mohr-coulomb' more" in answer.stdout
+    assert "reduced        0.1699  (reduced domain: lower bound of joints that keep their cohesion" in answer.stdout
+    assert dem("limit", *glued, "--associated-only").stdout.count("non-associated") == 0
+
+
+def test_a_least_load_of_joints_that_lose_strength_is_refused():
+    answer = dem("limit", CASES / "verification" / "tension_block.toml", "--least")
+    assert answer.exit_code == 2
+    assert "residual strengths" in answer.stderr
+    assert "leave --least out" in answer.stderr
+
+
+def test_barton_s_joints_are_refused_in_words():
+    answer = dem("limit", CASES / "verification" / "barton_block.toml")
+    assert answer.exit_code == 2
+    assert "that of law 'barton' is curved" in answer.stderr

@@ -60,9 +60,9 @@ def _lower(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     if "lower_bound" not in limits:
         return []
     rows = []
-    if limits["reduced_domain"]:  # without cohesion it says nothing
+    if limits["reduced_domain"]:
         how = "reduced domain: lower bound of joints that keep their cohesion where they open"
-        rows.append(("bonded", f"{load_text(limits['reduced_domain'])}  ({how})"))
+        rows.append(("reduced", f"{load_text(limits['reduced_domain'])}  ({how})"))
     if limits["lower_bound"] is None:
         return [*rows, ("lower bound", str(limits["lower_bound_status"]))]
     how = f"joints that do not dilate collapse at no lower load, {seconds(limits['lower_bound_seconds'])}"

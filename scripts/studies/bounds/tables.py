@@ -12,7 +12,7 @@ from dem_cli.bench.table import percent
 from dem_cli.contact.layout import lobatto
 from studies.template import table
 
-HEAD = ("case", "blocks", "joints", "bonded", "lower bound", "least load", "of", "DEM", "path", "associated",
+HEAD = ("case", "blocks", "joints", "reduced", "lower bound", "least load", "of", "DEM", "path", "associated",
         "DEM over least", "CPU [s]")  # fmt: skip
 LEAST_OF = {"all": "all states", "local": "local", "some": "one state", "none": "none found"}
 SAME = 2e-6  # relative: what solvers leave open
