@@ -87,7 +87,7 @@ def shaken(frequency: float, a: float, *more: str) -> dict[str, Any]:
     """One run; peak: largest |rotation| of a column [rad], slid: slip of each foot in the end [m]; means of the last
     cycle: left, right: rotations [rad], crown: drop [m].
     """
-    found = run("arch_8_harmonic", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
+    found = run("arch_8_harmonic_5hz", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
                 "analysis.after_collapse=0.0", "output.frames=0", *more)  # fmt: skip
     answer = found.answer
     if len(found.values):
@@ -104,7 +104,7 @@ def perturbed(name: str, *more: str, repeats: int = REPEATS, a: float | None = N
     """One of the motions on slightly different structures; a: another amplitude of it."""
     frequency, usual = TRIED[name]
     a = usual if a is None else a
-    return run("arch_8_harmonic", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
+    return run("arch_8_harmonic_5hz", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
                f"analysis.repeats={repeats}", "output.frames=0", *more).answer  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def _slips(*more: str) -> dict[str, list[float]]:
     """Slip of the joints at 5 Hz, a = 1.5, means of the first four cycles and of both sides [mm]."""
     monitors = ", ".join(f'{{ between = ["{a}", "{b}"], quantity = "slip" }}' for a, b in zip(RING[:-1], RING[1:]))
     frequency, a = TRIED["harm_5_15"]
-    found = run("arch_8_harmonic", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
+    found = run("arch_8_harmonic_5hz", f"motion.frequency={frequency:g}", f"motion.amplitude={a * UNIT:.5g}",
                 "analysis.after_collapse=0.0", f"monitor=[{monitors}]", *more)  # fmt: skip
     cycles = np.floor(found.times * frequency + 1e-9)
     slip = 1e3 * np.array([np.abs(found.values[cycles == k].mean(axis=0)) for k in range(4)])

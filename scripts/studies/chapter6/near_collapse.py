@@ -25,7 +25,7 @@ BEFORE = (1.5, 0.6, 0.3, 0.15, 0.0)  # [s] before the collapse of the record
 def measure() -> dict[str, Any]:
     """The steady motion at 5 Hz, a = 1.5, the collapse at 2.5 Hz, and record 3 at its lowest collapse and below."""
     steady = run("arch_8_harmonic_steady", "output.frames=500")
-    falls = run("arch_8_harmonic", "output.frames=500", "analysis.after_collapse=0.0")
+    falls = run("arch_8_harmonic", "output.frames=500", "analysis.after_collapse=0.0", "analysis.repeats=0")
     end = falls.summary["collapse_time"] or 5.0
     stood, fell = _record()
     return {

@@ -14,7 +14,8 @@ from studies.seeds.rows import INPUT, MET, MISSED, NOT, UNKNOWN, SeedRow, rows
 from studies.template import filled, minus, table
 
 SEEDS = {"000": "thesis", "001": "paper 1 (Lemos 2019)", "002": "paper 2 (Bui and Limam)"}
-HEAD = ("result", "what", "printed in", "kind", "printed", "dem", "error", "allowed", "verdict", "from", "remark")
+HEAD = ("result", "printed in", "printed", "dem", "error", "allowed", "verdict", "from, and remark")
+KEPT = "\N{NO-BREAK SPACE}"
 DIGITS = 4
 
 
@@ -83,11 +84,13 @@ def _table(those: Sequence[SeedRow]) -> str:
 
 def _cells(row: SeedRow) -> tuple[str, ...]:
     name = row.page.rpartition("/")[2].rpartition(".")[0]
-    verdict = f"**{row.verdict}**" if row.verdict == MISSED else row.verdict
     remark = row.why.partition(": ")[2] if row.verdict == NOT else row.why
+    link = f"[{name}]({row.page})" if name else ""
+    allowed = minus(f"± {row.allowed:.2g}") if row.allowed and row.verdict in (MET, MISSED) else ""
     return (
-        f"`{row.name}`", row.what, row.where, row.kind, _shown(row.printed), _shown(row.found), _error(row),
-        minus(f"± {row.allowed:.2g}") if row.allowed else "", verdict, f"[{name}]({row.page})" if name else "", remark,
+        f"`{row.name}`<br>{row.what}", f"{row.where}; {row.kind}", _shown(row.printed), _shown(row.found),
+        _error(row).replace(" ", KEPT), allowed.replace(" ", KEPT),
+        f"**{row.verdict}**" if row.verdict == MISSED else row.verdict, ": ".join(filter(None, (link, remark))),
     )  # fmt: skip
 
 
