@@ -51,8 +51,8 @@ class FragilityStudy:
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
-        duration = duration_of(case, GroundMotion(self.records, model))
-        self.stiffness = rocking_stiffness(case, model, duration, many=True, settings=settings)
+        duration_of(case, GroundMotion(self.records, model))  # which must be known
+        self.stiffness = rocking_stiffness(case, model, settings)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
 
@@ -151,11 +151,13 @@ class FragilityStudy:
         return answer
 
     def _warn_failed(self) -> None:
-        failed = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
-        for trial, run in failed[:MOST_LISTED]:
+        without = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
+        for trial, run in without[:MOST_LISTED]:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
-        if failed:
-            self.warnings.append(f"{len(failed)} of {len(self.batcher.done)} runs failed and are left out")
+        failed = sum(not run.ending for _, run in without)
+        for count, words in ((failed, "failed"), (len(without) - failed, "have no known end")):
+            if count:
+                self.warnings.append(f"{count} of {len(self.batcher.done)} runs {words} and are left out")
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""

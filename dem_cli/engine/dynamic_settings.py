@@ -60,17 +60,15 @@ class RockingSettings:
     """
 
     turn: float = 1e-6  # rad
-    turn_of_many: float = 1e-5  # rad, in ensembles, where records differ by far more
     doubtful: float = 1e-4  # rad: from here on a run says so
     round_off: float = 2e-6  # of its weight, that round-off of places may do to the force on a block
-    work: float = 3e7  # steps × contact points of one run that stiffness may lead to: two seconds
-    work_of_many: float = 2e7  # the same of each run of an ensemble: one second
-    share: float = 0.5  # of analysis.max_steps, that it may lead to
+    work: float = 2e6  # steps × contact points per √(height/g) of motion, that stiffness may lead to: 0.15 s of CPU
     points_per_step: float = 8.0  # contact points that a step costs beside its own
     pressed: float = 0.01  # of the mean weight of a block: joints that carry less hold nobody upright
     mechanism: float = 1e3  # rad: blocks that turn further are not held by their joints
     softer: float = 10.0  # joints of the second run that shows how much stiffness matters
     moved: float = 0.02  # of a peak, that it may move by
+    spread: float = 0.2  # of the median peak of repeats, between 16 and 84 %: from here on motion hangs on chance
 
 
 @dataclass(frozen=True)
