@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
@@ -25,6 +26,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
+from dem_cli.output.ending import MOVES
 from dem_cli.output.record import FALLS, Observer, RunRow, distinct
 
 if TYPE_CHECKING:
@@ -151,13 +153,13 @@ class FragilityStudy:
         return answer
 
     def _warn_failed(self) -> None:
-        without = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
-        for trial, run in without[:MOST_LISTED]:
+        done = self.batcher.done
+        failed = [(t, run) for t, run in sorted(done.items()) if run.collapsed is None]
+        for trial, run in failed[:MOST_LISTED]:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
-        failed = sum(not run.ending for _, run in without)
-        for count, words in ((failed, "failed"), (len(without) - failed, "have no known end")):
-            if count:
-                self.warnings.append(f"{count} of {len(self.batcher.done)} runs {words} and are left out")
+        if failed:
+            self.warnings.append(f"{len(failed)} of {len(done)} runs failed and are left out")
+        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.analysis.coda)
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""

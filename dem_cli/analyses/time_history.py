@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
+from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import TimeHistory, duration_of
+from dem_cli.dynamics.history import TimeHistory
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -26,6 +27,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
+from dem_cli.output.ending import MOVES
 from dem_cli.output.record import FALLS, Observer, RunRow
 
 if TYPE_CHECKING:
@@ -91,9 +93,10 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     fell = case.analysis.repeats - len(trials)
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
+    found = spread([run for run in runs if run.ending], len(case.monitor))
+    warnings += undecided(found["still_moving"], found["runs"], case.analysis.coda)
     return {
-        "repeats": spread([run for run in runs if run.ending], len(case.monitor))
-        | {"seconds": sum(run.seconds for run in runs)},
+        "repeats": found | {"seconds": sum(run.seconds for run in runs)},
         "repeat_seconds": time.perf_counter() - started,
         "warnings": warnings,
     }
@@ -102,16 +105,16 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
 def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
     """How many collapsed, and the percentiles of the peaks of the others: a list, None for each where none stood.
 
-    Of those that still move when the time after the motion is over nobody knows it: `undecided`.
+    still_moving: those of which nobody knows it, when the time after the motion is over; among the others.
     """
     peaks = np.array([run.peaks for run in runs if not run.collapsed]).reshape(-1, n_monitors)
-    collapsed, undecided = len(runs) - len(peaks), sum(run.collapsed is None for run in runs)
+    collapsed, moving = len(runs) - len(peaks), sum(run.ending == MOVES for run in runs)
     columns = [
         {name: float(np.percentile(column, q)) for name, q in PERCENTILES.items()} if len(column) else None
         for column in peaks.T
     ]
     share = collapsed / len(runs) if runs else None
-    counts = {"runs": len(runs), "collapsed": collapsed, "undecided": undecided}
+    counts = {"runs": len(runs), "collapsed": collapsed, "still_moving": moving}
     return counts | {"share_collapsed": share, "peaks": columns}
 
 

@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
+from dem_cli.output.ending import COLLAPSED, MOVES, ROCKS, STOOD
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.tables.analysis import ShakingAnalysis
-
-COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "stood, still rocking", "still moving"
 
 
 class Ending(NamedTuple):
@@ -46,7 +45,7 @@ class Ending(NamedTuple):
         if self.block is not None:
             return f"'{self.block.block}' {self.block.how}"
         if self.how == MOVES:
-            return f"{MOVES} {self.followed:.3g} s after the motion: a longer analysis.coda may tell whether it falls"
+            return f"{MOVES} {self.followed:.3g} s after the motion"
         return ""
 
 
@@ -77,6 +76,16 @@ def ending(
         swings.look()
 
 
+def undecided(moving: int, runs: int, coda: float) -> list[str]:
+    """Words for runs of many of which nobody knows whether they fall; none where there are none."""
+    if not moving:
+        return []
+    return [
+        f"{moving} of {runs} runs still moved {coda:g} s after the motion and count as standing: a longer "
+        "analysis.coda may tell whether they fall"
+    ]
+
+
 def at_rest(sim: DynamicSimulation) -> bool:
     """Neither moving nor about to: a block at the turning point of its rocking is not in balance."""
     history = sim.settings.history
@@ -95,12 +104,14 @@ class Swings:
         self._looks.append(self.sim.places()[self.sim.free])
 
     def turned_back(self) -> bool:
-        """Whether no block went farther in the second half of the time than in the first, to either side."""
+        """Whether no block went farther in the second half of the time than in the first, to either side, by what
+        counts; none may be farther out now.
+        """
         middle = len(self._looks) // 2
         if middle == 0:
             return False
         first, second = np.array(self._looks[: middle + 1]), np.array(self._looks[middle:])
-        small = self.sim.settings.history.noticeable * self.sim.smallest
-        higher = second.max(axis=0) - first.max(axis=0)
-        lower = first.min(axis=0) - second.min(axis=0)
-        return bool(max(higher.max(initial=0.0), lower.max(initial=0.0)) <= small)
+        history = self.sim.settings.history
+        small, high, low = history.steady * self.sim.smallest, first.max(axis=0), first.min(axis=0)
+        beyond = np.maximum(second - high, low - second)
+        return bool((beyond[-1] <= small).all() and (beyond <= small + history.grows * (high - low)).all())

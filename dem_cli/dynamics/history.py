@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.coda import COLLAPSED, MOVES, Ending, at_rest, ending
+from dem_cli.dynamics.coda import Ending, at_rest, ending
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
@@ -27,6 +27,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
+from dem_cli.output.ending import COLLAPSED, MOVES
 from dem_cli.output.record import FALLS, Energy, Samples
 from dem_cli.statics.equilibrium import stand
 
@@ -146,18 +147,18 @@ class TimeHistory:
         return {"status": "ok"} | self._ended(fallen)
 
     def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
-        """How it ended, on a copy: what was measured and drawn is of the motion alone."""
+        """How it ended."""
         resting = at_rest(self.sim)
-        end = Ending(COLLAPSED, fallen) if fallen is not None else self._followed()
+        end = Ending(COLLAPSED, fallen) if fallen is not None else self._followed(deepcopy(self.sim))
         found: dict[str, Any] = {"collapsed": end.collapsed, "collapse_time": None}
         if end.block is not None:
             found |= {"collapse_time": end.block.time, "collapse_block": end.block.block, "collapse": end.block.how}
         return found | {"ending": end.how, "at_rest": resting, "followed": end.followed}
 
-    def _followed(self) -> Ending:
-        """How it ends after its motion."""
-        sim, analysis, dt = deepcopy(self.sim), self.case.analysis, self.step.step
-        history, motion_ends = sim.settings.history, sim.time
+    def _followed(self, sim: DynamicSimulation) -> Ending:
+        """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
+        analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
+        history = sim.settings.history
         nothing = Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))
 
         def advance(n_steps: int) -> None:

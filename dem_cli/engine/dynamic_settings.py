@@ -45,9 +45,11 @@ class HistorySettings:
     energy_every: int = 10  # looks from one look into the books to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
-    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it; ways below it
+    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
+    steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back
+    grows: float = 0.05  # of the way between these, that they may have gone beyond in passing
     least_coda: float = 0.4  # of the coda, before which no structure that moves is taken for one that has turned back
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.dynamics.coda import COLLAPSED, Ending, ending
+from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
@@ -18,6 +18,7 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Watch
+from dem_cli.output.ending import COLLAPSED
 from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
@@ -31,14 +32,14 @@ if TYPE_CHECKING:
 class ShakenRunResult(NamedTuple):
     """What became of one run."""
 
-    collapsed: bool | None  # None: it failed, or nobody knows
+    collapsed: bool | None  # before the time after the motion was over; None: it failed
     time: float | None  # of the collapse [s]
-    how: str  # the block that collapsed and how, or why nobody knows whether one did
+    how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
     steps: int
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
-    ending: str = ""  # one of those of dynamics/coda.py; empty where the run failed
+    ending: str = ""  # one of those of output/ending.py; empty where the run failed
 
 
 class RunCancelled(Exception):
@@ -88,7 +89,7 @@ class RestedStructure:
         except SolverError as error:
             how = str(error)
         else:
-            collapsed, at, how, balance, word = end.collapsed, end.time, end.why, closure(sim), end.how
+            collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
         return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, seconds, word)
 
