@@ -25,13 +25,8 @@ PER_STEP = 0.4  # µs beside them
 
 
 def settings_of(case: Case, model: Model) -> Settings:
-    """Settings with the stiffness that a run gives "auto" joints; the default one where its length is not known."""
-    length = case.analysis.duration or GroundMotion(motions_of(case), model).duration
-    if length <= 0.0:
-        return DEFAULT
-    return rocking_stiffness(case, model, length, many=case.analysis.kind == "fragility", settings=DEFAULT).applied(
-        DEFAULT
-    )
+    """Settings with the stiffness that a run gives "auto" joints."""
+    return rocking_stiffness(case, model).applied(DEFAULT)
 
 
 def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
@@ -25,6 +26,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
+from dem_cli.output.ending import MOVES
 from dem_cli.output.record import FALLS, Observer, RunRow, distinct
 
 if TYPE_CHECKING:
@@ -51,8 +53,8 @@ class FragilityStudy:
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
-        duration = duration_of(case, GroundMotion(self.records, model))
-        self.stiffness = rocking_stiffness(case, model, duration, many=True, settings=settings)
+        duration_of(case, GroundMotion(self.records, model))  # which must be known
+        self.stiffness = rocking_stiffness(case, model, settings)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
 
@@ -151,11 +153,13 @@ class FragilityStudy:
         return answer
 
     def _warn_failed(self) -> None:
-        failed = [(t, run) for t, run in sorted(self.batcher.done.items()) if run.collapsed is None]
+        done = self.batcher.done
+        failed = [(t, run) for t, run in sorted(done.items()) if run.collapsed is None]
         for trial, run in failed[:MOST_LISTED]:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
         if failed:
-            self.warnings.append(f"{len(failed)} of {len(self.batcher.done)} runs failed and are left out")
+            self.warnings.append(f"{len(failed)} of {len(done)} runs failed and are left out")
+        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.analysis.coda)
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""

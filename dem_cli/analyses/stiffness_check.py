@@ -29,7 +29,11 @@ WHY = (
 
 
 def checked(
-    history: TimeHistory, motions: Sequence[Motion], chosen: RockingStiffness, collapsed: bool, settings: Settings
+    history: TimeHistory,
+    motions: Sequence[Motion],
+    chosen: RockingStiffness,
+    collapsed: bool | None,
+    settings: Settings,
 ) -> dict[str, Any]:
     """Keys of the summary about a run on "auto" joints; what is to be doubted goes to the warnings of its job.
 
@@ -37,23 +41,30 @@ def checked(
     """
     job, rocking = history.job, settings.rocking
     found: dict[str, Any] = {"joint_stiffness": chosen.ratio, "elastic_turn": chosen.turn, "softer_joints_move": None}
-    softer = chosen.softer(rocking.softer)
+    run = _run(job, motions, chosen.softer(rocking.softer).applied(settings))
+    factor, said = f"on joints {rocking.softer:g} times as soft", ""
+    if run is None or not run.ending:
+        job.skipped.append(f"a second run {factor}: {'it does not stand' if run is None else run.how}")
+    elif bool(run.collapsed) != bool(collapsed):
+        said = f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}"
+    elif not collapsed:
+        moved = change(history.peaks, np.array(run.peaks))
+        found["softer_joints_move"] = float(moved.max()) if len(moved) else None
+        said = _doubts(job, factor, moved, rocking.moved)
     if chosen.turn > rocking.doubtful:
-        job.warnings.append(chosen.doubt)
-    elif softer.work > rocking.work:
-        job.skipped.append("a second run on softer joints: too long")
-    else:
-        run = _run(job, motions, softer.applied(settings))
-        factor = f"on joints {rocking.softer:g} times as soft"
-        if run is None or run.collapsed is None:
-            job.skipped.append(f"a second run {factor}: {'it does not stand' if run is None else run.how}")
-        elif run.collapsed != collapsed:
-            job.warnings.append(f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}")
-        elif not collapsed:
-            moved = change(history.peaks, np.array(run.peaks))
-            found["softer_joints_move"] = float(moved.max()) if len(moved) else None
-            job.warnings += _doubts(job, factor, moved, rocking.moved)
+        job.warnings.append(f"{chosen.doubt}; {said or _measured(factor, run, found['softer_joints_move'])}")
+    elif said:
+        job.warnings.append(said)
     return found
+
+
+def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> str:
+    """What there is to say where the second run raises no doubt of its own."""
+    if moved is not None:
+        return f"{factor} peaks move by {moved:.1%} at most"
+    if run is not None and run.collapsed:
+        return f"{factor} it collapses as well"
+    return "how much that matters was not found, a given kn may show it"
 
 
 def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -69,12 +80,12 @@ def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunRe
     return rested.shaken(motions) if rested.stands else None
 
 
-def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> list[str]:
-    """Peaks that moved by more than allowed, the worst first, in one sentence."""
+def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> str:
+    """Peaks that moved by more than allowed, the worst first, in one sentence; empty where none did."""
     worst = [i for i in np.argsort(-moved, kind="stable") if moved[i] > allowed]
     if not worst:
-        return []
+        return ""
     monitors = job.case.monitor
     names = [f"{monitors[i].quantity} of '{monitors[i].place}' by {moved[i]:.1%}" for i in worst[:MOST_LISTED]]
     more = f" and {len(worst) - MOST_LISTED} more" if len(worst) > MOST_LISTED else ""
-    return [f"{factor} peaks move, {', '.join(names)}{more}: {WHY}"]
+    return f"{factor} peaks move, {', '.join(names)}{more}: {WHY}"

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
+from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import TimeHistory, duration_of
+from dem_cli.dynamics.history import TimeHistory
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -26,6 +27,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
+from dem_cli.output.ending import MOVES
 from dem_cli.output.record import FALLS, Observer, RunRow
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ def run(
         job.clock.imported(module)
     motions = motions_of(case)
     ground = GroundMotion(motions, model)
-    chosen = rocking_stiffness(case, model, duration_of(case, ground), settings=settings)
+    chosen = rocking_stiffness(case, model, settings)
     job.settings = chosen.applied(settings)
     history = TimeHistory(job, ground)
     outcome = history.run()
@@ -57,8 +59,9 @@ def run(
     if doubtful(case) and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
-        found = repeated(case, model, observer, settings, batch or Batch())
+        found = repeated(case, model, observer, job.settings, batch or Batch())
         outcome.summary["warnings"] += found.pop("warnings")
+        outcome.summary["warnings"] += alone(case, history.peaks, found["repeats"], settings.rocking.spread)
         outcome.summary |= found
     return outcome
 
@@ -69,12 +72,12 @@ def doubtful(case: Case) -> bool:
 
 
 def repeated(case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch) -> dict[str, Any]:
-    """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed."""
+    """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed.
+
+    settings: those of the run beside it, with the same stiffness of "auto" joints.
+    """
     started = time.perf_counter()
     motions, quiet = motions_of(case), ProgressOnly(observer)
-    duration = duration_of(case, GroundMotion(motions, model))
-    chosen = rocking_stiffness(case, model, duration, many=True, settings=settings)
-    settings = chosen.applied(settings)
     variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
     structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
@@ -87,29 +90,51 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     runs = [batcher.done[trial] for trial in trials]
     observer.runs(_rows(trials, runs, structures, max((motion.peak for motion in motions), default=0.0)))
     warnings = [f"structure {1 + t.structure}: {run.how}" for t, run in zip(trials, runs) if run.collapsed is None]
-    if chosen.turn > settings.rocking.doubtful:
-        warnings.append(f"repeats: {chosen.doubt}")
     fell = case.analysis.repeats - len(trials)
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
+    found = spread([run for run in runs if run.ending], len(case.monitor))
+    warnings += undecided(found["still_moving"], found["runs"], case.analysis.coda)
     return {
-        "repeats": spread([run for run in runs if run.collapsed is not None], len(case.monitor))
-        | {"seconds": sum(run.seconds for run in runs)},
+        "repeats": found | {"seconds": sum(run.seconds for run in runs)},
         "repeat_seconds": time.perf_counter() - started,
         "warnings": warnings,
     }
 
 
 def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
-    """How many collapsed, and the percentiles of the peaks of the others: a list, None for each where none stood."""
+    """How many collapsed, and the percentiles of the peaks of the others: a list, None for each where none stood.
+
+    still_moving: those of which nobody knows it, when the time after the motion is over; among the others.
+    """
     peaks = np.array([run.peaks for run in runs if not run.collapsed]).reshape(-1, n_monitors)
-    collapsed = len(runs) - len(peaks)
+    collapsed, moving = len(runs) - len(peaks), sum(run.ending == MOVES for run in runs)
     columns = [
         {name: float(np.percentile(column, q)) for name, q in PERCENTILES.items()} if len(column) else None
         for column in peaks.T
     ]
     share = collapsed / len(runs) if runs else None
-    return {"runs": len(runs), "collapsed": collapsed, "share_collapsed": share, "peaks": columns}
+    counts = {"runs": len(runs), "collapsed": collapsed, "still_moving": moving}
+    return counts | {"share_collapsed": share, "peaks": columns}
+
+
+def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float) -> list[str]:
+    """Words for peaks that repeats scatter widely, or do not reach or pass; the first of each kind is named."""
+    wide, outside = [], []
+    for monitor, peak, found in zip(case.monitor, peaks.tolist(), repeats["peaks"]):
+        if found is None:
+            continue
+        name = f"{monitor.quantity} of '{monitor.place}'"
+        between = f"{found['min']:.3g} to {found['max']:.3g}"
+        if not found["min"] <= peak <= found["max"]:
+            outside.append(f"the peak {name}, {peak:.3g}, lies outside of those of its repeats, {between}")
+        if found["p84"] - found["p16"] > allowed * found["median"]:
+            wide.append(f"the peak {name} hangs on chance: structures that differ by next to nothing have {between}")
+    return [f"{texts[0]}{_more(texts)}: quote the spread, not the peak" for texts in (outside, wide) if texts]
+
+
+def _more(texts: Sequence[str]) -> str:
+    return f", and so of {len(texts) - 1} more" if len(texts) > 1 else ""
 
 
 def _rows(

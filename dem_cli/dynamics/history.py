@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
@@ -27,6 +29,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
+from dem_cli.output.ending import COLLAPSED, MOVES
 from dem_cli.output.record import FALLS, Energy, Samples
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
@@ -70,7 +73,7 @@ class TimeHistory:
     def run(self) -> Outcome:
         """Rest, first motion, shaking; the summary."""
         if not self.start():
-            return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0})
+            return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0, "ending": COLLAPSED})
         return self._outcome(self._shake())
 
     def start(self) -> bool:
@@ -132,12 +135,36 @@ class TimeHistory:
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / end, 1.0))
-        found: dict[str, Any] = {"status": "ok", "collapsed": fallen is not None}
-        found["collapse_time"] = None if fallen is None else fallen.time
-        if fallen is not None:
-            found |= {"collapse_block": fallen.block, "collapse": fallen.how}
+        return {"status": "ok"} | self._ended(fallen)
+
+    def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
+        """How it ended."""
+        sim = self.sim if fallen is not None else deepcopy(self.sim)
+        end = Ending(COLLAPSED, fallen) if fallen is not None else self._followed(sim)
+        found: dict[str, Any] = {"collapsed": end.collapsed, "collapse_time": None}
+        if end.block is not None:
+            found |= {"collapse_time": end.block.time, "collapse_block": end.block.block, "collapse": end.block.how}
             found["fallen_blocks"] = named(sim, fallen_blocks(sim, self.case.analysis))
-        return found
+        return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
+
+    def _followed(self, sim: DynamicSimulation) -> Ending:
+        """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
+        analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
+        history = sim.settings.history
+        nothing = Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))
+
+        def advance(n_steps: int) -> None:
+            sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)
+            since = sim.time - motion_ends
+            moved = measures.largest_displacement(sim)
+            self.track.observer.progress("coda", 0.0, moved, min(since / analysis.coda, 1.0))
+
+        stretch = max(1, math.ceil(min(analysis.coda / history.rows, history.longest_look) / dt))
+        try:
+            return ending(sim, analysis, self.step, stretch, advance)
+        except SolverError as error:
+            self.job.warnings.append(f"how it ends is not known, as the time after the motion {error}")
+            return Ending(MOVES, None, sim.time - motion_ends)
 
     def _stretch(self, n_steps: int, every: int) -> np.ndarray:
         """n_steps of motion, sampled every so many steps since the start of the run: the monitors, (n, n_monitors)."""

@@ -1,5 +1,8 @@
 """Stiffness of "auto" joints in time histories: so stiff that blocks rock as rigid ones, within a budget of steps.
 
+It belongs to the structure: the budget is one per √(height/g) of motion, the time in which a structure rocks, so that
+the duration, the number of runs and the scale of a model change no joint.
+
 What elastic joints change of rocking goes with one number: the angle ε [rad] by which blocks turn on them when their
 weight acts sideways. For one block of b × h it is 2 ρ g (h/b)²/kn, which is also the rotation at which it lifts off
 over the angle at which it falls, (p/ω)² of rocking and elastic frequency, and one over the factor of buckling under
@@ -33,7 +36,7 @@ class RockingStiffness(NamedTuple):
 
     ratio: float  # kn·h/W
     turn: float  # ε, by which blocks turn under their weight sideways [rad]; 0 where nothing is "auto"
-    work: float  # steps of one run times what each costs, in contact points
+    work: float  # steps per second of motion times what each costs, in contact points
     automatic: bool  # False: all stiffnesses are given
 
     def softer(self, factor: float) -> RockingStiffness:
@@ -49,17 +52,13 @@ class RockingStiffness(NamedTuple):
         """Words for joints that had to stay too soft."""
         return (
             f"joints are softer than rocking asks for: blocks turn by {self.turn:.1g} rad when their weight acts "
-            "sideways, and peaks may be off by more than 2 %; stiffer joints would take too many steps, or digits"
+            "sideways; stiffer joints would take too many steps, or digits"
         )
 
 
-def rocking_stiffness(
-    case: Case, model: Model, duration: float, many: bool = False, settings: Settings = DEFAULT
-) -> RockingStiffness:
-    """The softest joints on which blocks turn by no more than wanted; softer where a run of `duration` [s] on these
-    would take too many steps, but never softer than settings.stiffness.dynamics.
-
-    many: it is one of an ensemble, in which steps count for more and records differ by more.
+def rocking_stiffness(case: Case, model: Model, settings: Settings = DEFAULT) -> RockingStiffness:
+    """The softest joints on which blocks turn by no more than wanted; softer where these would take too many steps,
+    but never softer than settings.stiffness.dynamics.
     """
     softest, rocking = settings.stiffness.dynamics, settings.rocking
     automatic = [table.kn == "auto" for table in case.joints.values()]
@@ -69,13 +68,13 @@ def rocking_stiffness(
     if not len(joints.kn):
         return RockingStiffness(softest, 0.0, 0.0, True)
     turn = turn_sideways(model, _rigid(joints, ~mine), settings)
-    work, step = _work(case, model, joints, duration, settings)
-    wanted = turn / (rocking.turn_of_many if many else rocking.turn)
-    most = rocking.work_of_many if many else rocking.work
-    shortest = max(case.analysis.time_step or 0.0, duration / (rocking.share * case.analysis.max_steps))
+    work, step = _work(case, model, joints, settings)
+    most = rocking.work / _rocking_time(case, model)
+    shortest = case.analysis.time_step or 0.0
+    asked = (step / shortest) ** 2 if shortest else math.inf
     seen = rocking.round_off / _round_off(model, joints)
-    affordable = min((most / work) ** 2, (step / shortest) ** 2, seen) if work else 1.0
-    factor = max(1.0, min(wanted, affordable))
+    affordable = min((most / work) ** 2, asked, seen) if work else 1.0
+    factor = max(1.0, min(turn / rocking.turn, affordable))
     return RockingStiffness(factor * softest, turn / factor, work * math.sqrt(factor), True)
 
 
@@ -145,12 +144,21 @@ def _round_off(model: Model, joints: Joints) -> float:
     return float(np.finfo(float).eps * farthest * (joints.kn / lightest).max())
 
 
-def _work(case: Case, model: Model, joints: Joints, duration: float, settings: Settings) -> tuple[float, float]:
-    """Steps of a run times what each costs in contact points, and the step [s], by the joints of the start."""
+def _rocking_time(case: Case, model: Model) -> float:
+    """√(height/g) of all that can move [s]; one second without gravity."""
+    free = ~model.fixed[model.vertex_blocks]
+    height = float(np.ptp((model.vertices + model.centroids[model.vertex_blocks])[free, -1]))
+    return math.sqrt(height / case.gravity) if case.gravity > 0.0 else 1.0
+
+
+def _work(case: Case, model: Model, joints: Joints, settings: Settings) -> tuple[float, float]:
+    """Steps per second of motion times what each costs in contact points, and the step [s], by the joints of the
+    start.
+    """
     highest = highest_of(springs_of(model, joints, settings=settings.frequency))
     if highest == 0.0:
         return 0.0, math.inf
     table = case.damping
     elements = element_numbers(table.maxwell or ()) if table is not None else element_numbers(())
     step = case.analysis.margin * 2.0 / (highest * math.sqrt(1.0 + float(elements[:, 0].sum())))
-    return duration / step * (len(joints.kn) + settings.rocking.points_per_step), step
+    return (len(joints.kn) + settings.rocking.points_per_step) / step, step

@@ -45,9 +45,12 @@ class HistorySettings:
     energy_every: int = 10  # looks from one look into the books to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
-    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it
+    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
+    steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back
+    grows: float = 0.05  # of the way between these, that they may have gone beyond in passing
+    least_coda: float = 0.4  # of the coda, before which no structure that moves is taken for one that has turned back
 
 
 @dataclass(frozen=True)
@@ -74,17 +77,15 @@ class RockingSettings:
     """
 
     turn: float = 1e-6  # rad
-    turn_of_many: float = 1e-5  # rad, in ensembles, where records differ by far more
     doubtful: float = 1e-4  # rad: from here on a run says so
     round_off: float = 2e-6  # of its weight, that round-off of places may do to the force on a block
-    work: float = 3e7  # steps × contact points of one run that stiffness may lead to: two seconds
-    work_of_many: float = 2e7  # the same of each run of an ensemble: one second
-    share: float = 0.5  # of analysis.max_steps, that it may lead to
+    work: float = 2e6  # steps × contact points per √(height/g) of motion, that stiffness may lead to: 0.15 s of CPU
     points_per_step: float = 8.0  # contact points that a step costs beside its own
     pressed: float = 0.01  # of the mean weight of a block: joints that carry less hold nobody upright
     mechanism: float = 1e3  # rad: blocks that turn further are not held by their joints
     softer: float = 10.0  # joints of the second run that shows how much stiffness matters
     moved: float = 0.02  # of a peak, that it may move by
+    spread: float = 0.2  # of the median peak of repeats, between 16 and 84 %: from here on motion hangs on chance
 
 
 @dataclass(frozen=True)

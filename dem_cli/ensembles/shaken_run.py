@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
+from dem_cli.dynamics.coda import Ending, ending
+from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -17,6 +18,7 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Watch
+from dem_cli.output.ending import COLLAPSED
 from dem_cli.output.record import Observer
 
 if TYPE_CHECKING:
@@ -30,13 +32,14 @@ if TYPE_CHECKING:
 class ShakenRunResult(NamedTuple):
     """What became of one run."""
 
-    collapsed: bool | None  # None: it failed
+    collapsed: bool | None  # before the time after the motion was over; None: it failed
     time: float | None  # of the collapse [s]
-    how: str  # the block that collapsed and how, or why the run failed
+    how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
     steps: int
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
+    ending: str = ""  # one of those of output/ending.py; empty where the run failed
 
 
 class RunCancelled(Exception):
@@ -68,7 +71,8 @@ class RestedStructure:
         dt = self.step.step
         self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
         self.stretch = self.every * max(1, round(settings.history.look / (self.every * dt)))
-        self.coda = getattr(variant.case.analysis, "coda", 0.0)
+        # a fragility asks how far blocks go before they fall or rest, a time history for the time it names
+        self.peaks_of_coda = variant.case.analysis.kind == "fragility"
 
     def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
         """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
@@ -78,41 +82,41 @@ class RestedStructure:
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks, found, how = np.zeros(len(self.case.monitor)), None, ""
+        peaks = np.zeros(len(self.case.monitor))
+        collapsed, at, balance, word = None, None, None, ""
         try:
-            found = self._shake(sim, ground, peaks, cancelled)
+            end = self._shake(sim, ground, peaks, cancelled)
         except SolverError as error:
             how = str(error)
-            collapsed, at = None, None
         else:
-            collapsed, at = found is not None, found and found.time
-            how = f"'{found.block}' {found.how}" if found else ""
-        steps, balance = sim.steps - self.sim.steps, None if collapsed is None else closure(sim)
-        return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, time.thread_time() - begun)
+            collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
+        steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
+        return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, seconds, word)
 
     def _shake(
         self, sim: DynamicSimulation, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]
-    ) -> CollapsedBlock | None:
-        """The first block that collapsed; None where all come through the motion, and the time after it."""
+    ) -> Ending:
+        """How it ends, through the motion and the time after it."""
         analysis, dt = self.case.analysis, self.step.step
         total = math.ceil((analysis.duration or ground.duration) / dt)
-        most = total + math.ceil(self.coda / dt)
         done = looks = 0
-        while done < most:
+
+        def advance(n_steps: int) -> None:
             if cancelled():
                 raise RunCancelled
-            n = min(self.stretch, (total if done < total else most) - done)
-            self._stretch(sim, ground, n, peaks)
+            self._stretch(sim, ground, n_steps, peaks if done < total or self.peaks_of_coda else np.zeros_like(peaks))
+
+        while done < total:
+            n = min(self.stretch, total - done)
+            advance(n)
             done, looks = done + n, looks + 1
             check_finite(sim)
             if looks % sim.settings.history.energy_every == 0:
                 check_energy(sim, self.step)
             found = fallen(sim, analysis)
             if found is not None:
-                return found
-            if done >= total and _at_rest(sim):
-                return None
-        return None
+                return Ending(COLLAPSED, found)
+        return ending(sim, analysis, self.step, self.stretch, advance)
 
     def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: np.ndarray) -> None:
         """n_steps of motion, with the peaks of the monitors."""
@@ -124,10 +128,3 @@ class RestedStructure:
             times = start + self.step.step * self.every * np.arange(len(samples))
             base = ground.of_base(times) if self.absolute else np.zeros((len(samples), 3, d))
             np.maximum(peaks, np.abs(self.monitors.series(samples, base)).max(axis=0), out=peaks)
-
-
-def _at_rest(sim: DynamicSimulation) -> bool:
-    """Neither moving nor about to: a block at the turning point of its rocking is not in balance."""
-    history = sim.settings.history
-    still = sim.unbalanced < history.still
-    return bool(still and sim.centred_kinetic_energy() < history.quiet * sim.noticeable_energy)

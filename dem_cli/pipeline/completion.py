@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # What a run that was stopped does not know, by kind.
 ANSWERS = {
     "pushover": ("failure_load", "failure_load_bracket", "failure_mode", "displacement_at_failure"),
-    "time-history": ("collapsed", "collapse_time"),
+    "time-history": ("collapsed", "collapse_time", "ending"),
     "safety": ("safety_factor", "safety_factor_bracket", "critical_value", "critical_value_bracket"),
     "fragility": ("median", "dispersion", "collapse_intensities"),
 }

@@ -41,6 +41,8 @@ KNOWN_QUANTITIES = {
     "critical_value": Quantity("critical value"),
     "collapse_time": Quantity("time of collapse", "s"),
     "collapsed": Quantity("collapsed"),
+    "ending": Quantity("how it ended"),
+    "followed": Quantity("time for which it was followed after the motion", "s"),
     "median": Quantity("median collapse intensity"),
     "dispersion": Quantity("dispersion of the collapse intensity"),
     "limit_analysis.associated": Quantity("associated limit load λ"),

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import MissingExtra
+from dem_cli.output.ending import ending_words
 
 INK, GREY, FAINT = "#26262b", "#7c7c86", "#d5d5da"
 STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
@@ -86,9 +87,8 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
         text += ": limit analysis"
     elif summary.get("kind") == "safety":
         text += f": {_of_safety(summary)}"
-    elif summary.get("collapsed") is not None:
-        at = summary.get("collapse_time")
-        text += (": collapsed" + (f" at {at:.3g} s" if at is not None else "")) if summary["collapsed"] else ": stood"
+    elif how := ending_words(summary, 3):
+        text += f": {how}"
     elif load is None:
         text += f": {summary.get('status', 'unfinished')}"
     else:

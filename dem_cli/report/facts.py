@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, smallest_edge
+from dem_cli.output.ending import ending_words
 from dem_cli.output.reader import Results
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.output.vertices import rest_vertices
@@ -83,15 +84,14 @@ def _limit(summary: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
-    if summary.get("collapsed") is None:
+    how = ending_words(summary)
+    if not how:
         return _status(summary)
     peaks = summary.get("peaks") or {}
     more = [f"{name}: peak {_value(found['peak'], found['unit'])}" for name, found in list(peaks.items())[:1]]
-    at = summary.get("collapse_time")
-    fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
     ground = summary.get("peak_ground_acceleration")
     more += [] if ground is None else [f"peak ground acceleration {ground:.3g} m/s²"]
-    return ("result", fell if summary["collapsed"] else "stood", ", ".join(more))
+    return ("result", how, ", ".join(more))
 
 
 def _fragile(summary: Mapping[str, Any]) -> tuple[str, str, str]:

@@ -142,6 +142,11 @@ class ShakingAnalysis(CaseModel):
         examples=[0.3],
     )
     max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
+    coda: NonNegative = Field(
+        default=5.0,
+        description="how long a structure that still moves after the motion is followed at most, to see whether it "
+        "falls [s]",
+    )
     repeats: int = Field(
         default=0, ge=0, le=10_000, description="runs of slightly different structures beside it", examples=[20]
     )
@@ -189,9 +194,6 @@ class FragilityAnalysis(ShakingAnalysis):
         examples=["bisection"],
     )
     unit_acceleration: Positive = Field(default=1.0, description="peak acceleration at intensity 1 [m/s2]")
-    coda: NonNegative = Field(
-        default=5.0, description="time after the motion in which a structure that still moves may fall [s]"
-    )
     confidence: float = Field(
         default=0.9, gt=0.0, lt=1.0, description="confidence level of the band around the curve [-]"
     )

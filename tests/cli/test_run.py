@@ -37,7 +37,9 @@ def test_results_and_verdict(tmp_path, capsys):
     assert list(results.monitors) == ["base displacement"]
     text = console.answer(summary, folder, ["summary.json"], verbose=True)
     assert "failure load   0.6402  (between 0.6395 and 0.6409)" in text
-    assert "how sure       ±0.11 % under this history, no history carries more than 0.6520, energy closes to 1e-09" in text
+    assert (
+        "how sure       ±0.11 % under this history, no history carries more than 0.6520, energy closes to 1e-09" in text
+    )
     assert "reference      0.64 ± 0.001: passed" in text
     assert "skipped        large displacements: not needed" in text
 

@@ -17,6 +17,7 @@ from dem_cli.cli.words.numbers import load_text, metres, seconds
 from dem_cli.cli.words.pace import Pace
 from dem_cli.cli.words.safety import safety_rows
 from dem_cli.cli.words.sureness import sureness_rows
+from dem_cli.output.ending import ending_words, last_words
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
@@ -158,11 +159,8 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Of a time history: did it stand, how far did it go, what took the energy."""
-    rows = []
-    if summary.get("collapsed") is not None:
-        at = summary.get("collapse_time")
-        fell = "collapsed" if at is None else f"collapsed at {at:.4g} s"
-        rows.append(("result", fell if summary["collapsed"] else "stood"))
+    how = ending_words(summary)
+    rows = [("result", how)] if how else []
     fallen = summary.get("fallen_blocks")
     if fallen:
         names = ", ".join(fallen["first"][:MOST_NAMES])
@@ -170,7 +168,11 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     peaks = summary.get("peaks") or {}
     for name, found in list(peaks.items())[:MOST_PEAKS]:
         peak, residual = (_measure(found[key], found["unit"]) for key in ("peak", "residual"))
-        rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} in the end"))
+        rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} {last_words(summary)}"))
+        spread = ((summary.get("repeats") or {}).get("peaks") or {}).get(name)
+        if spread:
+            low, high = (_measure(spread[key], spread["unit"]) for key in ("min", "max"))
+            rows.append(("", f"of its repeats {low} to {high}"))
     if len(peaks) > MOST_PEAKS:
         rows.append(("", f"and {len(peaks) - MOST_PEAKS} more in summary.json"))
     shares = {name: share for name, share in (summary.get("energy_shares") or {}).items() if share >= 0.0005}

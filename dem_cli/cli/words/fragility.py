@@ -81,7 +81,9 @@ def _non_monotone(found: list[dict[str, Any]]) -> Rows:
 
 def _repeats(repeats: Mapping[str, Any]) -> Rows:
     """The spread of the peaks over perturbed structures."""
-    rows = [("repeats", f"{repeats['collapsed']} of {repeats['runs']} perturbed structures collapsed")]
+    moving = repeats.get("still_moving")
+    also = f", {moving} still moved in the end" if moving else ""
+    rows = [("repeats", f"{repeats['collapsed']} of {repeats['runs']} perturbed structures collapsed{also}")]
     for name, spread in list(repeats["peaks"].items())[:MOST_LISTED]:
         if spread is None:
             rows.append(("", f"{name}: none of them stood"))

@@ -1,0 +1,26 @@
+"""Ending of a time history in words: collapsed, stood, still rocking or still moving; for answers, titles, reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "stood, still rocking", "still moving"  # `ending` of a summary
+_KNOWN = {STOOD: STOOD, ROCKS: ROCKS, MOVES: "still moving at the end: whether it falls is not known"}
+
+
+def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
+    """How it ended and when; empty where a summary does not say. digits: of the time of a collapse."""
+    fell = summary.get("collapsed")
+    how = summary.get("ending") or (None if fell is None else COLLAPSED if fell else STOOD)
+    if how != COLLAPSED:
+        return _KNOWN.get(str(how), "")
+    at, after = summary.get("collapse_time"), summary.get("followed") or 0.0
+    if at is None:
+        return COLLAPSED
+    return f"{COLLAPSED} at {at:.{digits}g} s" + (f", {after:.{digits - 1}g} s after the motion" if after else "")
+
+
+def last_words(summary: Mapping[str, Any]) -> str:
+    """What the last values of monitors are: those of a structure at rest, or passing."""
+    return "in the end" if summary.get("at_rest", True) else "at the end, still moving"
