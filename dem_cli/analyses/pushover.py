@@ -47,6 +47,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             falling, peak = _fall(job, sim, search)
             sims.append(falling)
             found["displacement_at_failure"] = peak.displacement
+            found["curve_joint_stiffness"] = ratio_of(falling) or None
             found["peak_of_curve"] = peak.load and peak.load * sim.live_scale
             off = _off_the_load(peak, search, sim.live_scale, settings.doubts.off_the_load)
             found["curve_off_the_load"] = bool(off)

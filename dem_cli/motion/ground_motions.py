@@ -88,6 +88,9 @@ def _with_warnings(motion: Motion, table: RecordTable) -> Motion:
     """A record, which may begin at another time than 0 and may leave the base moving."""
     assert isinstance(motion.shape, Accelerogram)
     warnings = [shifted(motion.shape, table.start)]
+    peak = motion.peak / STANDARD_GRAVITY
+    if table.unit and table.scale is None and table.peak is None and not LIKELY[0] <= peak <= LIKELY[1]:
+        warnings.append(f"{odd_peak(table.quantity, table.unit, peak)}; scale = 1.0 says that it is meant")
     if moving := moving_at_the_end(motion):
         warnings.append(moving + ("; baseline = true takes a drift out" if table.baseline is False else ""))
     return replace(motion, warnings=tuple(filter(None, warnings)))
@@ -158,10 +161,13 @@ def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> Non
     """Raises CaseError where the peak [g] is that of no earthquake, unless scale or peak is given."""
     if table.scale is not None or table.peak is not None or WEAKEST <= peak <= STRONGEST:
         return
-    message = f"'{unit}' gives a peak acceleration of {peak:.3g} g"
-    factors = SI_FACTORS[table.quantity]
+    message = f"{odd_peak(table.quantity, unit, peak)}; if it is meant, add scale = 1.0"
+    raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
+
+
+def odd_peak(quantity: str, unit: str, peak: float) -> str:
+    """Words about a peak acceleration [g] that a record has in its unit, and the units in which it would be likely."""
+    factors = SI_FACTORS[quantity]
     others = {other: peak * factor / factors[unit] for other, factor in factors.items()}
     likely = [f"'{other}' would give {g:.3g} g" for other, g in others.items() if LIKELY[0] <= g <= LIKELY[1]]
-    message += f"; {' and '.join(likely)}" if likely else ""
-    message += "; if it is meant, add scale = 1.0"
-    raise CaseError([CaseProblem(("motion", i_table, "unit"), message)])
+    return f"'{unit}' gives a peak acceleration of {peak:.3g} g" + (f"; {' and '.join(likely)}" if likely else "")

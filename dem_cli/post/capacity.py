@@ -27,8 +27,8 @@ def draw_capacity(results: Results, path: Path) -> None:
         for i, (axis, limit) in enumerate(zip(axes, panels, strict=True)):
             _draw_curve(axis, results, limit)
             _draw_answers(axis, summary, labelled=i == len(axes) - 1)
-            if len(panels) > 1:
-                axis.set_title(("up to failure", "whole collapse")[i], fontweight="normal", color=style.GREY)
+            if title := _title(summary, i, len(panels)):
+                axis.set_title(title, fontweight="normal", color=style.GREY, fontsize=10)
             if i == 0 and not off_the_load(summary):
                 _mark_failure(axis, summary, to_failure)
         if off_the_load(summary):
@@ -37,6 +37,15 @@ def draw_capacity(results: Results, path: Path) -> None:
         _limit_loads(axes[0], results)
         _draw_legend(figure, *axes[-1].get_legend_handles_labels())
         style.headline(figure, summary)
+
+
+def _title(summary: Mapping[str, Any], panel: int, panels: int) -> str:
+    """What a panel shows, and in the first one whose stiffness elastic displacements have."""
+    parts = [("up to failure", "whole collapse")[panel]] if panels > 1 else []
+    ratio = summary.get("curve_joint_stiffness")
+    if ratio and panel == 0:
+        parts.append(f"elastic part: joints of the solver's choice, kn·h/W = {ratio:.1g}")
+    return "; ".join(parts)
 
 
 def off_the_load(summary: Mapping[str, Any]) -> str:

@@ -229,6 +229,16 @@ def test_units_that_make_no_earthquake(folder, unit, values, message):
     assert motions_of(loaded(folder, RECORD + "peak = 2.0").case)[0].peak == pytest.approx(2.0)
 
 
+def test_units_that_make_a_faint_earthquake_are_doubted(folder):
+    (folder / "records" / "east.csv").write_text("0,0\n1,0.2\n2,-0.2\n3,0\n")
+    text = RECORD.replace('"g"', '"cm/s2"')
+    faint = "'cm/s2' gives a peak acceleration of 0.000204 g; 'g' would give 0.2 g and 'm/s2' would give 0.0204 g; "
+    for more, said in (("", [faint + "scale = 1.0 says that it is meant"]), ("scale = 1.0", []), ("peak = 2.0", [])):
+        case = loaded(folder, text + more)
+        build_model(case)
+        assert [line.partition("motion.file: ")[2] for line in case.warnings if "peak" in line] == said
+
+
 def test_what_is_wrong_in_a_record_is_told_with_both_lines(folder):
     (folder / "records" / "east.csv").write_text("t,a\n0,0\n0.01,zero\n")
     assert refused(folder, RECORD) == f"{FIRST + 2}:8: motion.file: east.csv:3: 'zero' is not a number"

@@ -38,10 +38,11 @@ def test_a_curve_off_the_failure_load_says_so_in_the_picture_and_has_no_mark(tmp
     history["displacement"], history["step"] = np.linspace(0.0, 0.01, 20), np.arange(20)
     history["load"], history["stage"] = peak, "collapse"
     summary = {"failure_load": 0.64, "failure_load_bracket": [0.64, 0.641], "displacement_at_failure": 0.005}
-    summary |= {"peak_of_curve": peak, "curve_off_the_load": bool(words)}
+    summary |= {"peak_of_curve": peak, "curve_off_the_load": bool(words), "curve_joint_stiffness": 4e4}
     draw_capacity(SimpleNamespace(history=history, summary=summary), tmp_path / "capacity.png")
     axis = drawn[0].axes[0]
     said = [text.get_text() for text in axis.texts]
     assert [words in text for text in said if "only its shape counts" in text] == ([True] if words else [])
     assert len([line for line in axis.lines if line.get_marker() == "o"]) == (0 if words else 1)
+    assert "joints of the solver's choice, kn·h/W = 4e+04" in axis.get_title(loc="left") + axis.get_title()
     assert (tmp_path / "capacity.png").stat().st_size > 0
