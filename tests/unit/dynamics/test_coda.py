@@ -11,7 +11,8 @@ from oracle.housner import Block, rock
 
 from dem_cli.dynamics.coda import Swings, undecided
 from dem_cli.engine.settings import DEFAULT
-from dem_cli.output.ending import MOVES, ROCKS, STOOD, ending_words, last_words
+from dem_cli.output.ending import ending_words, last_words
+from dem_cli.output.record import MOVES, ROCKS, STOOD
 
 WIDTH, HEIGHT, FREQUENCY = 1.0, 6.0, 0.8
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)
@@ -87,7 +88,7 @@ def test_the_coda_ends_with_the_rest():
 
 def test_repeats_and_fragility_end_as_the_run_beside_them():
     """All fall after the motion; a fragility counts its levels alike."""
-    found, _ = engine.solve(shaken(8.0, repeats=3))
+    found = engine.solve(shaken(8.0, repeats=3))[0]
     assert found["repeats"]["share_collapsed"] == 1.0
     assert found["repeats"]["still_moving"] == 0
     cut = engine.solve(shaken(6.0, repeats=2, coda=0.0))[0]
