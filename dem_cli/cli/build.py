@@ -16,7 +16,7 @@ from dem_cli.cli.options import case_argument, load, overrides_option, warn
 def command(case: str, overrides: tuple[str, ...], output: str) -> None:
     """Write the blocks of CASE to FILE: .vtu (ParaView) or another format that meshio writes."""
     from dem_cli import api
-    from dem_cli.output.vtk import write_geometry
+    from dem_cli.output.paraview.vtk import write_geometry
 
     loaded = load(case, overrides)
     model = api.build_model(loaded)

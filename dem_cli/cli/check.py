@@ -44,7 +44,7 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
 
 def rows(case: Case, model: Model) -> list[tuple[str, str]]:
     """What the case is made of: label and text of each line."""
-    from dem_cli.output.vertices import rest_vertices
+    from dem_cli.output.paraview.vertices import rest_vertices
 
     free = ~model.fixed
     corners = rest_vertices(model)

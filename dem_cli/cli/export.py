@@ -24,8 +24,8 @@ from dem_cli.errors import UsageError
 def command(folder: Path, joints: bool, pvd: bool, frame: str | None, output: Path | None) -> None:
     """Write the results in DIR in another format."""
     from dem_cli.output.joint_table import JOINTS_TABLE, joints_of, write_joints
+    from dem_cli.output.paraview.vtk import export_pvd
     from dem_cli.output.reader import read
-    from dem_cli.output.vtk import export_pvd
 
     if joints == pvd:
         raise UsageError("say which format is wanted: --joints or --pvd")

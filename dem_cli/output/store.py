@@ -31,7 +31,7 @@ from dem_cli.output.layout import (
     PER_STEP,
     describe,
 )  # fmt: skip
-from dem_cli.output.paraview import BLOCKS, FollowedJoints, ParaViewFiles
+from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
 from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import MONITOR_UNITS, SeriesWriter

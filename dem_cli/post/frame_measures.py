@@ -8,9 +8,9 @@ import numpy as np
 
 from dem_cli.geometry.rotation import turned
 from dem_cli.model.model import Model
-from dem_cli.output.fields import contact_forces
+from dem_cli.output.paraview.fields import contact_forces
+from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.record import STATES, ContactRecord, Frame
-from dem_cli.output.vertices import placed_vertices
 
 _VISIBLE = 0.06  # share of the size of the structure that a drawn displacement should reach
 _TRUE_FROM = 0.02  # displacements of this share are shown as they are

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.vertices import placed_vertices, rest_vertices
 from dem_cli.post import style
 from dem_cli.post.collapse import draw_blocks, draw_rest, window
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from dem_cli.model.model import Model
+from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
-from dem_cli.output.vertices import placed_vertices, rest_vertices
 from dem_cli.post import frame_measures
 
 _FALLEN = 0.8  # of the size of the structure: what falls farther is not shown

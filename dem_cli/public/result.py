@@ -16,12 +16,12 @@ import numpy as np
 from dem_cli.case.reader import parse_toml
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
-from dem_cli.output.fields import contact_forces
 from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, units_of
+from dem_cli.output.paraview.fields import contact_forces
+from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import STATES, Frame
 from dem_cli.output.series import MONITOR_UNITS
-from dem_cli.output.vertices import placed_vertices
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
 from dem_cli.public.arrays import ArrayTable, MonitorHistory, NamedRecords

@@ -16,8 +16,8 @@ from dem_cli.analyses import solve as solver
 from dem_cli.case.reader import LoadedCase
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
+from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.record import Frame
-from dem_cli.output.vertices import placed_vertices
 from studies.observer import RunKeeper
 from studies.places import ROOT
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from dem_cli import api
 from dem_cli.case.overrides import override_of
+from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results, read
-from dem_cli.output.vertices import placed_vertices, rest_vertices
 from dem_cli.sweep.plan import SweepRun, plan_of
 from studies.places import CASES, ROOT
 from studies.polygons import rectangle

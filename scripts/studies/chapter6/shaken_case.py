@@ -11,7 +11,7 @@ import numpy as np
 from dem_cli import api
 from dem_cli.analyses.solve import solve as solve_model
 from dem_cli.errors import SolverError
-from dem_cli.output import vertices
+from dem_cli.output.paraview import vertices
 from dem_cli.output.record import Frame
 from dem_cli.post import style
 from studies.observer import RunKeeper

@@ -10,10 +10,10 @@ import pytest
 from synthetic import wall_model, wall_summary
 from synthetic.shaking import shaken, write_shaking
 
+from dem_cli.output.paraview.vtk import export_pvd
 from dem_cli.output.reader import read
 from dem_cli.output.record import Samples
 from dem_cli.output.store import ResultWriter
-from dem_cli.output.vtk import export_pvd
 
 NAMES, QUANTITIES = ("top, left", "hinge"), ("acceleration", "opening")
 

@@ -9,11 +9,11 @@ import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.errors import UsageError
-from dem_cli.output.fields import block_fields, contact_fields
+from dem_cli.output.paraview.fields import block_fields, contact_fields
+from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
+from dem_cli.output.paraview.vtk import export_pvd, write_geometry
 from dem_cli.output.reader import read
 from dem_cli.output.store import ResultWriter
-from dem_cli.output.vertices import placed_vertices, rest_vertices
-from dem_cli.output.vtk import export_pvd, write_geometry
 
 vtkIOXML = pytest.importorskip("vtkmodules.vtkIOXML")
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
-from dem_cli.output.fields import block_fields, contact_fields, joint_fields, joint_places, step_fields
 from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES
+from dem_cli.output.paraview.fields import block_fields, contact_fields, joint_fields, joint_places, step_fields
+from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
+from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
 from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates
-from dem_cli.output.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
-from dem_cli.output.vtkhdf import GridSeries, PointSeries
 
 BLOCKS, CONTACTS, JOINTS = VTK_FILES
 _VTK_LINE, _VTK_POLYGON = 3, 7

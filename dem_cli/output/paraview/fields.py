@@ -6,8 +6,8 @@ import numpy as np
 
 from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
+from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
-from dem_cli.output.vertices import in_space
 
 
 def contact_forces(contacts: ContactRecord) -> np.ndarray:
