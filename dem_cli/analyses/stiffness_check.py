@@ -52,17 +52,19 @@ def checked(
         found["softer_joints_move"] = float(moved.max()) if len(moved) else None
         said = _doubts(job, factor, moved, rocking.moved)
     if chosen.turn > rocking.doubtful:
-        job.warnings.append(f"{chosen.doubt}; {said or _measured(factor, found['softer_joints_move'])}")
+        job.warnings.append(f"{chosen.doubt}; {said or _measured(factor, run, found['softer_joints_move'])}")
     elif said:
         job.warnings.append(said)
     return found
 
 
-def _measured(factor: str, moved: float | None) -> str:
+def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> str:
     """What there is to say where the second run raises no doubt of its own."""
-    if moved is None:
-        return "how much that matters was not found, a given kn may show it"
-    return f"{factor} peaks move by {moved:.1%} at most"
+    if moved is not None:
+        return f"{factor} peaks move by {moved:.1%} at most"
+    if run is not None and run.collapsed:
+        return f"{factor} it collapses as well"
+    return "how much that matters was not found, a given kn may show it"
 
 
 def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:

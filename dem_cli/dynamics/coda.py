@@ -28,6 +28,7 @@ class Ending(NamedTuple):
     how: str  # COLLAPSED, STOOD: at rest; ROCKS: it has turned back; MOVES: not known whether it falls
     block: CollapsedBlock | None = None
     followed: float = 0.0  # after the motion [s]
+    still: bool = False  # it was at rest when the motion ended, or moved by next to nothing since
 
     @property
     def collapsed(self) -> bool | None:
@@ -62,9 +63,9 @@ def ending(
         if block is not None:
             return Ending(COLLAPSED, block, sim.time - since)
         if at_rest(sim):
-            return Ending(STOOD, None, sim.time - since)
+            return Ending(STOOD, None, sim.time - since, done == 0 or swings.small())
         if done >= history.least_coda * most and swings.turned_back():
-            return Ending(ROCKS, None, sim.time - since)
+            return Ending(STOOD if swings.small() else ROCKS, None, sim.time - since, swings.small())
         if done >= most:
             return Ending(MOVES, None, sim.time - since)
         n = min(stretch, most - done)
@@ -102,6 +103,11 @@ class Swings:
     def look(self) -> None:
         """Remember where blocks are."""
         self._looks.append(self.sim.places()[self.sim.free])
+
+    def small(self) -> bool:
+        """Whether no block went anywhere."""
+        least = self.sim.settings.history.noticeable * self.sim.smallest
+        return bool(np.ptp(np.array(self._looks), axis=0).max(initial=0.0) <= least)
 
     def turned_back(self) -> bool:
         """Whether no block went farther in the second half of the time than in the first, to either side, by what

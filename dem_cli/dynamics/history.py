@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.coda import Ending, at_rest, ending
+from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
@@ -148,12 +148,11 @@ class TimeHistory:
 
     def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
         """How it ended."""
-        resting = at_rest(self.sim)
         end = Ending(COLLAPSED, fallen) if fallen is not None else self._followed(deepcopy(self.sim))
         found: dict[str, Any] = {"collapsed": end.collapsed, "collapse_time": None}
         if end.block is not None:
             found |= {"collapse_time": end.block.time, "collapse_block": end.block.block, "collapse": end.block.how}
-        return found | {"ending": end.how, "at_rest": resting, "followed": end.followed}
+        return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
 
     def _followed(self, sim: DynamicSimulation) -> Ending:
         """How a copy ends after the motion: what was measured and drawn is of the motion alone."""

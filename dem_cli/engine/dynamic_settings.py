@@ -45,7 +45,7 @@ class HistorySettings:
     energy_every: int = 10  # looks from one look into the books to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
-    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it
+    noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
     steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back

@@ -83,14 +83,15 @@ def rocked(tmp_path_factory):
 def test_the_answer(rocked):
     folder, text = rocked
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert list(summary)[:8] == ["title", "kind", "version", "status", "collapsed", "collapse_time", "peaks",
-                                 "energy_shares"]  # fmt: skip
+    assert list(summary)[:11] == ["title", "kind", "version", "status", "collapsed", "collapse_time", "ending",
+                                  "at_rest", "followed", "peaks", "energy_shares"]  # fmt: skip
     assert list(summary["peaks"]) == NAMES
     turn = read(folder).series.monitors["turn"]
     peak = summary["peaks"]["turn"]
     assert peak["peak"] == turn[np.abs(turn).argmax()]
     assert peak["residual"] == turn[-1]
-    assert "  result         stood\n" in text
+    assert "  result         stood, still rocking\n" in text
+    assert f", {peak['residual']:.3g} rad at the end, still moving\n" in text
     assert f"  peak           turn: {peak['peak']:.3g} rad at {peak['time']:.4g} s, " in text
     assert "  energy went to dashpots " in text
     assert "history.csv" in text

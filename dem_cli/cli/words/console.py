@@ -157,8 +157,8 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} {last_words(summary)}"))
         spread = ((summary.get("repeats") or {}).get("peaks") or {}).get(name)
         if spread:
-            low, middle, high = (_measure(spread[key], spread["unit"]) for key in ("min", "median", "max"))
-            rows.append(("", f"of repeats: {low} to {high}, median {middle}"))
+            low, high = (_measure(spread[key], spread["unit"]) for key in ("min", "max"))
+            rows.append(("", f"of its repeats {low} to {high}"))
     if len(peaks) > MOST_PEAKS:
         rows.append(("", f"and {len(peaks) - MOST_PEAKS} more in summary.json"))
     shares = {name: share for name, share in (summary.get("energy_shares") or {}).items() if share >= 0.0005}

@@ -6,10 +6,12 @@ import math
 from dataclasses import replace
 
 import engine
+import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
 
 from dem_cli.analyses.estimate import describe
+from dem_cli.analyses.time_history import alone
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
 from dem_cli.engine.properties import joint_properties
@@ -32,11 +34,11 @@ def turn(*blocks: dict) -> float:
     return turn_sideways(model, joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints)
 
 
-def chosen(*blocks: dict, duration: float = 10.0, many: bool = False, kn="auto", settings=DEFAULT, **analysis):
+def chosen(*blocks: dict, duration: float = 10.0, kn="auto", settings=DEFAULT, **analysis):
     shaken = {"analysis": {"kind": "time-history", "duration": duration, **analysis}, "motion": {"kind": "none"}}
     joints = {"dry": {"friction": 0.7, "kn": kn}}
     case, model = scene(tables(GROUND, *blocks, density=DENSITY, joints=joints, **shaken))
-    return rocking_stiffness(case, model, duration, many, settings)
+    return rocking_stiffness(case, model, settings)
 
 
 def of_drums(n: int, b: float, h: float) -> float:
@@ -79,7 +81,6 @@ def test_the_wanted_turn_is_met(aspect):
     assert found.turn == pytest.approx(ROCKING.turn, rel=1e-6)
     # kn h/W counts W over √(b h) for a joint, here over b
     assert found.ratio == pytest.approx(2.0 * aspect**2 / ROCKING.turn / math.sqrt(aspect), rel=1e-6)
-    assert chosen(*drums(1, 0.5, 0.5 * aspect), many=True).turn == pytest.approx(ROCKING.turn_of_many, rel=1e-6)
 
 
 def test_never_softer_than_the_least():
@@ -93,19 +94,32 @@ def test_given_stiffness_is_not_touched():
 
 
 def test_bounds():
-    """The user's time step, max_steps, and work; a turn beyond the doubtful one is said."""
+    """The user's time step, and work per √(height/g): a tenth of the steps."""
     blocks = drums(4, 0.5, 1.0)
     free = chosen(*blocks)
-    steps = free.work / (8 + ROCKING.points_per_step)
-    for found, most in (
-        (chosen(*blocks, time_step=10.0 * 10.0 / steps), steps / 10.0),
-        (chosen(*blocks, max_steps=int(steps / 5.0)), steps / 10.0),
-        (chosen(*blocks, settings=replace(DEFAULT, rocking=replace(ROCKING, work=free.work / 10.0))), steps / 10.0),
-    ):
-        assert found.work / (8 + ROCKING.points_per_step) == pytest.approx(most, rel=1e-4)
+    steps = free.work / (8 + ROCKING.points_per_step)  # per second
+    tenth = replace(ROCKING, work=0.1 * free.work * math.sqrt(4.0 / G))
+    for found in (chosen(*blocks, time_step=10.0 / steps), chosen(*blocks, settings=replace(DEFAULT, rocking=tenth))):
+        assert found.work / (8 + ROCKING.points_per_step) == pytest.approx(0.1 * steps, rel=1e-4)
         assert found.turn == pytest.approx(100.0 * free.turn, rel=1e-3)  # the step goes with √kn
     with_work = replace(DEFAULT, rocking=replace(ROCKING, work=1.0))
     assert chosen(*blocks, settings=with_work).ratio == DEFAULT.stiffness.dynamics
+
+
+def test_no_joint_knows_the_duration_the_repeats_or_the_limit_of_steps():
+    """Many drums, whose stiffness the budget bounds."""
+    blocks = drums(20, 0.5, 0.4)
+    one = chosen(*blocks)
+    assert one.turn > 2.0 * ROCKING.turn
+    for other in ({"duration": 60.0}, {"duration": 0.5}, {"repeats": 6}, {"max_steps": 1000}):
+        assert chosen(*blocks, **other) == one
+
+
+def test_a_model_and_its_prototype_turn_alike():
+    """√(height/g) is the time of rocking: the scale of a structure changes no angle."""
+    small, large = chosen(*drums(20, 0.05, 0.04)), chosen(*drums(20, 0.5, 0.4))
+    assert large.turn > 2.0 * ROCKING.turn  # bounded by the budget
+    assert small.turn == pytest.approx(large.turn, rel=1e-6)
 
 
 def test_round_off_bounds_it():
@@ -136,21 +150,61 @@ def test_a_run_says_what_it_chose_and_how_far_its_peaks_move():
 
 
 def test_ensembles_and_estimates_choose_alike():
-    """ε = 1e-5 in a fragility, 1e-6 in a single run: its step, which `dem check` knows, is √10 as long."""
+    """A fragility, a single run and `dem check`: one structure, one step."""
     blocks = drums(1, 0.5, 2.0)
     levels = {"unit_acceleration": 3.0, "intensities": [0.5, 1.0]}
     case = tables(GROUND, *blocks, joints={"dry": {"friction": 5.0}}, **PULSE, **SHORT)
     many = {"kind": "fragility", "duration": 1.5} | levels
     single, ensemble = (engine.solve({**case, "analysis": a})[0]["time_step"] for a in (SHORT["analysis"], many))
-    assert ensemble == pytest.approx(single * (ROCKING.turn_of_many / ROCKING.turn) ** 0.5, rel=1e-6)
+    assert ensemble == single
     assert dict(describe(*scene(case)))["time step"].startswith(f"{single:.3g} s")
 
 
-def test_a_run_on_joints_that_had_to_stay_soft_says_so():
+def test_a_run_on_joints_that_had_to_stay_soft_says_what_that_changed():
+    """The change that was measured on still softer joints, not a number that holds for other structures."""
     soft = replace(DEFAULT, rocking=replace(ROCKING, work=1.0))
-    found = run("auto", *drums(1, 0.5, 4.0), settings=soft, **PULSE, **SHORT)
+    gentle = {"motion": PULSE["motion"] | {"amplitude": 1.8}}
+    found = run("auto", *drums(1, 0.5, 3.5), settings=soft, **gentle, **SHORT)
     assert found["elastic_turn"] > ROCKING.doubtful
+    moved = found["softer_joints_move"]
+    assert moved > ROCKING.moved
     assert "joints are softer than rocking asks for" in found["warnings"][0]
+    assert f"on joints 10 times as soft peaks move, rotation of 'd0-0' by {moved:.1%}" in found["warnings"][0]
+    falls = run("auto", *drums(1, 0.5, 3.5), settings=soft, **PULSE, **SHORT)
+    assert "on joints 10 times as soft it collapses as well" in falls["warnings"][0]
+
+
+def repeated(**changes) -> tuple[dict, list]:
+    """A block whose friction differs from run to run, which does not matter to one that rocks; and its rows."""
+    analysis = SHORT["analysis"] | {"repeats": 3, "perturb": {"friction": 0.1, "geometry": 0.0, "motion": 0.0}}
+    watched = {"monitor": [{"block": "d0-0", "quantity": "rotation"}], "damping": {"restitution": "housner"}}
+    joints = {"dry": {"friction": 5.0, "kn": "auto"}}
+    blocks = drums(1, 0.5, 2.0)
+    case = tables(GROUND, *blocks, density=DENSITY, joints=joints, **watched, **PULSE, analysis=analysis | changes)
+    return engine.solve(case)
+
+
+def test_repeats_are_the_structure_of_the_run_beside_them():
+    """Nothing that matters differs: their peaks are the one of the case to the last digits, on its very joints."""
+    summary, records = repeated()
+    peaks = summary["repeats"]["peaks"][0]
+    own = np.abs(records.history.monitors[:, 0]).max()
+    assert peaks["min"] == pytest.approx(own, rel=1e-3)
+    assert peaks["max"] == pytest.approx(own, rel=1e-3)
+    assert not any("chance" in text for text in summary["warnings"])
+
+
+def test_peaks_that_their_repeats_scatter_or_pass_are_told():
+    """Of structures that differ by a tenth, or are another one all."""
+    summary, _ = repeated(perturb={"friction": 0.0, "geometry": 0.0, "motion": 0.2})
+    assert any(text.startswith("the peak rotation of 'd0-0' hangs on chance") for text in summary["warnings"])
+    case = scene(tables(GROUND, *drums(1, 0.5, 2.0), joints={"dry": {"friction": 5.0}}, **PULSE, **SHORT,
+                        monitor=[{"block": "d0-0", "quantity": "rotation"}]))[0]  # fmt: skip
+    around = {"peaks": [{"min": 1.0, "p16": 1.0, "median": 1.0, "p84": 1.1, "max": 2.0}]}
+    assert alone(case, np.array([1.5]), around, 0.2) == []
+    for peak in (0.99, 2.01):
+        (said,) = alone(case, np.array([peak]), around, 0.2)
+        assert f"{peak:.3g}, lies outside of those of its repeats, 1 to 2" in said
 
 
 def test_a_peak_that_hangs_on_stiffness_is_doubted():
