@@ -143,7 +143,8 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
         largest = 0.0
         for block in range(unbalanced.shape[0]):
             for k in range(n_dof):
-                largest = max(largest, abs(unbalanced[block, k]) * scales[block, k])
+                if inverse_masses[block, k] > 0.0:  # supports take what comes
+                    largest = max(largest, abs(unbalanced[block, k]) * scales[block, k])
         control[UNBALANCED] = largest
         return done
 
