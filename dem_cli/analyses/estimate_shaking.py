@@ -26,7 +26,7 @@ PER_STEP = 0.4  # µs beside them
 
 def settings_of(case: Case, model: Model) -> Settings:
     """Settings with the stiffness that a run gives "auto" joints."""
-    return rocking_stiffness(case, model).applied(DEFAULT)
+    return rocking_stiffness(case, model, DEFAULT).applied(DEFAULT)
 
 
 def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]]:

@@ -26,8 +26,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.ending import MOVES
-from dem_cli.output.record import FALLS, Observer, RunRow, distinct
+from dem_cli.output.record import FALLS, MOVES, Observer, RunRow, distinct
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -27,8 +27,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
-from dem_cli.output.ending import MOVES
-from dem_cli.output.record import FALLS, Observer, RunRow
+from dem_cli.output.record import FALLS, MOVES, Observer, RunRow
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
-from dem_cli.output.ending import COLLAPSED, MOVES, ROCKS, STOOD
+from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep

@@ -27,8 +27,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.ending import COLLAPSED, MOVES
-from dem_cli.output.record import FALLS, Energy, Samples
+from dem_cli.output.record import COLLAPSED, FALLS, MOVES, Energy, Samples
 from dem_cli.statics.equilibrium import stand
 
 if TYPE_CHECKING:

@@ -18,8 +18,7 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Watch
-from dem_cli.output.ending import COLLAPSED
-from dem_cli.output.record import Observer
+from dem_cli.output.record import COLLAPSED, Observer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -39,7 +38,7 @@ class ShakenRunResult(NamedTuple):
     steps: int
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
-    ending: str = ""  # one of those of output/ending.py; empty where the run failed
+    ending: str = ""  # one of those of output/record.py; empty where the run failed
 
 
 class RunCancelled(Exception):

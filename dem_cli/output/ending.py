@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "stood, still rocking", "still moving"  # `ending` of a summary
+from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
+
 _KNOWN = {STOOD: STOOD, ROCKS: ROCKS, MOVES: "still moving at the end: whether it falls is not known"}
 
 

@@ -11,7 +11,8 @@ from oracle.housner import Block, rock
 
 from dem_cli.dynamics.coda import Swings, undecided
 from dem_cli.engine.settings import DEFAULT
-from dem_cli.output.ending import MOVES, ROCKS, STOOD, ending_words, last_words
+from dem_cli.output.ending import ending_words, last_words
+from dem_cli.output.record import MOVES, ROCKS, STOOD
 
 WIDTH, HEIGHT, FREQUENCY = 1.0, 6.0, 0.8
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)
@@ -87,7 +88,7 @@ def test_the_coda_ends_with_the_rest():
 
 def test_repeats_and_fragility_end_as_the_run_beside_them():
     """All fall after the motion; a fragility counts its levels alike."""
-    found, records = engine.solve(shaken(8.0, repeats=3))
+    found = engine.solve(shaken(8.0, repeats=3))[0]
     assert found["repeats"]["share_collapsed"] == 1.0
     assert found["repeats"]["still_moving"] == 0
     cut = engine.solve(shaken(6.0, repeats=2, coda=0.0))[0]
@@ -134,7 +135,9 @@ def test_words():
         "collapsed at 2.481 s, 1.23 s after the motion")  # fmt: skip
     assert ending_words({"collapsed": True, "collapse_time": 2.481}) == "collapsed at 2.481 s"
     assert ending_words({"collapsed": False, "ending": ROCKS}) == "stood, still rocking"
-    assert ending_words({"collapsed": None, "ending": MOVES}) == "still moving at the end: whether it falls is not known"
+    assert (
+        ending_words({"collapsed": None, "ending": MOVES}) == "still moving at the end: whether it falls is not known"
+    )
     assert ending_words({"collapsed": False}) == "stood"  # of earlier versions
     assert ending_words({"collapsed": None}) == ending_words({}) == ""
     assert last_words({"at_rest": False}) == "at the end, still moving"
