@@ -66,6 +66,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
     if not math.isfinite(step.step):
         return rows
     steps = math.ceil(length / step.step)
+    more = math.ceil(analysis.coda / step.step)
     each_point = NANOSECONDS[sim.damping.in_joints]
     seconds = (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
     work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
@@ -73,6 +74,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
     return [
         *rows,
         ("steps", f"{steps:,}"),
+        *([("coda", f"up to {more:,} steps more, where it still moves then")] if more else []),
         ("cost", f"{duration_words(seconds)} on one core ({each}{steps:,} steps × ({work}))"),
     ]
 

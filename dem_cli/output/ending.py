@@ -7,7 +7,7 @@ from typing import Any
 
 from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
 
-_KNOWN = {STOOD: STOOD, ROCKS: ROCKS, MOVES: "still moving at the end: whether it falls is not known"}
+_KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: "still moving at the end: whether it falls is not known"}
 
 
 def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:

@@ -25,7 +25,7 @@ STAGES = (
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
-COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "stood, still rocking", "still moving"  # ends of time histories
+COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "still rocking", "still moving"  # ends of time histories
 
 
 class ContactRecord(NamedTuple):

@@ -187,3 +187,15 @@ def test_names_of_monitors(tmp_path):
 
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     assert monitor_names(load_case(tmp_path / "case.toml").case.monitor) == NAMES
+
+
+def test_a_peak_has_the_spread_of_its_repeats_beside_it(tmp_path):
+    peak = {"peak": 0.628, "time": 8.25, "residual": 0.35, "unit": "m"}
+    spread = {"min": 0.149, "p16": 0.15, "median": 0.153, "p84": 0.2, "max": 0.259, "unit": "m"}
+    repeats = {"runs": 6, "collapsed": 1, "still_moving": 2, "peaks": {"roof": spread}}
+    summary = shaking_summary() | {"collapsed": None, "ending": "still moving", "at_rest": False}
+    text = console.answer(summary | {"peaks": {"roof": peak}, "repeats": repeats}, tmp_path, [])
+    assert "  result         still moving at the end: whether it falls is not known\n" in text
+    assert "roof: 628 mm at 8.25 s, 350 mm at the end, still moving\n" in text
+    assert "of its repeats 149 mm to 259 mm\n" in text
+    assert "1 of 6 perturbed structures collapsed, 2 still moved in the end\n" in text

@@ -96,6 +96,10 @@ def test_repeats_and_fragility_end_as_the_run_beside_them():
     assert "2 of 2 runs still moved 0 s after the motion and count as standing" in " ".join(cut["warnings"])
     fragile = shaken(8.0) | {"analysis": {"kind": "fragility", "intensities": [2.0, 8.0]}}
     assert engine.solve(fragile)[0]["share"] == [0.0, 1.0]
+    fragile["analysis"] |= {"coda": 0.0}
+    cut = engine.solve(fragile)[0]
+    assert cut["share"] == [0.0, 0.0]
+    assert any("2 of 2 runs still moved 0 s after the motion" in text for text in cut["warnings"])
 
 
 class Places:
