@@ -83,9 +83,11 @@ class CaseSource:
         for override in self.overrides:
             if path and override.path == path[: len(override.path)]:
                 return f"{self.asked(override)}{dotted(path)}: {problem.message}"
-        table = path[:-1]
-        for override in self.overrides:  # a key missing in a table that only an override made
-            if table and table not in self.places.values and override.path[: len(table)] == table:
+        for override in self.overrides:  # a table that only an override made, or a key that is missing in it
+            if any(
+                table and table not in self.places.values and override.path[: len(table)] == table
+                for table in (path, path[:-1])
+            ):
                 return f"{self.asked(override)}{override.text}: {dotted(path)}: {problem.message}"
         line, column = self.locate(path, problem.at_key)
         where = f"{self.path}:{line}:{column}: "

@@ -65,7 +65,7 @@ class InteriorPointSettings:
 class AssociatedSettings:
     """The associated limit load as a linear program: where the solver stops, which errors are accepted."""
 
-    feasible: float = 2e-7  # unbalanced force in own weights at which the solver may stop
+    feasible: float = 1e-7  # unbalanced force in own weights at which the solver may stop
     residual: float = 1e-6  # largest accepted unbalanced force in own weights
     gap: float = 1e-4  # largest accepted width of the bounds over the load
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this

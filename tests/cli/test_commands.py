@@ -39,7 +39,16 @@ def test_what_new_prints_explains_every_key(kind):
 
 
 def test_there_is_a_template_for_every_generator():
-    assert set(TEMPLATE_KINDS) == {*GENERATORS, "block", "shaken", "safety", "sweep"}
+    assert set(TEMPLATE_KINDS) == {
+        *GENERATORS,
+        "block",
+        "colonnade",
+        "facade",
+        "retaining",
+        "shaken",
+        "safety",
+        "sweep",
+    }
 
 
 def test_a_template_that_is_uncommented_is_valid_too(tmp_path):
@@ -70,9 +79,9 @@ def test_check_prints_the_model():
     rows = dict(line.strip().split("  ", 1) for line in lines[1:])
     rows = {label: text.strip() for label, text in rows.items()}
     assert rows["analysis"] == "pushover"
-    assert rows["blocks"] == "15 (1 fixed), 60 corners"
-    assert rows["size"] == "0.12 m × 0.0875 m"
-    assert rows["mass"] == "1.4401 kg (free blocks), 1 material(s)"
+    assert rows["blocks"] == "23 (1 fixed), 92 corners"
+    assert rows["size"] == "3 m × 1.5 m"
+    assert rows["mass"] == "3960 kg (free blocks), 1 material(s)"
     assert rows["joint laws"] == "dry (coulomb)"
     assert rows["point loads"] == "none"
 

@@ -76,9 +76,9 @@ def test_check_says_what_is_varied():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("0.block.0", "0.blok.0"), ":21:8: analysis.vary: 'structure.0.blok.0' is not in the case"),
-        (("[0.1, 1.0]", "[1.0, 0.1]"), ":22:11: analysis.between: [1, 0.1] is not allowed"),
-        (("[0.1, 1.0]", "[-0.1, 1.0]"), ":22:11: analysis.between: structure.0.block.0 = -0.1 is not possible"),
+        (("0.block.0", "0.blok.0"), ":20:8: analysis.vary: 'structure.0.blok.0' is not in the case"),
+        (("[0.1, 1.0]", "[1.0, 0.1]"), ":21:11: analysis.between: [1, 0.1] is not allowed"),
+        (("[0.1, 1.0]", "[-0.1, 1.0]"), ":21:11: analysis.between: structure.0.block.0 = -0.1 is not possible"),
         (("between = [0.1, 1.0]", ""), "analysis.between: missing"),
         (('vary = "structure.0.block.0"', 'reduce = ["cohesion"]'), "analysis.reduce: no joint has any cohesion"),
     ],
