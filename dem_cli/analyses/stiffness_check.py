@@ -41,6 +41,9 @@ def checked(
     """
     job, rocking = history.job, settings.rocking
     found: dict[str, Any] = {"joint_stiffness": chosen.ratio, "elastic_turn": chosen.turn, "softer_joints_move": None}
+    if history.still:
+        job.skipped.append("a second run on softer joints: nothing rocked or slid")
+        return found
     run = _run(job, motions, chosen.softer(rocking.softer).applied(settings))
     factor, said = f"on joints {rocking.softer:g} times as soft", ""
     if run is None or not run.ending:

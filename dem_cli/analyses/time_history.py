@@ -53,9 +53,14 @@ def run(
     job.settings = chosen.applied(settings)
     history = TimeHistory(job, ground)
     outcome = history.run()
+    if history.still and outcome.summary["status"] == "ok":
+        outcome.summary["warnings"].append(
+            f"nothing rocked or slid: no block moved by more than {history.farthest:.2g} m; is the motion as strong as "
+            f"meant, with a peak of {ground.peak:.3g} m/s2?"
+        )
     if chosen.automatic and outcome.summary["status"] == "ok":
         outcome.summary |= checked(history, motions, chosen, outcome.summary["collapsed"], settings)
-    if doubtful(case) and outcome.summary["status"] != FALLS:
+    if doubtful(case) and not history.still and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
         found = repeated(case, model, observer, job.settings, batch or Batch())

@@ -34,7 +34,12 @@ def problems(case: Case, model: Model) -> list[CaseProblem]:
 
 def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """What may be meant, and most often is not; `blocks` in the order of the model."""
-    return [*size_doubts(_sizes(model, blocks)), *odd_loads(case, model), *_loads_and_weight(case, model)]
+    return [
+        *size_doubts(_sizes(model, blocks)),
+        *odd_loads(case, model),
+        *_loads_and_weight(case, model),
+        *_unused_joints(case),
+    ]
 
 
 def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
@@ -86,6 +91,14 @@ def _loads_and_weight(case: Case, model: Model) -> Iterator[CaseProblem]:
 def _is_unit(force: float) -> bool:
     """Whether a force is a power of ten, as where the multiplier is the load itself."""
     return math.log10(force).is_integer()
+
+
+def _unused_joints(case: Case) -> Iterator[CaseProblem]:
+    """Joints that lie between no two materials: most often an [[interface]] is missing."""
+    names, by_material = joint_table(case)
+    for k, name in enumerate(names):
+        if not (by_material == k).any():
+            yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:

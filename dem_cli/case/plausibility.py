@@ -76,6 +76,10 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     yield from _live_doubts(case)
+    vary = getattr(case.analysis, "vary", None)
+    if case.load and isinstance(vary, str) and vary.rpartition(".")[2] == "thickness":
+        message = "thickness is the depth out of plane, and point loads do not grow with it; a width is in 'block'"
+        yield CaseProblem(("analysis", "vary"), message)
 
 
 def _material_doubts(case: Case) -> Iterator[CaseProblem]:

@@ -225,9 +225,14 @@ class SweepProgress:
             "do not stand": states[FALLS],
             "failed": len(failed),
             "waiting": states[WAITING],
+            "warned": sum(bool(row.get("warnings")) for row in table),
         }
         self.facts("waiting" if states[WAITING] else "done", found)
-        return found | {"failures": [self.failure(row) for row in failed]}
+        first = next((row for row in table if row.get("warnings")), None)
+        return found | {
+            "failures": [self.failure(row) for row in failed],
+            "first_warning": first and f"{first['run']}: {str(first['warnings']).partition(' | ')[0]}",
+        }
 
     def failure(self, row: dict[str, Any]) -> dict[str, Any]:
         """What a user needs to know of a failed run."""
@@ -266,6 +271,8 @@ def told(found: dict[str, Any], folder: Path) -> str:
         lines.append(f"  failed    {row['run']} ({values}): {row['reason']}")
     if found["failed"] > MOST_FAILURES:
         lines.append(f"            and {found['failed'] - MOST_FAILURES:,} more in sweep.csv")
+    if found["warned"]:
+        lines.append(f"  warned    {found['warned']:,} (column 'warnings'), such as {found['first_warning']}")
     where = shown(folder.resolve())
     lines.append(f"  results   {where}/sweep.csv, sweep.sqlite, runs/ ({console.seconds(found['wall_seconds'])})")
     return "\n".join(lines)

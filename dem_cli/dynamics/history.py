@@ -52,6 +52,7 @@ class TimeHistory:
         self.track: Track = job.track(self.sim)
         self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
         self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
+        self.farthest = 0.0  # that a block went against the ground [m], look by look
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
         """The simulation, with laws that know the time step."""
@@ -68,6 +69,11 @@ class TimeHistory:
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
+
+    @property
+    def still(self) -> bool:
+        """Whether the ground moved and no block did, by more than joints deform."""
+        return self.ground.peak > 0.0 and self.farthest < self.sim.settings.history.noticeable * self.sim.smallest
 
     def run(self) -> Outcome:
         """Rest, first motion, shaking; the summary."""
@@ -133,6 +139,7 @@ class TimeHistory:
                     self.snapshots.collapsed(end)
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
+            self.farthest = max(self.farthest, moved)
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / end, 1.0))
         return {"status": "ok"} | self._ended(fallen)
 

@@ -92,7 +92,7 @@ def _with_warnings(motion: Motion, table: RecordTable) -> Motion:
     if table.unit and table.scale is None and table.peak is None and not LIKELY[0] <= peak <= LIKELY[1]:
         warnings.append(f"{odd_peak(table.quantity, table.unit, peak)}; scale = 1.0 says that it is meant")
     if moving := moving_at_the_end(motion):
-        warnings.append(moving + ("; baseline = true takes a drift out" if table.baseline is False else ""))
+        warnings.append(moving + ("; baseline = true, or 2, may take a drift out" if table.baseline is False else ""))
     return replace(motion, warnings=tuple(filter(None, warnings)))
 
 

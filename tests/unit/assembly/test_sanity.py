@@ -111,6 +111,20 @@ def test_no_doubt_about_a_load_of_one_newton_that_is_multiplied(tmp_path):
     assert said(tmp_path, f'{PUSHED}pattern = "live"\n{LIVE.replace("100.0", "1.0")}') == []
 
 
+def test_a_joint_between_no_blocks_is_named(tmp_path):
+    bed = WALL.replace("[[structure]]", "[joints.bed]\nfriction = 0.3\n[[structure]]", 1)
+    assert said(tmp_path, bed) == ["joints.bed: lies between no blocks: no [[interface]] names it"]
+    met = bed.replace("[joints.bed]", '[[interface]]\nbetween = ["stone", "stone"]\njoint = "bed"\n[joints.bed]')
+    assert "joints.dry: lies between no blocks" in said(tmp_path, met)[0]
+
+
+def test_a_depth_that_is_varied_under_point_loads_is_doubted(tmp_path):
+    varied = 'vary = "structure.0.thickness"\nbetween = [0.1, 1.0]\npattern = "live"\n'
+    safety = WALL.replace('"gravity"', '"safety"') + varied + LIVE
+    assert any("thickness is the depth out of plane" in text for text in said(tmp_path, safety))
+    assert not any("depth" in text for text in said(tmp_path, safety.replace("0.thickness", "0.block.0")))
+
+
 def test_no_doubt_about_small_dead_loads_and_tilting(tmp_path):
     dead = '[[load]]\nblock = "wall-6-1"\nforce = [0.0, -{}]\n'
     assert said(tmp_path, PUSHED + dead.format(400.0)) == []

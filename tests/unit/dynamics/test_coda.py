@@ -147,3 +147,14 @@ def test_words():
     assert last_words({"at_rest": False}) == "at the end, still moving"
     assert last_words({}) == "in the end"
     assert undecided(0, 5, 5.0) == []
+
+
+@pytest.mark.parametrize(("amplitude", "said"), [(0.5, True), (4.0, False)])
+@pytest.mark.parametrize("kn", [1e12, "auto"])
+def test_a_motion_that_moves_nothing_says_so(amplitude, said, kn):
+    """Below g b / h the block stays on its foot; nothing hangs on chance then, nor on stiffness."""
+    case = shaken(amplitude)
+    case["joints"]["dry"]["kn"] = kn
+    warnings = engine.solve(case)[0]["warnings"]
+    assert any("nothing rocked or slid" in text for text in warnings) is said
+    assert not any("hangs on chance" in text for text in warnings if said)

@@ -208,8 +208,12 @@ def test_peaks_that_their_repeats_scatter_or_pass_are_told():
 
 
 def test_a_peak_that_hangs_on_stiffness_is_doubted():
-    """Of a block that does not lift off all there is to see is how far its joint gives."""
+    """Every peak does, by next to nothing; of a block that does not lift off nothing is said but that."""
+    strict = replace(DEFAULT, rocking=replace(ROCKING, moved=1e-9))
+    found = run("auto", *drums(1, 0.5, 2.0), **PULSE, **SHORT, settings=strict)
+    assert 1e-9 < found["softer_joints_move"] < ROCKING.moved
+    assert any("peaks move, rotation of 'd0-0' by" in text for text in found["warnings"])
     gentle = {"motion": {"kind": "pulse", "shape": "sine", "amplitude": 0.5, "frequency": 1.0}}
-    found = run("auto", *drums(1, 0.5, 2.0), **gentle, **SHORT)
-    assert found["softer_joints_move"] == pytest.approx(1.0 - 1.0 / ROCKING.softer, rel=0.01)
-    assert any("peaks move, rotation of 'd0-0' by 90.0%" in text for text in found["warnings"])
+    found = run("auto", *drums(1, 0.5, 2.0), **gentle, **SHORT, settings=strict)
+    assert found["softer_joints_move"] is None
+    assert ["nothing rocked or slid" in text for text in found["warnings"]] == [True]
