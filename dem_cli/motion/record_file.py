@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.motion.record_text import RecordError, apart, by_width, is_number, number, read_text
+from dem_cli.motion.units import SI_FACTORS
 
 EVEN_SHARE, EVEN_WITHIN = 0.8, 0.4  # so many steps that close to the median make a record that is meant to be even
 GAP = 1.6  # steps of the median: longer is a gap in such a record
@@ -24,6 +25,7 @@ PEER_COUNT = re.compile(r"NPTS\s*=?\s*(\d+)", re.IGNORECASE)
 PEER_STEP = re.compile(rf"DT\s*=?\s*{_POSITIVE}", re.IGNORECASE)
 PEER_OLD = re.compile(rf"^\s*(\d+)\s+{_POSITIVE}\s+NPTS", re.IGNORECASE)
 WORD = re.compile(r"\W*[^\W\d_]{2}")  # what a header begins with, not a digit that was mistyped
+IN_BRACKETS = re.compile(r"[\[(]\s*([a-zA-Z]+(?:/s(?:ec)?(?:\^?2|²|/s)?)?)\s*[\])]")  # such as `acceleration [cm/s^2]`
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?", re.ASCII)
 ALONG = "all"  # `column` of values that go on from line to line
 
@@ -33,7 +35,7 @@ class RecordSamples(NamedTuple):
 
     times: np.ndarray  # [s], (n,)
     values: np.ndarray  # in `unit`, (n,)
-    quantity: str | None = None  # as a PEER header says; None: the file does not say
+    quantity: str | None = None  # as a header says; None: the file does not say
     unit: str | None = None
 
 
@@ -57,7 +59,20 @@ def read_series(
     else:
         values = _column(path.name, rows, numbers, column)
         times = step * np.arange(len(values))
-    return RecordSamples(times, values)
+    return RecordSamples(times, values, *said_unit(lines[: numbers[0] - 1]))
+
+
+def said_unit(header: list[str]) -> tuple[str | None, str | None]:
+    """Quantity and unit of the values by the lines above them, where they name one in brackets; None, None: no, or two.
+
+    Lengths are not looked for: they may be those of anything.
+    """
+    written = {unit.lower() for line in header for unit in IN_BRACKETS.findall(line)}
+    plain = {unit.replace("²", "2").replace("^", "").replace("sec", "s").replace("/s/s", "/s2") for unit in written}
+    found = [
+        (quantity, unit) for quantity in ("acceleration", "velocity") for unit in SI_FACTORS[quantity] if unit in plain
+    ]
+    return found[0] if len(found) == 1 else (None, None)
 
 
 def _rows(name: str, lines: list[str], along: bool) -> tuple[list[list[float]], list[int]]:

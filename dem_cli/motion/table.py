@@ -119,7 +119,9 @@ class RecordTable(MotionTable):
         default="acceleration", description="what the values are"
     )
     unit: Unit | None = Field(
-        default=None, description="of the values; may be left out where the file says it (AT2)", examples=["g"]
+        default=None,
+        description="of the values; may be left out where the file says it: AT2, a header like `acceleration [g]`",
+        examples=["g"],
     )
     scale: float | None = Field(default=None, description="factor on the values [-]; default: 1", examples=[1.2])
     peak: Positive | None = Field(

@@ -248,3 +248,23 @@ def test_whatever_is_in_a_file_is_read_or_refused(tmp_path, text):
         assert (np.diff(found.times) > 0).all()
         assert len(found.times) == len(found.values) >= 2
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("time [s], acceleration [g]", ("acceleration", "g")),
+        ("t (s); a (cm/s^2)", ("acceleration", "cm/s2")),
+        ("Zeit [s] Beschl. [m/s²]", ("acceleration", "m/s2")),
+        ("v [cm/sec]", ("velocity", "cm/s")),
+        ("# a [Gal]", ("acceleration", "gal")),
+        ("t [s], a [g], v [cm/s]", (None, None)),  # of which column?
+        ("time, acceleration", (None, None)),
+        ("Station (m), height [m]", (None, None)),
+    ],
+)
+def test_a_header_that_names_the_unit_of_the_values(tmp_path, header, said):
+    path = tmp_path / "record.csv"
+    path.write_text(header + "\n0.0 0.0\n0.1 0.5\n0.2 -0.5\n", encoding="utf-8")
+    found = read_series(path)
+    assert (found.quantity, found.unit) == said
