@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
+from dem_cli.output.reference import from_summary
 from dem_cli.post import style
 
 _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farther than failure
@@ -120,10 +121,12 @@ def _draw_answers(axis: Any, summary: dict[str, Any], labelled: bool) -> None:
         if isinstance(limits.get(name), (int, float)):
             label = f"limit analysis, {name.replace('_', '-')} {limits[name]:.4g}"
             axis.axhline(limits[name], color=style.LIMIT, lw=1.2, ls=(0, dashes), label=label)
-    reference = summary.get("reference")
-    if reference:
-        label = f"reference {reference['value']:g} ± {reference['tolerance']:g}"
-        axis.axhline(reference["value"], color=style.REFERENCE, lw=1.2, ls=(0, (1, 1.5)), label=label)
+    for answer in from_summary(summary.get("reference")):
+        if answer["quantity"] == "failure_load":
+            ends = answer["value"] if isinstance(answer["value"], list) else [answer["value"]]
+            words = " to ".join(f"{end:g}" for end in ends)
+            for end, label in zip(ends, (f"reference {words} ± {answer['tolerance']:.2g}", "_")):
+                axis.axhline(end, color=style.REFERENCE, lw=1.2, ls=(0, (1, 1.5)), label=label)
 
 
 def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None) -> None:

@@ -110,6 +110,7 @@ class Reader:
             return parse(words[1:])
         code, said = dem(*words[1:], given=given)
         assert code == int(wanted[1] if (wanted := EXIT.search(line)) else 0), f"{line}\n{said}"
+        assert "no pictures" not in said, f"{line}\n{said}"
         if target:
             (self.folder / target).write_text(said, encoding="utf-8")
         self.printed += said

@@ -46,3 +46,30 @@ def test_a_curve_off_the_failure_load_says_so_in_the_picture_and_has_no_mark(tmp
     assert len([line for line in axis.lines if line.get_marker() == "o"]) == (0 if words else 1)
     assert "joints of the solver's choice, kn·h/W = 4e+04" in axis.get_title(loc="left") + axis.get_title()
     assert (tmp_path / "capacity.png").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("reference", "labels"),
+    [
+        (None, []),
+        ({"quantity": "failure_load", "value": 0.6, "tolerance": 0.0018, "passed": True}, ["reference 0.6 ± 0.0018"]),
+        (
+            [
+                {"quantity": "failure_load", "value": [0.5, 0.6], "tolerance": 0.03, "passed": True},
+                {"quantity": "failure_mode", "value": "sliding", "tolerance": None, "passed": True},
+            ],
+            ["reference 0.5 to 0.6 ± 0.03"],
+        ),
+    ],
+)
+def test_lines_of_references_that_are_loads(tmp_path, monkeypatch, reference, labels):
+    """One reference, several, an interval, a word: the README's first case has three."""
+    drawn = []
+    monkeypatch.setattr(capacity.style, "headline", lambda figure, summary: drawn.append(figure))
+    history = np.zeros(5, [("displacement", float), ("load", float), ("step", int), ("stage", "U10")])
+    history["displacement"], history["load"], history["stage"] = np.linspace(0.0, 0.01, 5), 0.6, "loading"
+    history["step"] = np.arange(5)
+    summary = {"failure_load": 0.6, "failure_load_bracket": [0.6, 0.601], "reference": reference}
+    draw_capacity(SimpleNamespace(history=history, summary=summary), tmp_path / "capacity.png")
+    found = drawn[0].axes[0].get_legend_handles_labels()[1]
+    assert [label for label in found if label.startswith("reference")] == labels
