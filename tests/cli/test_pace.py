@@ -5,24 +5,15 @@ from __future__ import annotations
 import io
 
 import pytest
+from synthetic.clock import HandClock
 
 from dem_cli.cli.words import console
 from dem_cli.cli.words.pace import Pace
 
 
-class Clock:
-    """A clock that is set by hand."""
-
-    def __init__(self):
-        self.now = 100.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
 @pytest.fixture
 def clock(monkeypatch):
-    clock = Clock()
+    clock = HandClock()
     monkeypatch.setattr(console, "time", clock)
     return clock
 
