@@ -41,7 +41,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     resolution = case.analysis.resolution
     job.warnings += doubts(search, resolution, load_range(search, resolution))
     if search.status == OK:
-        found |= softer_joints.checked(job, sim, search, resolution)
+        try:
+            found |= softer_joints.checked(job, sim, search, resolution)
+        except KeyboardInterrupt:
+            search.status = INTERRUPTED
+    if search.status == OK:
         found |= _mechanism(sim, search, track)
         if case.analysis.follow > 0.0:
             falling, peak = _fall(job, sim, search)
@@ -133,6 +137,8 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     some = search.carried > job.settings.load_search.least * search.scale
     if some and abs(path.load - search.carried) > resolution * path.load and search.start["kind"] == GRAVITY:
         load_search.run_again_in_small_steps(search.carried)
+        if search.earlier is None:
+            job.skipped.append("the load again in small steps: not finished; it is that of larger steps")
 
 
 def _changed(load: float, rigid: float, lowered: float) -> list[str]:

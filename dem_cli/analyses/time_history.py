@@ -37,6 +37,7 @@ ONE_DRAW = (
     "the peaks are those of one record on one structure: rocking is ill-conditioned, and a change of 0.1 % may give "
     "others, or a collapse; repeats = 20 shows their spread, kind = 'fragility' that of many records"
 )
+ENOUGH = 10  # repeats that stood: of fewer the run itself is often the least or the largest by chance
 PERCENTILES = {"min": 0.0, "p16": 16.0, "median": 50.0, "p84": 84.0, "max": 100.0}
 
 
@@ -125,12 +126,13 @@ def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
 def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float) -> list[str]:
     """Words for peaks that repeats scatter widely, or do not reach or pass; the first of each kind is named."""
     wide, outside = [], []
+    runs = repeats.get("runs", ENOUGH) - repeats.get("collapsed", 0)
     for monitor, peak, found in zip(case.monitor, peaks.tolist(), repeats["peaks"]):
         if found is None:
             continue
         name = f"{monitor.quantity} of '{monitor.place}'"
         between = f"{found['min']:.3g} to {found['max']:.3g}"
-        if not found["min"] <= peak <= found["max"]:
+        if runs >= ENOUGH and not found["min"] <= peak <= found["max"]:
             outside.append(f"the peak {name}, {peak:.3g}, lies outside of those of its repeats, {between}")
         if found["p84"] - found["p16"] > allowed * found["median"]:
             wide.append(f"the peak {name} hangs on chance: structures that differ by next to nothing have {between}")

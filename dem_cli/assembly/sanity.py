@@ -82,8 +82,8 @@ def _loads_and_weight(case: Case, model: Model) -> Iterator[CaseProblem]:
         message = f"dead loads of {dead:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
         message += "what is a mass, such as a roof or a floor, is drawn as a block"
         yield CaseProblem(("load", of_kind["dead"][0][0]), message)
-    likely = 1e3 * live > HEAVY * weight
-    if pattern == "live" and 0.0 < live < LIGHT * weight and likely and not _is_unit(live):
+    likely, forces = 1e3 * live > HEAVY * weight, [force for _, force in of_kind["live"] if force > 0.0]
+    if pattern == "live" and 0.0 < live < LIGHT * weight and likely and not all(map(_is_unit, forces)):
         message = f"live loads of {live:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
         yield CaseProblem(("load", of_kind["live"][0][0], "force"), message)
 

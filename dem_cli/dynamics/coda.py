@@ -1,8 +1,9 @@
 """Coda: how a shaken structure ends. After its motion one that still moves is followed until that is known.
 
-It has collapsed, is at rest, or has turned back: no block goes beyond what it went to before. On ground at rest energy
-only gets less, so that a rocking block that has turned back once does so again; of many blocks that is no proof, but a
-block on its way down goes farther in every look. Where nothing of this has come when the coda is over nobody knows.
+It has collapsed, is at rest, or has turned back: no block goes beyond what it went to before. On ground at rest (not
+where analysis.duration cuts a motion short) energy only gets less, so that a rocking block that has turned back once
+does so again; of many blocks that is no proof, but a block on its way down goes farther in every look. Where nothing
+of this has come when the coda is over nobody knows.
 """
 
 from __future__ import annotations

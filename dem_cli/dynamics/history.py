@@ -169,7 +169,7 @@ class TimeHistory:
         try:
             return ending(sim, analysis, self.step, stretch, advance)
         except SolverError as error:
-            self.job.warnings.append(f"how it ends is not known, as the time after the motion {error}")
+            self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)
 
     def _stretch(self, n_steps: int, every: int) -> np.ndarray:

@@ -103,7 +103,7 @@ class RestedStructure:
         def advance(n_steps: int) -> None:
             if cancelled():
                 raise RunCancelled
-            self._stretch(sim, ground, n_steps, peaks if done < total or self.peaks_of_coda else np.zeros_like(peaks))
+            self._stretch(sim, ground, n_steps, peaks if done < total or self.peaks_of_coda else np.zeros(0))
 
         while done < total:
             n = min(self.stretch, total - done)

@@ -79,7 +79,8 @@ class CollapseStates:
         """Largest normal force of every point and least of every joint, at any load up to the associated one."""
         statics, settings = self.statics, self.settings
         bounds, (rows, tops) = statics.bounds(0.0, self.upper), statics.cone_rows()
-        loads = float(np.abs(self.structure.dead).sum() + np.abs(self.structure.live).sum() * min(self.upper, 1e3))
+        most = min(self.upper, 1e3 * statics.load)  # as users know multipliers
+        loads = float(np.abs(self.structure.dead).sum() + np.abs(self.structure.live).sum() * most)
         ceiling = settings.forces * loads / statics.weight
         self.most = np.minimum(self.limits.compression, ceiling)
         for p in range(statics.n_points):
@@ -215,7 +216,8 @@ class CollapseStates:
             return StateSearch(None, np.inf, True, nodes)
         proved = answer.mip_dual_bound if answer.mip_dual_bound is not None else 0.0
         state = None if answer.x is None else self.solved(np.round(answer.x[self.choices]))
-        return StateSearch(state, float(max(proved, 0.0)) * self.statics.load, answer.status == 0, nodes)
+        complete = bool(answer.status == 0 and state is not None)  # choices that cannot be solved again prove nothing
+        return StateSearch(state, float(max(proved, 0.0)) * self.statics.load, complete, nodes)
 
     def chosen(self, forces: np.ndarray, velocities: np.ndarray, weight: float) -> np.ndarray:
         """The choices of a state that is one but for errors, (n_choices,): the smaller factor is nothing.

@@ -61,7 +61,7 @@ def lower_bound(
     associated: float,
     settings: ReducedSettings = DEFAULT_LIMIT.reduced,
 ) -> LowerBound:
-    """A load below which nothing collapses, sought up to the associated one (infinite: none is known).
+    """A load below which nothing collapses, sought up to the associated one (infinite: by the strength alone).
 
     strength: what points carry at most; residual: what they keep while they slide and open.
     """
@@ -95,7 +95,7 @@ class ReducedDomain:
                 break
             reached = self.reach(self.least_normals(low, high), low, high)
             if reached is None or not reached - low >= settings.least_gain * (high - low):
-                if not high - low > settings.accuracy * associated or np.isinf(high):
+                if not high - low > settings.accuracy * associated:
                     break
                 high = low + settings.shorter * (high - low)
                 continue

@@ -59,15 +59,16 @@ def read_series(
     else:
         values = _column(path.name, rows, numbers, column)
         times = step * np.arange(len(values))
-    return RecordSamples(times, values, *said_unit(lines[: numbers[0] - 1]))
+    plain = column is None or column == ALONG  # else the unit may be that of another column
+    return RecordSamples(times, values, *(said_unit(lines[: numbers[0] - 1]) if plain else (None, None)))
 
 
 def said_unit(header: list[str]) -> tuple[str | None, str | None]:
-    """Quantity and unit of the values by the lines above them, where they name one in brackets; None, None: no, or two.
+    """Quantity and unit of the values by the line above them, where it names one in brackets; None, None: no, or two.
 
     Lengths are not looked for: they may be those of anything.
     """
-    written = {unit.lower() for line in header for unit in IN_BRACKETS.findall(line)}
+    written = {unit.lower() for line in header[-1:] for unit in IN_BRACKETS.findall(line)}
     plain = {unit.replace("²", "2").replace("^", "").replace("sec", "s").replace("/s/s", "/s2") for unit in written}
     found = [
         (quantity, unit) for quantity in ("acceleration", "velocity") for unit in SI_FACTORS[quantity] if unit in plain

@@ -183,7 +183,9 @@ GROUPS = {  # of results.h5
         },
     ),
     "/dem/model": Group("the structure as it was drawn", MODEL, {"dimension": "2: x to the right, y upwards"}),
-    "/dem/frames": Group("snapshots, as many as `output.frames` asks for", FRAMES),
+    "/dem/frames": Group(
+        "snapshots: as many as `output.frames` asks for, or as the motion of a time history needs", FRAMES
+    ),
     "/dem/contacts": Group("contact points of all frames, one frame after the other", CONTACTS),
     "/dem/joints": Group(
         "joints as they were drawn, and the state of each at every frame; blocks that come to touch later have contact "

@@ -23,6 +23,8 @@ def draw_histories(results: Results, path: Path) -> None:
     series = results.series
     assert series is not None
     collapse = results.summary.get("collapse_time")
+    if collapse is not None and collapse > series.time[-1]:
+        collapse = None  # after the motion, in the coda: nothing of it is drawn
     panels = {quantity: of_quantity(series, quantity) for quantity in MONITOR_UNITS}
     panels = {quantity: lines for quantity, lines in panels.items() if lines}
     moved = [name for i, name in enumerate(BASE) if (series.base[:, i] != 0.0).any()]

@@ -1,9 +1,9 @@
 """Check of joint stiffness in a pushover whose geometry moves: whether joints ten times as soft carry the load as well.
 
-Only joints of "auto" stiffness are the program's choice, and only these are checked. Their closure is taken back where
-the structure rests (engine/rigid_joints.py), so that what is held hangs on it through the way there alone. What is lost
-by compliance is lost tenfold on joints ten times as soft: a load that holds there, less ten times the resolution, is
-known as closely as the resolution says.
+Joints of "auto" stiffness are the program's choice: a structure where all are is checked, one with a given kn is not.
+Closure is taken back where the structure rests (engine/rigid_joints.py), so that what is held hangs on it through the
+way there alone. What is lost by compliance is lost tenfold on joints ten times as soft: a load that holds there, less
+ten times the resolution, is known as closely as the resolution says.
 """
 
 from __future__ import annotations

@@ -48,6 +48,9 @@ def _least(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     how = LEAST_OF.get(known, "").format(changed=limits["least_changed"])
     if known == "local" and not limits["least_changed"]:
         how = "a local least: no opening or slip that it leaves open leads lower"
+    if known == "all":
+        how += f", at rates up to {limits['least_rates']:g}"
+        how += "" if limits["least_forces_bounded"] else " and forces up to 20 times all loads"
     if proved is not None and known != "all":
         how = f"{how}; none at all below {load_text(proved)}".removeprefix("; ")
     spent = f"{limits['least_nodes']:,} nodes, {seconds(limits['least_seconds'])}"
