@@ -1,4 +1,4 @@
-"""Cases of explicit blocks in space, for tests: boxes, prisms, walls that meet, twins of plane cases."""
+"""Structures in space as tables of case files: boxes, prisms, drums, walls that meet."""
 
 from __future__ import annotations
 
@@ -25,6 +25,11 @@ def box(name: str, low: Sequence[float], high: Sequence[float], **more) -> dict:
 def prism(name: str, outline, low: float, high: float, **more) -> dict:
     """An outline (n, 2) in the x–y plane from one height to another."""
     return solid(name, [(x, y, z) for z in (low, high) for x, y in outline], **more)
+
+
+def extruded(outline, low: float, high: float) -> list[tuple[float, float, float]]:
+    """Corners of an outline (y, z) from one x to another."""
+    return [(x, y, z) for x in (low, high) for y, z in outline]
 
 
 def frustum(name: str, below, above, low: float, high: float, **more) -> dict:
