@@ -1,4 +1,4 @@
-"""Planar twins: plane models in space, prisms that are pushed in their plane, which fail at the load of the plane ones."""
+"""Planar twins: plane models in space, prisms pushed in their plane, which fail at the load of the plane ones."""
 
 from __future__ import annotations
 
