@@ -1,4 +1,4 @@
-"""Contact in space: random pairs against a linear program and shapely, a wall against its planar twin, lone contacts."""
+"""Contact in space: random pairs against a linear program and shapely, a wall and its planar twin, lone contacts."""
 
 from __future__ import annotations
 
