@@ -29,12 +29,7 @@ def widths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) ->
 
 def edges(topology: Topology) -> tuple[np.ndarray, np.ndarray]:
     """Both ends of each edge, and its part."""
-    starts, counts = topology.face_starts, np.diff(topology.face_starts)
-    after = np.arange(1, len(topology.face_corners) + 1)
-    after[starts[1:] - 1] = starts[:-1]
-    ends = np.column_stack([topology.face_corners, topology.face_corners[after]])
-    once = ends[:, 0] < ends[:, 1]
-    return ends[once], np.repeat(topology.face_parts, counts)[once]
+    return topology.edges[:, :2], topology.face_parts[topology.edges[:, 2]]
 
 
 def normals(vertices: np.ndarray, topology: Topology) -> np.ndarray:
