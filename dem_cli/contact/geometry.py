@@ -80,6 +80,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
 GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}
+MOVING = (2,)  # dimensions in which joints are placed where the blocks are; else they are those of the start
 
 
 def geometry_of(dimension: int) -> AnyNarrowPhase:

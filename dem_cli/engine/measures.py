@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import rotation_vectors
+from dem_cli.geometry.rotation import quaternions, rotation_vectors
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
@@ -105,7 +105,7 @@ def closure(sim: Simulation) -> float:
 
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
-    joints, contacts = sim.joints, sim.measured()
+    joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
     owner = joints.owners
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
@@ -115,12 +115,13 @@ def contact_record(sim: Simulation) -> ContactRecord:
         joint=owner,
         blocks=joints.blocks[owner],
         points=joints.points + sim.origin,
-        normals=joints.frames[:, : sim.model.dimension].copy(),
+        normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
         shear_force=contacts.shear,
         gap=contacts.gaps,
         slip=contacts.slip,
         state=state.astype(np.int8),
+        tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
 
 
@@ -129,5 +130,5 @@ def frame(sim: Simulation, stage: str) -> Frame:
     bodies = sim.bodies
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        bodies.orientations.copy(), bodies.velocities.copy(), contact_record(sim), sim.time,
+        quaternions(bodies.orientations), bodies.velocities.copy(), contact_record(sim), sim.time,
     )  # fmt: skip
