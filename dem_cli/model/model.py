@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.compounds import inner_edges
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
 from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
 
@@ -86,17 +86,17 @@ class Model(ModelArrays):
     @cached_property
     def inner_faces(self) -> np.ndarray:
         """Faces inside a block of several parts, that nothing else can touch, (n_faces,) bool."""
-        return inner_edges(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
+        return shapes_of(self.vertices).inner_faces(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
 
     @cached_property
     def parts(self) -> PartMeasures:
         """Volumes and sizes of the parts."""
-        return part_measures(self.vertices, self.part_starts)
+        return part_measures(self.vertices, self.part_starts, self.topology)
 
     @cached_property
     def shapes(self) -> BlockMeasures:
         """Volumes, widths, shortest edges and radii of the blocks."""
-        return block_measures(self.vertices, self.topology, self.part_blocks, self.vertex_blocks, self.parts)
+        return block_measures(self.vertices, self.part_starts, self.topology, self.part_blocks, self.parts)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""

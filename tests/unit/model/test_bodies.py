@@ -9,6 +9,8 @@ from synthetic.spatial import extruded, spatial_model
 
 from dem_cli.geometry.polyhedron import box
 from dem_cli.model.bodies import bodies_of
+from dem_cli.model.places import block_at
+from dem_cli.model.scales import stiffness_scale
 
 
 def test_prisms_weigh_what_their_polygons_do():
@@ -41,3 +43,18 @@ def test_model_in_space_with_some_of_its_blocks():
         "principal_axes",
     ):
         assert np.array_equal(getattr(few, name), getattr(alone, name)), name
+
+
+def test_blocks_at_points_and_measures_in_space():
+    step = [box([0, 0, 1], [1, 1, 2]), box([1, 0, 1], [3, 1, 1.5])]
+    model = spatial_model([box([0, 0, 0], [4, 1, 1]), step])
+    points = {(0.5, 0.5, 0.5): 0, (2.5, 0.0, 1.25): 1, (0.5, 0.5, 1.9): 1, (2.5, 0.5, 1.75): None}
+    assert [block_at(model, np.array(point)) for point in points] == list(points.values())
+    assert model.shapes.volumes == pytest.approx([4.0, 2.0])
+    assert model.shapes.edges == pytest.approx([1.0, 0.5])
+    assert model.shapes.widths == pytest.approx([1.0, 0.5])
+    ends = np.concatenate([part.vertices for part in step])
+    assert model.shapes.radii[1] == pytest.approx(np.linalg.norm(ends - model.centroids[1], axis=1).max())
+    assert model.inner_faces.sum() == 1  # the face of the lower part; the higher one is free above it
+    joint = 2.0 ** (2 / 3)
+    assert stiffness_scale(model) == pytest.approx(2.0 * 2000.0 * 9.81 / (joint * 0.5))
