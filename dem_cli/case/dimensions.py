@@ -55,11 +55,10 @@ SCOPES = (
     Scope("calibration", 2, YET),
     Scope("imperfection", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
-    Scope("joints.NAME.points", 2, "not used in 3D: joints have a point at each corner"),
+    Scope("joints.NAME.points", 2, "not a layout in 3D", tuple(range(2, 10)), ("vertices+centre",)),
+    Scope("joints.NAME.points", 3, "that is a layout in 3D; in 2D it is points = 3", ("vertices+centre",)),
     Scope("monitor.between", 2, YET),
-    Scope(
-        "monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")
-    ),
+    Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
     Scope("block.faces", 3, "faces are those of a block in 3D: give dimension = 3"),

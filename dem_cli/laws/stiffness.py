@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
+CENTRED = 3  # points of a joint with one at its centre: both moments of its area are exact
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
@@ -29,10 +30,11 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices+centre"] | None = Field(
         default=None,
-        description="contact points of a plane joint, at Gauss-Lobatto places; "
-        "default: 2; 5 where the joint can crack, 3 where it is elastic",
+        description="contact points of a plane joint, at Gauss-Lobatto places; in 3D 'vertices+centre': its corners "
+        "and its centre; default: 2, 5 where the joint can crack, 3 where it is elastic; in 3D its corners, where it "
+        "can crack or is elastic vertices+centre",
         examples=[5],
     )
 
@@ -44,5 +46,7 @@ class StiffJoint(CaseModel):
 
     @property
     def contact_points(self) -> int:
-        """Number of contact points of a plane joint."""
-        return self.plane_points if self.points is None else self.points
+        """Number of contact points of a joint along its plane: 3 are its ends and its centre, in space as well."""
+        if self.points is None:
+            return self.plane_points
+        return CENTRED if self.points == "vertices+centre" else self.points
