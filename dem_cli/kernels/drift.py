@@ -46,7 +46,8 @@ def drift_centroids(bodies, shape, dt, like):
         i = np.uint64(number)
         for k in range(d):
             positions[i, k] += dt * velocities[i, k]
-        orientations[i, 0] += dt * velocities[i, d]
+        for k in range(orientations.shape[1]):
+            orientations[i, k] += dt * velocities[i, d + k]
     return 0.0
 
 
