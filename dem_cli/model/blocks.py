@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-
-import numpy as np
+from typing import Any
 
 from dem_cli.errors import KeyPath
 
@@ -13,13 +12,14 @@ from dem_cli.errors import KeyPath
 class Block:
     """One rigid block.
 
-    parts      convex pieces that move as one, each an (n, 2) array of corners [m], counter-clockwise
-    thickness  depth out of plane [m] (2D)
+    parts      convex pieces that move as one: in the plane (n, 2) arrays of corners [m], counter-clockwise; in space
+               polyhedra
+    thickness  depth out of plane [m]; in space 1
     path       where in the case file it comes from, for error messages
     """
 
     id: str
-    parts: tuple[np.ndarray, ...]
+    parts: tuple[Any, ...]  # of np.ndarray, or of Polyhedron
     material: str
     thickness: float = 1.0
     fixed: bool = False

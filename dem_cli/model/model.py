@@ -16,6 +16,9 @@ from dem_cli.geometry.compounds import inner_edges
 from dem_cli.geometry.topology import Topology, topology_of_polygons
 from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
 
+NONE = np.zeros(0, np.int64)
+NO_AXES = np.zeros((0, 4))
+
 
 class ModelArrays(NamedTuple):
     """What a model is made of, as results keep it (but for the aliases)."""
@@ -27,7 +30,7 @@ class ModelArrays(NamedTuple):
     fixed: np.ndarray  # blocks that cannot move, (n_blocks,) bool
     thickness: np.ndarray  # depth out of plane [m], (n_blocks,)
     masses: np.ndarray  # [kg], (n_blocks,)
-    inertias: np.ndarray  # about the centroid [kg m2], (n_blocks, r)
+    inertias: np.ndarray  # about the centroid, in space the principal ones [kg m2], (n_blocks, r)
     centroids: np.ndarray  # undeformed place [m], (n_blocks, d)
     part_blocks: np.ndarray  # block that each convex part belongs to, (n_parts,) int64, ascending
     part_starts: np.ndarray  # part p has the corners part_starts[p]:part_starts[p + 1], (n_parts + 1,) int64
@@ -35,6 +38,14 @@ class ModelArrays(NamedTuple):
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
     aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
+    # In space alone; in the plane they are empty, for there faces and axes follow from the corners:
+    part_faces: np.ndarray = NONE  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
+    face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
+    face_corners: np.ndarray = NONE  # corners around each face seen from outside, counter-clockwise, int64
+    principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
+
+
+SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
 
 
 class Model(ModelArrays):
@@ -68,6 +79,8 @@ class Model(ModelArrays):
     @cached_property
     def topology(self) -> Topology:
         """Faces of the parts, and their corners."""
+        if len(self.face_starts):
+            return Topology(self.part_faces, self.face_starts, self.face_corners)
         return topology_of_polygons(self.part_starts)
 
     @cached_property
