@@ -19,7 +19,8 @@ from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import GENERATORS
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import BlockTable, Case
+    from dem_cli.case.block_table import BlockTable
+    from dem_cli.case.schema import Case
 
 
 class Assembly(NamedTuple):

@@ -41,7 +41,11 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
     found: list[CaseProblem] = []
     unions: dict[KeyPath, list[tuple[ErrorLocation, Any]]] = {}
-    for item in error.errors(include_url=False):
+    errors = error.errors(include_url=False)
+    within = {item["loc"][:k] for item in errors for k in range(len(item["loc"]))}
+    for item in errors:
+        if item["type"] == "too_short" and item["loc"] in within:  # for want of items that are wrong themselves
+            continue
         if item["type"] == "missing" and isinstance(item["loc"][-1], int):  # the list is too short
             item["type"], item["loc"] = "too_short", item["loc"][:-1]
         spot = follow(model, item["loc"], item["type"])

@@ -120,9 +120,10 @@ def _live_doubts(case: Case) -> Iterator[CaseProblem]:
     if pattern == "live" and "direction" in case.analysis.model_fields_set:
         yield CaseProblem(("analysis", "direction"), "not used: pattern = 'live' has its own directions", at_key=True)
     elif pattern == "mass":
-        x, y = case.analysis.direction
-        if math.hypot(x, y) > 0.0 and abs(x) <= VERTICAL * math.hypot(x, y):
-            what = "heavier" if y < 0.0 else "lighter"
+        *sideways, up = case.analysis.direction
+        length = math.hypot(*sideways, up)
+        if length > 0.0 and math.hypot(*sideways) <= VERTICAL * length:
+            what = "heavier" if up < 0.0 else "lighter"
             message = f"along gravity: blocks become {what}, and nothing pushes them sideways"
             yield CaseProblem(("analysis", "direction"), message)
 

@@ -77,6 +77,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
 GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar}
+MOVING = (2,)  # dimensions in which joints are placed where the blocks are; else they are those of the start
 
 
 def geometry_of(dimension: int) -> AnyNarrowPhase:

@@ -9,7 +9,6 @@ from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joint_planes import in_planes
 from dem_cli.contact.joints import JointProperties
-from dem_cli.geometry.rotation import unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
@@ -19,7 +18,7 @@ TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
     """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,)."""
     n, n_dof = model.dead_loads.shape
-    positions, orientations = model.centroids - origin, unturned(n, model.dimension)
+    positions, orientations = model.centroids - origin, np.zeros_like(model.inertias)
     corners = world_corners(block_shape(model), positions, orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,

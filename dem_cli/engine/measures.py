@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import rotation_vectors
+from dem_cli.geometry.rotation import quaternions, rotation_vectors
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
@@ -129,5 +129,5 @@ def frame(sim: Simulation, stage: str) -> Frame:
     bodies = sim.bodies
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        bodies.orientations.copy(), bodies.velocities.copy(), contact_record(sim), sim.time,
+        quaternions(bodies.orientations), bodies.velocities.copy(), contact_record(sim), sim.time,
     )  # fmt: skip

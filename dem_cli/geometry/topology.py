@@ -6,12 +6,14 @@ faces are one thing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from dem_cli.geometry import polygon
+from dem_cli.geometry.polyhedron import Polyhedron
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,3 +45,17 @@ def topology_of_polygons(part_starts: np.ndarray) -> Topology:
     n = int(part_starts[-1])
     corners = np.column_stack([np.arange(n), polygon.following(part_starts)])
     return Topology(np.asarray(part_starts, np.int64), np.arange(0, 2 * n + 1, 2), corners.ravel())
+
+
+def topology_of_polyhedra(solids: Sequence[Polyhedron]) -> Topology:
+    """Of polyhedra whose corners follow each other in one array; those with the same `faces` are done once."""
+    kinds: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    for solid in solids:
+        if id(solid.faces) not in kinds:
+            kinds[id(solid.faces)] = np.array([len(face) for face in solid.faces]), np.concatenate(solid.faces)
+    sizes, corners = ([kinds[id(solid.faces)][i] for solid in solids] for i in (0, 1))
+    shift = np.cumsum([0] + [len(solid.vertices) for solid in solids])[:-1]
+    part_faces = np.cumsum([0] + [len(each) for each in sizes])
+    face_starts = np.concatenate([[0], np.cumsum(np.concatenate(sizes))])
+    face_corners = np.concatenate(corners) + np.repeat(shift, [len(each) for each in corners])
+    return Topology(*(each.astype(np.int64) for each in (part_faces, face_starts, face_corners)))

@@ -17,7 +17,8 @@ class Bodies(NamedTuple):
     """Changing state of the blocks."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, d)
-    orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1); geometry of the start: rotation vectors, (n_blocks, r)
+    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3): they add up where
+    # geometry is that of the start
     velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
     unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)

@@ -18,7 +18,6 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import look
 from dem_cli.laws.envelope import Envelope
-from dem_cli.limit.cone import cone_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.program import (
     ANSWERED,
@@ -76,7 +75,7 @@ def limit_load(
     """
     if not np.abs(structure.live).max(initial=0.0) > 0.0:
         raise UsageError("limit analysis needs live loads on blocks that can move, and there are none")
-    program = program_of(structure, cone_of(strength), settings)
+    program = program_of(structure, strength, settings)
     found = _first_good(program, largest_load, _judge_load)
     if found.status not in (OK, LOCKED):
         return found
@@ -93,7 +92,7 @@ def carried(
     strength: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
     that do not dilate may fail all the same.
     """
-    answer = _first_good(program_of(structure, cone_of(strength), settings), standing, _judge_standing)
+    answer = _first_good(program_of(structure, strength, settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
 
 
@@ -122,8 +121,8 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
         return _refusal(program, *_falls(program, found))
     s = program.structure
     amounts = program.cone.admissible(found.amounts)
-    normal, shear = _forces(program, amounts)
-    imbalance = s.imbalance(np.column_stack([normal, shear]).ravel(), found.multiplier)
+    forces = program.cone.forces(amounts)
+    imbalance = s.imbalance(forces.ravel(), found.multiplier)
     power = float(s.live @ found.velocities)
     if not (np.isfinite(imbalance).all() and power > 0.0):
         return _refusal(program, f"{GIVEN_UP}: the solver says {found.said}")
@@ -133,6 +132,7 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     upper = _work(program, velocities, amounts) - float(program.dead @ velocities)
     settings = program.settings
     gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
+    normal, shear = forces[:, 0].copy(), forces[:, 1:].copy()
     made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
     if residual <= settings.residual and -settings.residual <= gap <= settings.gap:
         return made
@@ -144,8 +144,8 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     """Do the dead loads have forces that carry them?"""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
-    normal, shear = _forces(program, program.cone.admissible(found.amounts))
-    imbalance = program.structure.imbalance(np.column_stack([normal, shear]).ravel(), 0.0)
+    forces = program.cone.forces(program.cone.admissible(found.amounts))
+    imbalance = program.structure.imbalance(forces.ravel(), 0.0)
     residual = float(np.abs(imbalance).max(initial=0.0))
     if found.kind == ANSWERED and residual <= program.settings.residual:
         return _refusal(program, OK, residual)
@@ -157,18 +157,16 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
 
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
     """
-    velocities = found.velocities
-    motion = (program.motion @ velocities)[program.cone.cap < 0]
+    velocities, cone = found.velocities, program.cone
     power = float(program.dead @ velocities) - _work(program, velocities)
-    violation = max(0.0, float(-motion.min(initial=0.0)))
+    violation = float(cone.outside(program.motion @ velocities)[cone.cap < 0].max(initial=0.0))
     error = violation * program.weight * program.n_blocks / power if power > 0.0 else np.inf
     return _proved(program, FALLS, error, found), error
 
 
 def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
     """Status and error of the proof: contact forces in balance with live loads alone."""
-    s, free = program.structure, program.cone.cap < 0  # what a cap limits cannot grow without end
-    amounts = np.where(free, np.maximum(found.amounts, 0.0), 0.0)
+    s, amounts = program.structure, program.cone.endless(found.amounts)
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
     load = found.multiplier * float(np.abs(s.live / s.scales).max())
     error = float(np.abs(unbalanced).max()) / load if load > 0.0 else np.inf
@@ -187,18 +185,14 @@ def _work(program: Program, velocities: np.ndarray, amounts: np.ndarray | None =
     cone, motion = program.cone, program.motion @ velocities
     work = float(cone.most @ cone.yielding(motion))
     if amounts is not None:
-        work += float(amounts @ np.where(cone.cap < 0, np.maximum(-motion, 0.0), 0.0))
+        work += float(amounts[cone.leading] @ np.where(cone.cap < 0, cone.outside(motion), 0.0))
     return work
-
-
-def _forces(program: Program, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Normal forces (n_points,) and shear forces (n_points, 1) [N]."""
-    forces = program.cone.forces(amounts).reshape(-1, 2)
-    return forces[:, 0].copy(), forces[:, 1:].copy()
 
 
 def _refusal(program: Program, status: str, residual: float = 0.0) -> LimitLoad:
     """An answer without a multiplier."""
-    n_points = program.structure.compatibility.shape[0] // 2
-    nothing = np.zeros((program.structure.model.n_blocks, program.structure.n_dof))
-    return LimitLoad(status, None, None, None, residual, np.zeros(n_points), np.zeros((n_points, 1)), nothing, None, 0)
+    nothing, forces = (
+        np.zeros((program.structure.model.n_blocks, program.structure.n_dof)),
+        np.zeros_like(program.cone.first),
+    )
+    return LimitLoad(status, None, None, None, residual, forces[:, 0], forces[:, 1:], nothing, None, 0)

@@ -1,10 +1,12 @@
-"""Limit analysis as a linear program: posed in well-scaled numbers, solved by Clarabel, answered in newtons.
+"""Limit analysis as a linear or second-order cone program: in well-scaled numbers, solved by Clarabel, in newtons.
 
-    max λ       so that   Gᵀ g + dead + λ live = 0,   g ≥ 0     (G: motion of the cone generators, limit.cone)
-    min −dead·u so that   live·u = 1,   G u ≥ 0                 (its dual: the mechanism)
+    max λ       so that   Gᵀ g + dead + λ live = 0,   g ∈ K     (G: motion along the amounts of the cones, limit.cone)
+    min −dead·u so that   live·u = 1,   G u ∈ K                 (its dual: the mechanism)
 
+K: g ≥ 0 in the plane, a linear program; in space round cones |(g₁, g₂)| ≤ g₀ of a frictional point, exactly.
 Joints with cohesion, tension and crushing: dead has the forces of their tips (Cone.first), Σ share · g ≤ most of each
-cap, and the dual pays for what yields there: min −dead·u + most·y so that G u + share y ≥ 0, y ≥ 0.
+cap, and the dual pays for what yields there: min −dead·u + most·y so that G u + share y ∈ K, y ≥ 0. In space g and the
+rate y are those of the leading amounts g₀.
 
 The dual is what the solver gets: it has a third of the rows, and its multipliers are the forces. What makes it
 quick and exact is its scaling: rows by the weight and radius of their own block, forces and velocities by √n;
@@ -19,7 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import bmat, csc_matrix, csr_matrix, diags, identity, vstack
 
-from dem_cli.limit.cone import Cone
+from dem_cli.laws.envelope import Envelope
+from dem_cli.limit.cone import Cone, cone_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
 
@@ -35,11 +38,11 @@ KINDS = {
 
 
 class Program(NamedTuple):
-    """The linear program in newtons and metres, and the units in which it is solved."""
+    """The program in newtons and metres, and the units in which it is solved."""
 
     structure: Structure
     cone: Cone
-    motion: csr_matrix  # G, (n_generators, n_free)
+    motion: csr_matrix  # G, (n_amounts, n_free)
     dead: np.ndarray  # dead loads of the free degrees of freedom, with the forces Cone.first [N, N m], (n_free,)
     n_blocks: int  # that can move
     weight: float  # mean weight [N]
@@ -51,15 +54,18 @@ class ProgramSolution(NamedTuple):
     """What the solver came up with; where it says that something is impossible, its proof."""
 
     kind: str  # ANSWERED; IMPOSSIBLE: `velocities` are the proof; UNBOUNDED: `amounts` and `multiplier`; UNKNOWN
-    amounts: np.ndarray  # of the generators [N], (n_generators,)
+    amounts: np.ndarray  # of the members of the cone [N], (n_amounts,)
     multiplier: float  # of the live loads
     velocities: np.ndarray  # of the free degrees of freedom, in any unit, (n_free,)
     iterations: int
     said: str  # by the solver
 
 
-def program_of(structure: Structure, cone: Cone, settings: AssociatedSettings = DEFAULT_LIMIT.associated) -> Program:
-    """The linear program of a structure with live loads."""
+def program_of(
+    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+) -> Program:
+    """The program of a structure with live loads."""
+    cone = cone_of(strength, structure.model.dimension)
     n_blocks, (weight, load) = len(structure.free) // structure.n_dof, units(structure)
     motion, constant = cone.motion(structure.compatibility), structure.dead
     if cone.first.any():
@@ -87,10 +93,10 @@ def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
 
 
 def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> ProgramSolution:
-    """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ≥ 0.
+    """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ∈ K.
 
-    The multipliers of these rows are −λ and the amounts of the generators. Behind the velocities are the rates of the
-    caps, behind these rows that they are not negative.
+    The multipliers of these rows are −λ and the amounts. Behind the velocities are the rates of the caps, behind these
+    rows that they are not negative.
     """
     import clarabel
 
@@ -103,7 +109,9 @@ def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> Progr
         q = np.concatenate([q, cone.most / program.weight / spread])
     b = np.zeros(a.shape[0])
     b[: len(live)] = spread
-    cones = [clarabel.ZeroConeT(len(live)), clarabel.NonnegativeConeT(a.shape[0] - len(live))]
+    curved = cone.n_round * cone.dimension
+    cones = [clarabel.ZeroConeT(len(live)), *[clarabel.SecondOrderConeT(cone.dimension)] * cone.n_round,
+             clarabel.NonnegativeConeT(a.shape[0] - len(live) - curved)]  # fmt: skip
     chosen = clarabel.DefaultSettings()
     chosen.verbose, chosen.max_threads = False, 1
     for name, value in ({"tol_feas": program.settings.feasible / spread} | options).items():
@@ -122,7 +130,8 @@ def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> Progr
 
 
 def _with_caps(a: csc_matrix, cone: Cone, before: int) -> csc_matrix:
-    """The rows of velocities, of which the generators come after `before` others, with the rates of the caps."""
+    """The rows of velocities, of which the amounts come after `before` others, with the rates of the caps."""
     n_caps, capped = len(cone.most), np.flatnonzero(cone.cap >= 0)
-    rates = csr_matrix((-cone.share[capped], (before + capped, cone.cap[capped])), (a.shape[0], n_caps))
+    rows = before + cone.leading[capped]
+    rates = csr_matrix((-cone.share[capped], (rows, cone.cap[capped])), (a.shape[0], n_caps))
     return bmat([[a, rates], [None, -identity(n_caps)]]).tocsc()

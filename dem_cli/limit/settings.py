@@ -63,7 +63,7 @@ class InteriorPointSettings:
 
 @dataclass(frozen=True)
 class AssociatedSettings:
-    """The associated limit load as a linear program: where the solver stops, which errors are accepted."""
+    """The associated limit load as a cone program: where the solver stops, which errors are accepted."""
 
     feasible: float = 1e-7  # unbalanced force in own weights at which the solver may stop
     residual: float = 1e-6  # largest accepted unbalanced force in own weights

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.compounds import inner_edges
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
 from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
 
@@ -86,27 +86,30 @@ class Model(ModelArrays):
     @cached_property
     def inner_faces(self) -> np.ndarray:
         """Faces inside a block of several parts, that nothing else can touch, (n_faces,) bool."""
-        return inner_edges(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
+        return shapes_of(self.vertices).inner_faces(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
 
     @cached_property
     def parts(self) -> PartMeasures:
         """Volumes and sizes of the parts."""
-        return part_measures(self.vertices, self.part_starts)
+        return part_measures(self.vertices, self.part_starts, self.topology)
 
     @cached_property
     def shapes(self) -> BlockMeasures:
         """Volumes, widths, shortest edges and radii of the blocks."""
-        return block_measures(self.vertices, self.topology, self.part_blocks, self.vertex_blocks, self.parts)
+        return block_measures(self.vertices, self.part_starts, self.topology, self.part_blocks, self.parts)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""
-        parts = [np.flatnonzero(self.part_blocks == block) for block in blocks]
-        corners = [
-            np.concatenate([np.arange(self.part_starts[p], self.part_starts[p + 1]) for p in of_block])
-            for of_block in parts
-        ]
-        sizes = np.diff(self.part_starts)[np.concatenate(parts)]
-        pick = np.array(blocks)
+        of_blocks = [np.flatnonzero(self.part_blocks == block) for block in blocks]
+        pick, parts = np.array(blocks), np.concatenate(of_blocks)
+        part_starts, corners = _rows(self.part_starts, parts)
+        part_faces, face_starts, face_corners = self.part_faces, self.face_starts, self.face_corners
+        if len(face_starts):
+            part_faces, faces = _rows(self.part_faces, parts)
+            face_starts, places = _rows(self.face_starts, faces)
+            renumbered = np.full(len(self.vertices), -1)
+            renumbered[corners] = np.arange(len(corners))
+            face_corners = renumbered[self.face_corners[places]]
         return self._replace(
             block_ids=tuple(self.block_ids[i] for i in blocks),
             block_material=self.block_material[pick],
@@ -115,13 +118,24 @@ class Model(ModelArrays):
             masses=self.masses[pick],
             inertias=self.inertias[pick],
             centroids=self.centroids[pick],
-            part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in parts]),
-            part_starts=np.concatenate([[0], np.cumsum(sizes)]),
-            vertices=self.vertices[np.concatenate(corners)],
+            part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in of_blocks]),
+            part_starts=part_starts,
+            vertices=self.vertices[corners],
             dead_loads=self.dead_loads[pick],
             live_loads=self.live_loads[pick],
+            part_faces=part_faces,
+            face_starts=face_starts,
+            face_corners=face_corners,
+            principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
         )
 
     def parts_alone(self) -> Model:
         """Every part a block of its own that can move; for detection, masses and loads are not divided."""
         return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool))
+
+
+def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Some rows of compressed sparse rows: their new starts, and the places of their entries, row by row."""
+    counts = np.diff(starts)[rows]
+    upto = np.concatenate([[0], np.cumsum(counts)])
+    return upto, np.arange(upto[-1]) + np.repeat(starts[rows] - upto[:-1], counts)

@@ -21,7 +21,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
-    angle = np.abs(sim.bodies.orientations - bodies.orientations).max(axis=1)
+    angle = np.sqrt(((sim.bodies.orientations - bodies.orientations) ** 2).sum(axis=1))
     motion = np.maximum(shift, angle * sim.shape.radii)
     weights = -sim.loads.dead[sim.free, d - 1]
     lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())

@@ -104,7 +104,8 @@ class RigidLimits:
             return True
         structure, friction = self._matrices
         motion = structure.compatibility @ found.velocities.ravel()[structure.free]
-        taken = float((friction * found.normal * np.abs(motion[1 :: structure.model.dimension])).sum())
+        slides = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
+        taken = float((friction * found.normal * slides).sum())
         return bool(taken > self.job.settings.warm_start.slides * abs(found.upper))
 
     @cached_property
