@@ -15,7 +15,7 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
     live_scale: factor on the live loads; radii: of the blocks [m], (n_blocks,); narrowest_arm: of its radius, the
     least width that a block's moments are compared with.
     """
-    d, r = model.dimension, model.inertias.shape[1]
+    d = model.dimension
     dead = model.dead_loads.copy()
     live = model.live_loads * live_scale
     dead[model.fixed] = 0.0
@@ -23,7 +23,7 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
     force_scales = np.empty_like(dead)
     force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
     arms = np.clip(model.shapes.widths, narrowest_arm * radii, radii)  # small moments turn a needle over
-    force_scales[:, d : d + r] /= arms[:, None]
+    force_scales[:, model.rotations] /= arms[:, None]
     return Loads(
         dead=np.ascontiguousarray(dead),
         live=np.ascontiguousarray(live),
