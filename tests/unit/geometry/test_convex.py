@@ -50,7 +50,7 @@ def test_what_two_boxes_have_in_common(shift, first, second):
 
 
 def test_what_a_cube_and_an_octahedron_have_in_common():
-    """|x| + |y| + |z| <= 3/4 in a cube of side 1: at each corner a tetrahedron is left out, less three beyond the cube."""
+    """|x| + |y| + |z| <= 3/4 in a cube of side 1 leaves a tetrahedron out at each corner, cut by the cube."""
     octahedron = SIGNS / np.sqrt(3.0), np.full(8, 0.75 / np.sqrt(3.0))
     normals, offsets = map(np.concatenate, zip(box_planes(0.0, np.full(3, 0.5)), octahedron, strict=True))
     found = common(normals, offsets)
