@@ -13,7 +13,6 @@ from dem_cli.case.vector import VectorLength
 from dem_cli.case.wording import either, kind_of, show
 from dem_cli.errors import CaseProblem, KeyPath
 
-KNOWN = (2, 3)
 NAME = "NAME"  # stands for a name of the user's choice in a key path
 YET = "not available in 3D yet"
 Table = TypeVar("Table", bound=CaseModel)
@@ -27,6 +26,7 @@ class Scope(NamedTuple):
     why: str  # what is said where it is given in the other one
     values: tuple[Any, ...] = ()  # of these values alone; (): whatever it is
     left: tuple[str, ...] = ()  # values that are known in both, named beside `why`
+    none: Any = None  # a value that says no more than leaving it out
     beside: tuple[str, Any] | None = None  # only beside this key of the same table with this value
 
     def holds(self, value: Any, table: Any) -> bool:
@@ -47,7 +47,7 @@ STATIC = ("gravity", "pushover", "safety")
 SCOPES = (
     Scope("analysis.kind", 2, YET, ("cycle", "settlement", "time-history", "fragility", "modes"), STATIC),
     Scope("analysis.kinematics", 2, f"{YET}: geometry is that of the start", ("large",), ("auto", "fixed")),
-    Scope("analysis.follow", 2, f"{YET}: geometry is that of the start; must be 0"),
+    Scope("analysis.follow", 2, f"{YET}: geometry is that of the start; must be 0", none=0),
     Scope("settlement", 2, YET),
     Scope("motion", 2, YET),
     Scope("damping", 2, YET),
@@ -55,11 +55,10 @@ SCOPES = (
     Scope("calibration", 2, YET),
     Scope("imperfection", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
-    Scope("joints.NAME.points", 2, "not used in 3D: joints have a point at each corner"),
+    Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
+    Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
     Scope("monitor.between", 2, YET),
-    Scope(
-        "monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")
-    ),
+    Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
     Scope("block.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
@@ -87,20 +86,28 @@ def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 def _unset(scope: Scope, value: Any) -> bool:
     """Whether a value says no more than leaving the key out: no tables, or no collapse to follow."""
-    return value in ([], {}) or (scope.key.endswith(".follow") and value == 0)
+    return value in ([], {}, scope.none)
 
 
 def _found(value: Any, steps: Sequence[str], path: KeyPath, table: Any = None) -> Iterator[tuple[KeyPath, Any, Any]]:
     """Every place of a key path in plain data: path, value, the table around."""
     if not steps:
         yield path, value, table
-    elif isinstance(value, list):
+    elif isinstance(value, (list, tuple)):
         for i, item in enumerate(value):
             yield from _found(item, steps, (*path, i), table)
     elif isinstance(value, dict):
         names = list(value) if steps[0] == NAME else [steps[0]] if steps[0] in value else []
         for name in names:
             yield from _found(value[name], steps[1:], (*path, name), value)
+
+
+def leave_out(data: dict[str, Any]) -> None:
+    """Takes defaults out of a whole case, in place, that its dimension does not know."""
+    for scope in SCOPES:
+        if scope.dimension != dimension_of(data) and not scope.values:
+            for path, _, table in list(_found(data, scope.key.split("."), ())):
+                del table[path[-1]]
 
 
 def known_in(path: Sequence[str], value: Any = None) -> int | None:

@@ -10,7 +10,7 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-from dem_cli.contact import planar
+from dem_cli.contact import planar, spatial
 from dem_cli.contact.joints import Faces, JointProperties
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
@@ -76,7 +76,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
-GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar}
+GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}
 MOVING = (2,)  # dimensions in which joints are placed where the blocks are; else they are those of the start
 
 

@@ -105,7 +105,7 @@ def closure(sim: Simulation) -> float:
 
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
-    joints, contacts = sim.joints, sim.measured()
+    joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
     owner = joints.owners
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
@@ -115,12 +115,13 @@ def contact_record(sim: Simulation) -> ContactRecord:
         joint=owner,
         blocks=joints.blocks[owner],
         points=joints.points + sim.origin,
-        normals=joints.frames[:, : sim.model.dimension].copy(),
+        normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
         shear_force=contacts.shear,
         gap=contacts.gaps,
         slip=contacts.slip,
         state=state.astype(np.int8),
+        tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
 
 

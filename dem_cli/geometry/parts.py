@@ -22,6 +22,11 @@ class PartShapes(Protocol):
     def widths(self, vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> np.ndarray:
         """About the smallest side [m], (n_parts,)."""
 
+    def are_convex(
+        self, vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, sizes: np.ndarray
+    ) -> np.ndarray:
+        """Whether each part is convex, (n_parts,) bool; sizes: of the parts [m], (n_parts,)."""
+
     def edges(self, topology: Topology) -> tuple[np.ndarray, np.ndarray]:
         """Both ends of each edge, (n_edges, 2), and its part, (n_edges,)."""
 

@@ -20,6 +20,11 @@ def widths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) ->
     return volumes(vertices, part_starts, topology) / polygon.sizes(vertices, part_starts)
 
 
+def are_convex(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, sizes: np.ndarray) -> np.ndarray:
+    """Whether corners run counter-clockwise, once around."""
+    return polygon.are_convex(vertices, part_starts)
+
+
 def edges(topology: Topology) -> tuple[np.ndarray, np.ndarray]:
     """Both ends of each edge, and its part."""
     return topology.ends, topology.face_parts

@@ -77,6 +77,11 @@ def frames(stored: np.ndarray, dimension: int) -> np.ndarray:
     return stored.reshape(-1, dimension, dimension)
 
 
+def tangents_of(normals: np.ndarray, first: np.ndarray) -> list[np.ndarray]:
+    """Tangents, d − 1 of (n, d): in the plane normals turned by +90°, in space the first ones and normal × first."""
+    return [across(normals)] if normals.shape[1] == 2 else [first, np.cross(normals, first)]
+
+
 def unturned(n: int, dimension: int) -> np.ndarray:
     """Orientations of n blocks that have not turned, (n, 1) or (n, 4)."""
     return np.zeros((n, 1)) if dimension == 2 else np.tile((1.0, 0.0, 0.0, 0.0), (n, 1))

@@ -6,6 +6,7 @@ import numpy as np
 
 from dem_cli.geometry import solids
 from dem_cli.geometry.compounds import covered_faces
+from dem_cli.geometry.polyhedron import COPLANAR
 from dem_cli.geometry.topology import Topology
 
 
@@ -16,25 +17,30 @@ def volumes(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -
 
 def widths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> np.ndarray:
     """Narrowest extent across a face: of a box its shortest side, of a slab its thickness."""
+    depths, first = _depths(vertices, part_starts, topology)
+    return np.minimum.reduceat(np.maximum.reduceat(depths, first), topology.part_faces[:-1])
+
+
+def are_convex(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, sizes: np.ndarray) -> np.ndarray:
+    """Whether no corner of a part lies outside of one of its faces."""
+    depths, first = _depths(vertices, part_starts, topology)
+    return np.minimum.reduceat(np.minimum.reduceat(depths, first), topology.part_faces[:-1]) >= -COPLANAR * sizes
+
+
+def _depths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> tuple[np.ndarray, np.ndarray]:
+    """How far each corner of a part lies behind each of its faces [m], face by face; where each face begins."""
     along = normals(vertices, topology)
     counts = np.diff(part_starts)[topology.face_parts]
     faces = np.repeat(np.arange(topology.n_faces), counts)
     upto = np.concatenate([[0], np.cumsum(counts)])
     corners = part_starts[topology.face_parts[faces]] + np.arange(upto[-1]) - upto[faces]
     on_face = vertices[topology.face_corners[topology.face_starts[:-1]]][faces]
-    depths = ((on_face - vertices[corners]) * along[faces]).sum(axis=1)
-    extents = np.maximum.reduceat(depths, upto[:-1])
-    return np.minimum.reduceat(extents, topology.part_faces[:-1])
+    return ((on_face - vertices[corners]) * along[faces]).sum(axis=1), upto[:-1]
 
 
 def edges(topology: Topology) -> tuple[np.ndarray, np.ndarray]:
     """Both ends of each edge, and its part."""
-    starts, counts = topology.face_starts, np.diff(topology.face_starts)
-    after = np.arange(1, len(topology.face_corners) + 1)
-    after[starts[1:] - 1] = starts[:-1]
-    ends = np.column_stack([topology.face_corners, topology.face_corners[after]])
-    once = ends[:, 0] < ends[:, 1]
-    return ends[once], np.repeat(topology.face_parts, counts)[once]
+    return topology.edges[:, :2], topology.face_parts[topology.edges[:, 2]]
 
 
 def normals(vertices: np.ndarray, topology: Topology) -> np.ndarray:

@@ -39,6 +39,29 @@ class Topology:
         """First and last corner of each face, (n_faces, 2): in the plane the ends of the edge."""
         return np.column_stack([self.face_corners[self.face_starts[:-1]], self.face_corners[self.face_starts[1:] - 1]])
 
+    @cached_property
+    def sides(self) -> np.ndarray:
+        """Sides of all faces, one after the other around each: its corner, the next one, and its face, (n, 3)."""
+        after = np.arange(1, len(self.face_corners) + 1)
+        after[self.face_starts[1:] - 1] = self.face_starts[:-1]
+        faces = np.repeat(np.arange(self.n_faces), np.diff(self.face_starts))
+        return np.column_stack([self.face_corners, self.face_corners[after], faces])
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """Edges of polyhedra: two corners, the face that goes along and the one that goes back, (n_edges, 4)."""
+        there = self.sides[self.sides[:, 0] < self.sides[:, 1]]
+        back = self.sides[self.sides[:, 0] > self.sides[:, 1]]
+        there = there[np.lexsort((there[:, 1], there[:, 0]))]
+        back = back[np.lexsort((back[:, 0], back[:, 1]))]
+        return np.column_stack([there, back[:, 2]])
+
+    @cached_property
+    def part_edges(self) -> np.ndarray:
+        """Part p has the edges part_edges[p]:part_edges[p + 1], (n_parts + 1,)."""
+        parts = self.face_parts[self.edges[:, 2]]
+        return np.searchsorted(parts, np.arange(len(self.part_faces)))
+
 
 def topology_of_polygons(part_starts: np.ndarray) -> Topology:
     """Of polygons with the corners part_starts[p]:part_starts[p + 1]: face k starts at corner k."""

@@ -76,6 +76,45 @@ class PlanarGeometry(NamedTuple):
         return self._replace(sunk=self.sunk.copy())
 
 
+class Polyhedra(NamedTuple):
+    """Convex parts in space, in place, as detection and contact geometry read them (model.topology)."""
+
+    corners: np.ndarray  # [m], (n_vertices, 3)
+    part_starts: np.ndarray  # part p has the corners part_starts[p]:part_starts[p + 1]
+    part_faces: np.ndarray  # and the faces part_faces[p]:part_faces[p + 1]
+    face_starts: np.ndarray  # face f has the corners face_corners[face_starts[f]:face_starts[f + 1]]
+    face_corners: np.ndarray  # counter-clockwise seen from outside
+    normals: np.ndarray  # unit, outwards, (n_faces, 3)
+    part_edges: np.ndarray  # part p has the edges part_edges[p]:part_edges[p + 1]
+    edges: np.ndarray  # two corners, and the two faces that meet along each, (n_edges, 4)
+    sizes: np.ndarray  # diagonals of the boxes around the parts [m], (n_parts,)
+
+
+class SpatialGeometry(NamedTuple):
+    """Where the parts of each joint in space met, row by row as `Joints`; the geometry of the start.
+
+    All points of a joint lie in one plane, across its normal.
+    """
+
+    faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
+    features: np.ndarray  # corners or edges that make each point, by which it is known again, (n_points,)
+    kinds: np.ndarray  # FACES, RIM_OF_A, RIM_OF_B or EDGES, (n_joints,) int8
+    corners: (
+        np.ndarray
+    )  # how many of the points of a joint are its outline; the one after these is its centre, (n_joints,)
+    axes: np.ndarray  # unit normal from a to b, and two tangents, (n_joints, 9)
+    places: np.ndarray  # of the points, in the coordinates in which they were found [m], (n_points, 3)
+    gaps: np.ndarray  # along the normal, positive open [m], (n_points,)
+    areas: np.ndarray  # of the joints [m²], (n_joints,)
+
+    def kept(self) -> SpatialGeometry:
+        """The same with a copy of what changes: nothing."""
+        return self
+
+
+FACES, RIM_OF_A, RIM_OF_B, EDGES = 0, 1, 2, 3  # of SpatialGeometry.kinds
+
+
 class Contacts(NamedTuple):
     """Changing state of the contact points."""
 

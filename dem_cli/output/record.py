@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import tangents_of
+
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
+NO_TANGENTS = np.zeros((0, 0))
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
 STAGES = (
     "gravity",
@@ -36,10 +39,24 @@ class ContactRecord(NamedTuple):
     points: np.ndarray  # where it acts [m], (n, d)
     normals: np.ndarray  # unit, from a to b, (n, d)
     normal_force: np.ndarray  # compression positive [N], (n,)
-    shear_force: np.ndarray  # on b along the tangents [N], (n, d - 1); 2D: normal turned by +90°
+    shear_force: np.ndarray  # on b along the tangents [N], (n, d − 1)
     gap: np.ndarray  # positive open [m], (n,)
     slip: np.ndarray  # accumulated slip path [m], (n,)
     state: np.ndarray  # index into STATES, (n,) int8
+    # In space alone, (n, 3): the first tangent, unit; the second is normal × tangent. In the plane the tangent is the
+    # normal turned by +90°, and this is empty.
+    tangents: np.ndarray = NO_TANGENTS
+
+    def stored(self) -> dict[str, np.ndarray]:
+        """Fields by name, without what is empty in the plane."""
+        return {name: values for name, values in self._asdict().items() if 0 not in values.shape[1:]}
+
+    def forces(self) -> np.ndarray:
+        """Force of each point on its second block [N], (n, d)."""
+        total = self.normal_force[:, np.newaxis] * self.normals
+        for along, shear in zip(tangents_of(self.normals, self.tangents), self.shear_force.T, strict=True):
+            total = total + shear[:, np.newaxis] * along
+        return total
 
 
 class JointPlaces(NamedTuple):

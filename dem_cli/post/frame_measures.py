@@ -8,7 +8,6 @@ import numpy as np
 
 from dem_cli.geometry.rotation import turned
 from dem_cli.model.model import Model
-from dem_cli.output.paraview.fields import contact_forces
 from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.record import STATES, ContactRecord, Frame
 
@@ -32,7 +31,7 @@ def resultants(contacts: ContactRecord) -> Resultants:
     joints, first, owner = np.unique(contacts.joint[pressed], return_index=True, return_inverse=True)
     weights = contacts.normal_force[pressed]
     totals = np.bincount(owner, weights, len(joints))
-    forces = contact_forces(contacts)[pressed]
+    forces = contacts.forces()[pressed]
 
     def gather(values: np.ndarray) -> np.ndarray:
         columns = [np.bincount(owner, column, len(joints)) for column in values.T]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from casefiles import CASES
 from click.testing import CliRunner
+from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 import dem_cli
 from dem_cli.cli.main import main
@@ -108,8 +109,10 @@ def test_every_attribute_of_groups_is_declared_and_there(folders):
     assert {path for path, _ in groups} == set(GROUPS)
 
 
-def test_all_that_is_declared_is_in_some_file(folders):
-    seen = {path for folder in folders.values() for path in objects(folder / "results.h5")}
+def test_all_that_is_declared_is_in_some_file(folders, tmp_path):
+    model = solid_wall()
+    in_space = write_solid_run(tmp_path, model, solid_frames(model, 2))
+    seen = {path for folder in (*folders.values(), in_space) for path in objects(folder / "results.h5")}
     assert set(declared()) <= seen
 
 
