@@ -53,7 +53,6 @@ SCOPES = (
     Scope("damping", 2, YET),
     Scope("initial", 2, YET),
     Scope("calibration", 2, YET),
-    Scope("imperfection", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
