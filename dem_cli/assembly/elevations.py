@@ -51,9 +51,7 @@ def _of_drawn_blocks(case: Case, blocks: Sequence[Block]) -> Iterator[CaseProble
             message = "a block drawn by hand has no imperfections in 3D; draw it as it is"
             yield CaseProblem(("imperfection", i, "block"), message)
         elif drawn and table.block is None and table.structure is None:
-            message = (
-                f"block '{drawn[0]}' is drawn by hand, and has no imperfections in 3D: say which 'structure' is meant"
-            )
+            message = f"block '{drawn[0]}' is drawn by hand and has none in 3D: say which 'structure' is meant"
             yield CaseProblem(("imperfection", i), message)
 
 
