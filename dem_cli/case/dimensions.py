@@ -127,7 +127,7 @@ def in_space(table: Table) -> Table:
         if isinstance(value, tuple) and value and name not in table.model_fields_set:
             kind = kind_of(field.annotation, field.metadata)
             length = next((limit for limit in kind.limits if isinstance(limit, VectorLength)), None)
-            padded: Any = value if length is None else length.padded(value)
+            padded: Any = length.padded(value) if length is not None and len(value) == length.planar else value
         elif isinstance(value, tuple):
             padded = tuple(in_space(item) if isinstance(item, CaseModel) else item for item in value)
         elif isinstance(value, dict):

@@ -32,7 +32,7 @@ class Side(CaseModel):
         examples=[0.8],
     )
     height: Positive | None = Field(
-        default=None, description="height above the foot of the wall [m]; default: as high as the wall", examples=[8.0]
+        default=None, description="height above the foot of the wall [m]; default: that of the wall", examples=[8.0]
     )
     material: str = Field(default="", description="a name in [materials]; default: that of the wall", examples=["rock"])
 
