@@ -79,7 +79,9 @@ def twins(files: list[Path]) -> list[dict[str, Any]]:
         loaded = from_file(file, "output.frames=0")
         case = loaded.case
         if case.analysis.kind not in STATIC or getattr(case.analysis, "follow", 0.0):
-            loaded = from_file(file, "output.frames=0", "analysis.follow=0.0") if case.analysis.kind == "pushover" else None
+            loaded = (
+                from_file(file, "output.frames=0", "analysis.follow=0.0") if case.analysis.kind == "pushover" else None
+            )
         if loaded is None:
             continue
         case, model = loaded.case.model_copy(update={"monitor": ()}), api.build_model(loaded)
