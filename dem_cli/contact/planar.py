@@ -13,7 +13,7 @@ from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
-from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, PlanarGeometry
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
@@ -48,7 +48,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Chains | None = None
-) -> tuple[Joints, PlanarGeometry]:
+) -> tuple[MovingJoints, PlanarGeometry]:
     """Joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
 
     chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
@@ -84,18 +84,6 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
     """Those that share a length; faces that meet corner to corner cannot carry force, to first order. reach: [m]."""
     edges = edges_of(model, faces)
     return faces.where((overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach))
-
-
-def level(joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-    """Gives all points of each joint one frame, that of its closer end; positions: of the blocks [m], (n_blocks, 2)."""
-    first, last = joints.starts[:-1], joints.starts[1:] - 1
-    source = np.where(contacts.gaps[last] < contacts.gaps[first], last, first)
-    joints.frames[:] = joints.frames[source][joints.owners]
-    normals = joints.frames[:, :2]
-    for side in (0, 1):
-        arms = joints.points - positions[joints.blocks[joints.owners, side]]
-        joints.levers[:, 2 * side] = cross(arms, normals)
-        joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
 
 
 def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
