@@ -17,12 +17,16 @@ from dem_cli.bench.spatial.boxes import Boxes
 from dem_cli.bench.tilting import LOWEST_LOAD, TWICE
 
 NAME, PACKAGE = "compas_cra", "compas_cra"
-SETTING = "RBE, pyramids of 8 sides"
-TENSION = 2e-5  # × largest compression: a structure that needs more does not stand
+TENSIONS = (1e-5, 1e-4)  # × largest compression: a structure that needs more does not stand
 SMALLEST_JOINT = 1e-3  # × the smallest edge squared
 # corners of a box by the sign of their places, and its faces seen from outside
 SIGNS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+
+
+def setting(tension: float) -> str:
+    """What a setting is called."""
+    return f"RBE, tension below {tension:g}"
 
 
 class RigidAssembly:
@@ -60,15 +64,15 @@ class RigidAssembly:
 
 
 def failure_load(
-    boxes: Boxes, friction: float, direction: tuple[float, float], resolution: float
-) -> dict[str, float | list[float] | int]:
-    """Highest load that RBE balances without tension, the lowest above it that it does not, and the trials."""
+    boxes: Boxes, friction: float, direction: tuple[float, float], tension: float, resolution: float
+) -> dict[str, Any]:
+    """Highest load that RBE balances with less than that tension, the lowest above it, and the trials."""
     assembly = RigidAssembly(boxes, friction, direction)
     low, high, trials = 0.0, TWICE * friction, 0
     while high - low > resolution * max(low, LOWEST_LOAD):
         middle = 0.5 * (low + high)
         trials += 1
-        if assembly.needed_tension(middle) < TENSION:
+        if assembly.needed_tension(middle) < tension:
             low = middle
         else:
             high = middle

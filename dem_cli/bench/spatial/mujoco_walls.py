@@ -15,12 +15,14 @@ from dem_cli.bench.tilting import EngineSettings
 
 NAME, PACKAGE = "MuJoCo", "mujoco"
 ITERATIONS = (100,)  # the library's own limit: Newton's method takes a few
-SOFT = {"cone": "mjCONE_ELLIPTIC"}
-HARD = SOFT | {"solref": (0.004, 1.0), "impratio": 10.0}
+ROUND = {"cone": "mjCONE_ELLIPTIC"}
+FIRM = ROUND | {"solref": (0.004, 1.0), "impratio": 10.0}
+FIRMER = ROUND | {"solref": (0.002, 1.0), "impratio": 30.0}
 SETTINGS = (
-    EngineSettings("defaults: 2 ms, pyramids", 0.1, 9.81, 2e-3, ITERATIONS),
-    EngineSettings("1 ms, elliptic cones", 0.1, 9.81, 1e-3, ITERATIONS, options=SOFT),
-    EngineSettings("1 ms, elliptic cones, contacts of 4 ms, impratio 10", 0.1, 9.81, 1e-3, ITERATIONS, True, HARD),
+    EngineSettings("defaults: 2 ms, pyramids; edge 0.1 m", 0.1, 9.81, 2e-3, ITERATIONS),
+    EngineSettings("1 ms, elliptic cones; edge 0.1 m", 0.1, 9.81, 1e-3, ITERATIONS, options=ROUND),
+    EngineSettings("… contacts of 4 ms, impratio 10; edge 0.1 m", 0.1, 9.81, 1e-3, ITERATIONS, options=FIRM),
+    EngineSettings("… contacts of 2 ms, impratio 30; edge 0.3 m", 0.3, 9.81, 1e-3, ITERATIONS, True, FIRMER),
 )
 
 
@@ -53,6 +55,8 @@ class MujocoWorld:
                 body.add_geom(size=0.5 * size, **shape)
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
+        mujoco.mj_forward(self.model, self.data)  # without a step: places are known
+        self.steps = 0
 
     def tilt(self, load: float) -> None:
         """Turn gravity so that its horizontal part is the load multiplier."""
@@ -60,11 +64,9 @@ class MujocoWorld:
 
     def step(self, steps: int) -> None:
         """Advance by so many steps."""
+        self.steps += steps
         self.mujoco.mj_step(self.model, self.data, steps)
 
     def places(self) -> np.ndarray:
         """Places of the free blocks, in units of the engine, (n, 3)."""
         return np.array(self.data.xipos[1:])
-
-
-make = MujocoWorld
