@@ -54,7 +54,7 @@ class CaseTable(NamedTuple):
     def dimension(self) -> int | None:
         """The only dimension of cases that may have it, or this kind of it; None: both."""
         inside = (known_in(self.path[:k]) for k in range(1, len(self.path) + 1))
-        of_kind = known_in((*self.path, self.tag), self.kinds[0]) if self.tag else None
+        of_kind = known_in((*self.path, self.tag), self.kinds[0]) if self.tag and self.kinds else None
         return next(filter(None, inside), None) or of_kind
 
     @property
