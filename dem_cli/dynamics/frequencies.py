@@ -175,7 +175,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     moving = vectors[~still] / np.sqrt(masses)
     shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
     shapes = np.zeros((len(moving), n_blocks, n_dof))
-    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum(), found.settings.equal)[:, None, None]
+    shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, :1].sum(), found.settings.equal)[:, None, None]
     return Modes(
         frequencies=np.sqrt(values[~still]) / (2.0 * np.pi),
         shapes=shapes,
