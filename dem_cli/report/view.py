@@ -19,7 +19,7 @@ from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures
 from dem_cli.post import view_box as stage
-from dem_cli.render import marks
+from dem_cli.post.scene import joint_strokes
 from dem_cli.render.solids import surface
 from dem_cli.report.packed_arrays import pack
 
@@ -162,7 +162,7 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
     """A stroke from each contact point to the middle of its joint, with the state that colours it."""
     contacts = frame.contacts
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
-    middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
+    middles, ends, alone = joint_strokes.middles(contacts), contacts.points, counts[owner] == 1
     if alone.any():
         along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * frame_measures.size(model)
         tangents = beside(contacts.normals) * np.where(alone, along, 0.0)[:, np.newaxis]
