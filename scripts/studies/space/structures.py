@@ -150,9 +150,12 @@ def u_wall(n: int = 6, t: float = 0.2, length: int = 4, leg: int = 2, window: tu
 def tee_wall(n: int = 6, t: float = 0.2, leg: int = 2) -> list[dict]:
     """A T: a wall of four blocks along x and a leg along y near its middle, bonded into it every other course."""
 
+    stem = 2.5 * t  # within a block of the even courses
+
     def runs(k: int) -> list[Run]:
         if k % 2 == 0:
-            return along_x(0.0, 8 * t, 2.0 * t, t) + along_y(3 * t, t, 2 * t * leg, t)
-        return along_x(0.0, 3 * t, t, t) + along_x(4 * t, 8 * t, t, t) + along_y(3 * t, 0.0, 2 * t * leg, t)
+            return along_x(0.0, 8 * t, 2.0 * t, t) + along_y(stem, t, 2 * t * leg, t)
+        sides = along_x(0.0, stem, t, t) + along_x(stem + t, 8 * t, 1.5 * t, t)
+        return sides + along_y(stem, 0.0, 2 * t * leg, t)
 
     return courses(runs, n, t, (-t, 9 * t, -t, 2 * t * leg + t))

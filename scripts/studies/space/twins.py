@@ -10,14 +10,15 @@ from dem_cli.model.model import Model
 
 
 def twin(model: Model) -> Model:
-    """A plane model in space: prisms of its polygons from y = 0 to their thickness, the same weights and loads.
+    """A plane model in space: prisms of its polygons, half of their thickness to either side, with the same loads.
 
     A moment about z of the plane, from x to its y, is one about −y in space.
     """
     starts = model.part_starts
     corners = model.vertices + model.centroids[model.vertex_blocks]
     outlines = [corners[first:after] for first, after in zip(starts, starts[1:])]
-    solids = prisms(outlines, 0.0, model.thickness[model.part_blocks])
+    half = 0.5 * model.thickness[model.part_blocks]
+    solids = prisms(outlines, -half, half)
     parts = [[solids[p] for p in np.flatnonzero(model.part_blocks == i)] for i in range(model.n_blocks)]
     density = model.masses / (model.shapes.volumes * model.thickness)
     bodies = bodies_of(3, parts, density, np.ones(model.n_blocks))
