@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self, TypeVar
 import numpy as np
 
 from dem_cli.contact import planar, spatial
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
@@ -55,6 +55,12 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
     def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
         """Of faces that are near each other, those that can carry force between blocks that do not move."""
+
+    def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+        """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""
+
+    def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+        """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties

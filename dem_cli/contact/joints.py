@@ -23,6 +23,31 @@ class Faces(NamedTuple):
         return Faces(*(field[kept] for field in self))
 
 
+class DrawnFaces(NamedTuple):
+    """Pairs of faces that share a joint in the undeformed structure, with the outline of each as places on both.
+
+    Pair j has the places starts[j]:starts[j + 1]: in the plane both ends, in space the corners around the overlap.
+    """
+
+    blocks: np.ndarray  # the two blocks, (n, 2) int64
+    normals: np.ndarray  # unit, from the first to the second, (n, d)
+    starts: np.ndarray  # (n + 1,) int64
+    on_first: np.ndarray  # on the first block [m], (n_places, d)
+    on_second: np.ndarray  # opposite, on the second [m], (n_places, d)
+    shares: np.ndarray  # of the joint that belong to each place, (n_places,)
+    lengths: np.ndarray  # between the two places that are furthest apart [m], (n,)
+    areas: np.ndarray  # [m²], (n,)
+
+    def taken(self, order: np.ndarray) -> DrawnFaces:
+        """Those with these numbers, in this order."""
+        places = points_of(self.starts, order)
+        starts = np.concatenate([[0], np.cumsum(np.diff(self.starts)[order])])
+        return DrawnFaces(
+            self.blocks[order], self.normals[order], starts, self.on_first[places], self.on_second[places],
+            self.shares[places], self.lengths[order], self.areas[order],
+        )  # fmt: skip
+
+
 class JointProperties(NamedTuple):
     """Properties of each named joint, by its number."""
 

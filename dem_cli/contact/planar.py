@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.contact.chains import Chains, come_back, made_chains
-from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
-from dem_cli.contact.joints import Faces, JointProperties, joints_of
-from dem_cli.geometry.rotation import cross
+from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
@@ -84,6 +84,33 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
     """Those that share a length; faces that meet corner to corner cannot carry force, to first order. reach: [m]."""
     edges = edges_of(model, faces)
     return faces.where((overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach))
+
+
+def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+    """Edges that look at each other, nearly parallel, over a length of more than `least` [m], (n,) bool."""
+    edges = edges_of(model, faces)
+    along, against = corners[edges[:, 1]] - corners[edges[:, 0]], corners[edges[:, 3]] - corners[edges[:, 2]]
+    parallel = np.abs(cross(along, against)) <= sine * np.hypot(*along.T) * np.hypot(*against.T)
+    return parallel & (overlap_lengths(edges, corners) > least)
+
+
+def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+    """Pairs of edges that overlap by more than `least` [m], with both ends of the overlap."""
+    low, high = overlap_ends(edges_of(model, faces), corners)
+    kept = faces.where(high - low > least)
+    edges, lengths = edges_of(model, kept), (high - low)[high - low > least]
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    along = (a1 - a0) / np.hypot(*(a1 - a0).T)[:, np.newaxis]
+    places = np.stack(overlap_ends(edges, corners), axis=1)[..., np.newaxis]
+    on_first = a0[:, np.newaxis] + places * along[:, np.newaxis]
+    past = ((on_first - b0[:, np.newaxis]) * along[:, np.newaxis]).sum(axis=2)
+    share = past / ((b1 - b0) * along).sum(axis=1)[:, np.newaxis]
+    on_second = b0[:, np.newaxis] + share[..., np.newaxis] * (b1 - b0)[:, np.newaxis]
+    blocks = model.part_blocks[kept.parts]
+    return DrawnFaces(
+        blocks, -across(along), 2 * np.arange(len(blocks) + 1), on_first.reshape(-1, 2), on_second.reshape(-1, 2),
+        np.full(2 * len(blocks), 0.5), lengths, lengths * model.thickness[blocks].min(axis=1, initial=np.inf),
+    )  # fmt: skip
 
 
 def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:

@@ -38,8 +38,20 @@ class _Sides(NamedTuple):
     twins: np.ndarray  # the same edge as the other face has it, (n,)
 
 
+def sharp(model: Model) -> Surface:
+    """The faces and edges of all blocks in space as they are; where parts of one block meet, nothing is to be seen."""
+    topology, outer = model.topology, ~model.inner_faces
+    corners = topology.face_corners
+    faces = [_listed(corners[rows]) for rows in _rings(topology.face_starts, outer)]
+    owners = model.part_blocks[topology.face_parts]
+    sizes = np.diff(topology.face_starts)
+    ordered = [owners[outer & (sizes == count)] for count in np.unique(sizes[outer])]
+    edges = topology.edges[outer[topology.edges[:, 2:]].all(axis=1), :2]
+    return Surface(model.vertices, model.vertex_blocks, np.concatenate(faces), np.concatenate(ordered), edges)
+
+
 def chamfered(model: Model) -> Surface:
-    """The faces of all blocks in space; where parts of one block meet, nothing is to be seen."""
+    """The faces of all blocks in space with chamfers; where parts of one block meet, nothing is to be seen."""
     topology, sides = model.topology, _sides(model)
     owners = model.part_blocks[topology.face_parts]
     outer = ~model.inner_faces

@@ -41,20 +41,25 @@ def seen_from(azimuth: float, elevation: float) -> Axonometry:
     return Axonometry(right, np.cross(eye, right), eye)
 
 
+def wide_side(model: Model) -> np.ndarray:
+    """Along the wider side of the box around the blocks that can move: x or y, unit, (2,)."""
+    free = ~model.fixed if not model.fixed.all() else model.fixed
+    extents = np.ptp(rest_vertices(model)[free[model.vertex_blocks], :2], axis=0)
+    return np.eye(2)[int(extents[1] > extents[0])]
+
+
 def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) -> float:
     """Azimuth in degrees from which most is seen: of the wide side, from where the blocks move to in this frame.
 
     aside: from the middle of that side [deg].
     """
     free = ~model.fixed if not model.fixed.all() else model.fixed
-    corners = rest_vertices(model)[free[model.vertex_blocks]]
-    extents = np.ptp(corners[:, :2], axis=0)
-    along = np.eye(2)[int(extents[1] > extents[0])]
+    along = wide_side(model)
     across = np.array([along[1], -along[0]])
     motion = np.zeros(2)
     if frame is not None:
         moved = (frame.positions - model.centroids)[free, :2]
-        motion = moved.sum(axis=0) if np.abs(moved).max() > _STILL * extents.max() else motion
+        motion = moved.sum(axis=0) if np.abs(moved).max() > _STILL * np.ptp(model.centroids, axis=0).max() else motion
     sides = [vector if motion @ vector >= 0.0 else -vector for vector in (across, along)]
     turn = np.radians(aside)
     eye = np.cos(turn) * sides[0] + np.sin(turn) * sides[1]
