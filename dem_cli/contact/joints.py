@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.contact.layout import PointLayout
-from dem_cli.kernels.records import Contacts, Joints
+from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.model import Model
 
 
@@ -86,7 +86,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
 
 def joints_of(
     model: Model, faces: Faces, properties: JointProperties, starts: np.ndarray, areas: np.ndarray, shares: np.ndarray
-) -> Joints:
+) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
@@ -96,7 +96,7 @@ def joints_of(
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
-    return Joints(
+    return MovingJoints(
         blocks=blocks,
         starts=starts,
         frames=np.zeros((n_points, d * d)),
@@ -117,6 +117,6 @@ def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 def only_points(joints: Joints, kept: np.ndarray) -> Joints:
     """The joints with some of their points only; kept: (n_points,) bool."""
-    upto = np.concatenate([[0], np.cumsum(kept)])
-    points = {name: getattr(joints, name)[kept] for name in ("frames", "levers", "points", "kn", "ks")}
-    return joints._replace(starts=upto[joints.starts], **points)
+    starts = np.concatenate([[0], np.cumsum(kept)])[joints.starts]
+    own = ("places",) if isinstance(joints, FixedJoints) else ("frames", "levers", "points")
+    return joints._replace(starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")})

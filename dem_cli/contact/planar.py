@@ -13,7 +13,7 @@ from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
-from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, PlanarGeometry
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
@@ -48,7 +48,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Chains | None = None
-) -> tuple[Joints, PlanarGeometry]:
+) -> tuple[MovingJoints, PlanarGeometry]:
     """Joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
 
     chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
@@ -111,18 +111,6 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
         blocks, -across(along), 2 * np.arange(len(blocks) + 1), on_first.reshape(-1, 2), on_second.reshape(-1, 2),
         np.full(2 * len(blocks), 0.5), lengths, lengths * model.thickness[blocks].min(axis=1, initial=np.inf),
     )  # fmt: skip
-
-
-def level(joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-    """Gives all points of each joint one frame, that of its closer end; positions: of the blocks [m], (n_blocks, 2)."""
-    first, last = joints.starts[:-1], joints.starts[1:] - 1
-    source = np.where(contacts.gaps[last] < contacts.gaps[first], last, first)
-    joints.frames[:] = joints.frames[source][joints.owners]
-    normals = joints.frames[:, :2]
-    for side in (0, 1):
-        arms = joints.points - positions[joints.blocks[joints.owners, side]]
-        joints.levers[:, 2 * side] = cross(arms, normals)
-        joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
 
 
 def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
