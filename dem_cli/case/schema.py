@@ -108,7 +108,7 @@ class Monitor(CaseModel):
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, negative: pressed) or slip [m] of the second "
-        "block against the first, at the middle, along the normal turned by +90°",
+        "block against the first, at the middle, along the normal turned by +90° (2D only)",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
