@@ -38,7 +38,7 @@ def common_place(model: Model, parts: np.ndarray) -> str:
     if found is None:
         return ""
     whole = found.volume >= ALL * model.parts.volumes[parts].min()
-    return f", {found.volume:.3g} m3{' (all of it)' if whole else ''} around {rounded(found.middle)}"
+    return f", {found.volume:.3g} m3{' (all of it)' if whole else ''} around {rounded(found.centroid)}"
 
 
 def rounded(point: np.ndarray) -> str:

@@ -53,6 +53,7 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
         model.thickness[free].tolist(),
         float(np.median(sizes)) if len(free) else 0.0,
         float(np.hypot.reduce(np.ptp(corners, axis=0))) if len(free) else 0.0,
+        model.dimension,
     )
 
 

@@ -8,6 +8,8 @@ from pydantic import GetCoreSchemaHandler, ValidationInfo, WrapValidator
 
 from dem_cli.case.wording import show
 
+OTHER_DIMENSION = "dimension = 3"  # how the message about a vector of another dimension ends
+
 
 class VectorLength(NamedTuple):
     """Annotation of a tuple of numbers: how many there are, in the plane and in space.
@@ -33,9 +35,9 @@ class VectorLength(NamedTuple):
     def _here(self, dimension: int | None, value: Any) -> str:
         """What is allowed in a case of so many dimensions."""
         if dimension == 3:
-            return f"a list of {self.spatial} numbers in a case with dimension = 3"
+            return f"a list of {self.spatial} numbers in a case with {OTHER_DIMENSION}"
         of_space = isinstance(value, tuple) and len(value) == self.spatial
-        return f"a list of {self.planar} numbers" + (" in a case without dimension = 3" if of_space else "")
+        return f"a list of {self.planar} numbers" + (f" in a case without {OTHER_DIMENSION}" if of_space else "")
 
     def allowed(self, many: bool = False) -> str:
         """What is allowed in a case of any dimension."""

@@ -11,9 +11,9 @@ from typing import Any, Protocol, Self, TypeVar
 import numpy as np
 
 from dem_cli.contact import planar, spatial
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
 from dem_cli.errors import UsageError
-from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
 
 
@@ -44,7 +44,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
     def points(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Returning | None
-    ) -> tuple[Joints, Geometry]:
+    ) -> tuple[MovingJoints, Geometry]:
         """Joints between faces with their stiffness, and their geometry; not yet placed."""
 
     def place(self, joints: Joints, geometry: Geometry, contacts: Contacts, bodies: Bodies) -> None:
@@ -56,8 +56,11 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
         """Of faces that are near each other, those that can carry force between blocks that do not move."""
 
-    def level(self, joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-        """Gives all points of each joint one frame."""
+    def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+        """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""
+
+    def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+        """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties

@@ -5,50 +5,22 @@ Geometry of the start: points stay where they were found. One of the modules of 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from dem_cli.contact.joints import Faces, JointProperties, joints_of
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.meetings import Meetings, meetings, polyhedra
 from dem_cli.contact.near_boxes import near_boxes
 from dem_cli.errors import UsageError
+from dem_cli.geometry.outlines import furthest
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
-from dem_cli.kernels.records import FACES, BlockShapes, Bodies, Contacts, Joints, Polyhedra, SpatialGeometry
+from dem_cli.kernels.records import FACES, BlockShapes, Bodies, Contacts, Joints, SpatialGeometry
 from dem_cli.kernels.separation import separations
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR, describe
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR
 from dem_cli.model.model import Model
 
 LONE = 0.25  # of the median face: the area of a point outside of face joints
-
-
-class Meetings(NamedTuple):
-    """Where pairs of parts meet, before there are joints; a pair owns points starts[j]:starts[j + 1]."""
-
-    kinds: np.ndarray  # as SpatialGeometry.kinds, (n,)
-    starts: np.ndarray  # (n + 1,)
-    frames: np.ndarray  # unit normal from a to b, then tangents, (n, 9)
-    places: np.ndarray  # [m], (n_points, 3)
-    weights: np.ndarray  # area of each point of face joints [m²], else 1, (n_points,)
-    gaps: np.ndarray  # [m], (n_points,)
-    features: np.ndarray  # what each point is, (n_points,)
-    measures: np.ndarray  # columns as in kernels/spatial_geometry.py, (n, 7)
-
-    @property
-    def owners(self) -> np.ndarray:
-        """Pair of each point, (n_points,)."""
-        return np.repeat(np.arange(len(self.kinds)), np.diff(self.starts))
-
-
-def polyhedra(model: Model, corners: np.ndarray) -> Polyhedra:
-    """The parts of a model in place, as the kernels read them; corners: as `corners_of`."""
-    topology = model.topology
-    areas = face_areas(corners, topology)
-    normals = areas / np.linalg.norm(areas, axis=1)[:, None]
-    return Polyhedra(
-        np.ascontiguousarray(corners), model.part_starts, topology.part_faces, topology.face_starts,
-        topology.face_corners, normals, topology.part_edges, topology.edges, model.parts.sizes,
-    )  # fmt: skip
 
 
 def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
@@ -64,22 +36,6 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
     # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
     near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
     return Faces(pairs[near], faces[near], separation[near])
-
-
-def meetings(model: Model, faces: Faces, corners: np.ndarray) -> Meetings:
-    """Contact points of pairs of parts, where these are now."""
-    solids = polyhedra(model, corners)
-    n, sizes = len(faces.parts), np.diff(solids.face_starts)
-    room = np.concatenate([[0], np.cumsum(sizes[faces.faces].sum(axis=1))]).astype(np.int64)
-    work = np.zeros((5, 2 * int(sizes.max(initial=0)) + 2, 3))
-    frames, measures = np.zeros((n, 9)), np.zeros((n, 7))
-    places, weights, gaps = np.zeros((room[-1], 3)), np.zeros(room[-1]), np.zeros(room[-1])
-    features, kinds, counts = np.zeros(room[-1], np.int64), np.zeros(n, np.int8), np.zeros(n, np.int64)
-    out = (frames, places, weights, gaps, features, measures)
-    describe(solids, faces.parts, faces.faces, room, work, out, kinds, counts)
-    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    kept = np.arange(starts[-1]) + np.repeat(room[:-1] - starts[:-1], counts)
-    return Meetings(kinds, starts, frames, places[kept], weights[kept], gaps[kept], features[kept], measures)
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
@@ -98,11 +54,7 @@ def points(
     Where the layout of a joint asks for more than its ends, there is one at its centre as well (`_with_centres`).
     """
     found = meetings(model, faces, corners)
-    lone = found.kinds != FACES
-    areas = np.where(lone, LONE * _median_face(model) * np.diff(found.starts), found.measures[:, AREA])
-    shares = found.weights / (
-        found.weights if not len(areas) else np.add.reduceat(found.weights, found.starts[:-1])[found.owners]
-    )
+    lone, areas, shares = found.kinds != FACES, _areas(model, found), _shares(found)
     outline = np.diff(found.starts)
     if properties.profiled:
         named = properties.between(model, model.part_blocks[faces.parts])
@@ -143,6 +95,17 @@ def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> t
     ), np.insert(shares * keep[owners], at, 1.0 - keep[centred])
 
 
+def _areas(model: Model, found: Meetings) -> np.ndarray:
+    """Of overlaps their own; of lone contacts LONE of the median face for each point [m²], (n,)."""
+    lone = LONE * _median_face(model) * np.diff(found.starts)
+    return np.where(found.kinds != FACES, lone, found.measures[:, AREA])
+
+
+def _shares(found: Meetings) -> np.ndarray:
+    """Share of its joint that belongs to each point, (n_points,)."""
+    return found.weights / np.bincount(found.owners, found.weights, len(found.kinds))[found.owners]
+
+
 def _median_face(model: Model) -> float:
     """Median area of all faces that can be touched [m²]."""
     areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
@@ -168,6 +131,28 @@ def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarr
     """Corners of all parts in place [m], (n_vertices, 3)."""
     turns = matrices(orientations)[shape.corner_blocks]
     return positions[shape.corner_blocks] + (turns * shape.corner_arms[:, None, :]).sum(axis=2)
+
+
+def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+    """Faces that look at each other, nearly parallel, over a width of more than `least` [m], (n,) bool."""
+    found, (a, b) = meetings(model, faces, corners), shapes_of(corners).normals(corners, model.topology)[faces.faces.T]
+    return (found.kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= sine) & (found.widths > least)
+
+
+def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+    """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
+    found = meetings(model, faces, corners)
+    kept = found.widths > least
+    points, normals = kept[found.owners], found.frames[:, :3]
+    across = 0.5 * found.gaps[points, None] * normals[found.owners[points]]
+    starts = np.concatenate([[0], np.cumsum(np.diff(found.starts)[kept])])
+    places, shares = found.places[points], _shares(found)[points]
+    ends = places[furthest(places, starts)]
+    longest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return DrawnFaces(
+        model.part_blocks[faces.parts[kept]], normals[kept], starts, places - across, places + across, shares,
+        longest, _areas(model, found)[kept],
+    )  # fmt: skip
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:

@@ -161,7 +161,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
     """
     n_free = len(found.blocks)
-    n_dof = dimension * (dimension + 1) // 2
+    n_dof = len(found.masses) // max(n_free, 1)
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)

@@ -37,10 +37,10 @@ def largest_elastic(sim: Simulation) -> float:
 
 def live_displacement(sim: Simulation) -> float:
     """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
-    d = sim.model.dimension
+    d, rotations = sim.model.dimension, sim.model.rotations
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
-    return float(travel + (live[free, d:] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
+    return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
 def dead_scale(sim: Simulation) -> float:
@@ -63,7 +63,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
     loads, control, d = sim.loads, sim.control, sim.model.dimension
     force = control[slot.DEAD_FACTOR] * loads.dead[:, :d] + control[slot.LIVE_FACTOR] * loads.live[:, :d]
     light = loads.inverse_masses.copy()
-    light[:, d:] *= sim.shape.radii[:, None] ** 2
+    light[:, sim.model.rotations] *= sim.shape.radii[:, None] ** 2
     return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ class CommonBody(NamedTuple):
     """What two convex bodies have in common."""
 
     volume: float  # in the plane the area [m^d]
-    middle: np.ndarray  # centre of the largest ball inside [m], (d,)
+    centroid: np.ndarray  # [m], (d,)
 
 
 def distance(corners: np.ndarray, point: np.ndarray) -> float:
@@ -44,11 +45,13 @@ def common(normals: np.ndarray, offsets: np.ndarray) -> CommonBody | None:
     found = linprog(np.append(np.zeros(d), -1.0), rows, offsets, bounds=[*[(None, None)] * d, (0.0, None)])
     if found.status != 0 or found.x[d] <= 0.0:
         return None
-    middle = found.x[:d]
+    inside = found.x[:d]
     try:
-        corners = HalfspaceIntersection(
-            np.column_stack([normals, normals @ middle - offsets]), np.zeros(d)
-        ).intersections
-        return CommonBody(float(ConvexHull(corners).volume), middle)
+        rows = np.column_stack([normals, normals @ inside - offsets])
+        corners = HalfspaceIntersection(rows, np.zeros(d)).intersections
+        facets = corners[ConvexHull(corners).simplices]
     except QhullError:
         return None
+    volumes = np.abs(np.linalg.det(facets)) / math.factorial(d)  # of the simplices between the facets and that point
+    centroids = facets.sum(axis=1) / (d + 1)
+    return CommonBody(float(volumes.sum()), inside + volumes @ centroids / volumes.sum())

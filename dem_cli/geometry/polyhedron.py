@@ -71,7 +71,7 @@ def from_faces(points: Sequence | np.ndarray, loops: Sequence[Sequence[int]]) ->
     if edge is not None:
         i, j = edge
         raise ValueError(
-            f"the faces do not close: the edge between corners {i + 1} and {j + 1} must belong to two faces, "
+            f"the faces do not close: the edge from {_text(points[i])} to {_text(points[j])} must belong to two faces, "
             f"and belongs to {sum(_has_edge(loop, i, j) for loop in faces)}"
         )
     found = hull(points)  # with faces of one plane merged and without corners that are none

@@ -1,7 +1,7 @@
 """The arrays that the kernels work on, each with its meaning, unit and shape.
 
-n_dof = d + r: d translations, then r rotations. Time is the solver's: seconds in dynamics, one unit
-per step in quasi-static runs (with fictitious masses).
+n_dof = d + r: d translations, then r rotations; room for more coordinates of a block is behind them. Time is the
+solver's: seconds in dynamics, one unit per step in quasi-static runs (with fictitious masses).
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+
+from dem_cli.kernels.fixed_joints import FixedJoints
 
 
 class Bodies(NamedTuple):
@@ -36,8 +38,8 @@ class BlockShapes(NamedTuple):
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
 
 
-class Joints(NamedTuple):
-    """Pairs of faces that touch or may touch; a joint owns points starts[j]:starts[j + 1]."""
+class MovingJoints(NamedTuple):
+    """Pairs of faces that touch or may touch, point by point; a joint owns points starts[j]:starts[j + 1]."""
 
     blocks: np.ndarray  # blocks a and b, (n_joints, 2)
     starts: np.ndarray  # first point of each joint, (n_joints + 1,)
@@ -52,6 +54,10 @@ class Joints(NamedTuple):
     def owners(self) -> np.ndarray:
         """Joint of each point, (n_points,)."""
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
+
+
+# What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
+Joints = MovingJoints | FixedJoints
 
 
 class PlanarGeometry(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dem_cli.case.base import CaseModel
-from dem_cli.kernels.contact_forces import make_press
+from dem_cli.kernels.contact_point import make_press
 from dem_cli.laws.law import Law
 
 
@@ -53,16 +53,15 @@ def drive(
     parameters, memory = np.array([columns], float), np.zeros((1, law.n_memory(d)))
     if touches:
         memory[0, : len(law.intact)] = law.intact
-    press, frame, arms = make_press(law.function, law.bonded), tuple(map(tuple, np.eye(d))), ((0.0,),) * d
+    press = make_press(law.function, law.bonded)
     normal, shear, lost, slip, work = 0.0, (0.0,) * (d - 1), 0.0, 0.0, 0.0
     before, rows = np.array([start, *shear]), []
     for row in path:
         moved, old = row - before, np.array([normal, *shear])
         if law.bonded or row[0] < 0.0 or normal != 0.0:
             normal, shear, path_length, loss = press(
-                row[0], moved[0], normal, frame, arms, arms, tuple(moved), (0.0,), (0.0,), 1.0, shear,
-                point_kn, point_ks, parameters, 0, memory, 0,
-            )  # fmt: skip
+                row[0], moved[0], tuple(moved[1:]), normal, shear, point_kn, point_ks, parameters, 0, memory, 0
+            )
             lost, slip = lost + loss, slip + path_length
         work -= 0.5 * (old + np.array([normal, *shear])) @ moved
         elastic = 0.5 * (normal**2 / point_kn + np.dot(shear, shear) / point_ks)

@@ -3,10 +3,10 @@
 In units of a mean block weight W and of W over a median joint stiffness. For every contact point
 
     N ≥ 0,  p = g(u) + N/kn ≥ 0,                N p = 0        normal force, opening of the joint
-    c± = μN ± T ≥ 0,  a± ≥ 0,                   c± a± = 0      reserve of friction, slip (plastic) in this increment
-    Bt (u − u₀) = −(T − T₀)/ks + a₊ − a₋                       slide: elastic and plastic part
+    c = c(μN, T) ∈ K,  a ∈ K,                   c ∘ a = 0      reserve of friction, slip (plastic) in this increment
+    Bt (u − u₀) = −(T − T₀)/ks + γ(a)                          slide: elastic and plastic part
 
-with equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N inside Newton's
+with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N inside Newton's
 iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
 """
 
@@ -15,12 +15,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, vstack
 from scipy.sparse.linalg import SuperLU, splu
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
+from dem_cli.limit.slips import slips_of
 
 
 class State(NamedTuple):
@@ -29,12 +30,12 @@ class State(NamedTuple):
     displacements: np.ndarray  # of the free degrees of freedom, (n_free,)
     load: float  # multiplier of the scaled live loads
     normal: np.ndarray  # N, (n_points,)
-    shear: np.ndarray  # T, (n_points,)
-    slips: tuple[np.ndarray, np.ndarray]  # a₊ and a₋ of the last increment, (n_points,) each
+    shear: np.ndarray  # T, component by component, ((d − 1)·n_points,)
+    slip: np.ndarray  # a of the last increment (limit.slips), (d·n_points,)
 
 
 class Direction(NamedTuple):
-    """A Newton direction; `positive` belongs to the vector (N, c₊, c₋, p, a₊, a₋)."""
+    """A Newton direction; `positive` belongs to the vector (N, c, p, a)."""
 
     displacements: np.ndarray
     load: float
@@ -64,9 +65,11 @@ class Elastic:
         self.unit = self.weight / self.stiffness  # of displacements [m]
         self.columns = np.tile(np.where(np.arange(n_dof) < d, 1.0, 1.0 / length), blocks)
         scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
-        self.bn, self.bt = scaled[0::2].tocsr(), scaled[1::2].tocsr()
+        self.bn, self.bt = scaled[0::d].tocsr(), vstack([scaled[k::d] for k in range(1, d)]).tocsr()
         self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
+        self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
+        self.slips = slips_of(d, len(self.kn))
         self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight
@@ -85,7 +88,7 @@ class Elastic:
         """Degrees of freedom in an order that keeps the factors sparse, found once for all factorisations."""
         if not len(self.columns) or not self.n_points:
             return
-        lu = self.factorised(self.kn, self.ks, np.zeros(self.n_points))
+        lu = self.elastic()
         self.order = order = np.argsort(lu.perm_c)
         self.bn, self.bt = self.bn[:, order].tocsr(), self.bt[:, order].tocsr()
         self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
@@ -113,23 +116,39 @@ class Elastic:
         place[self.order] = np.arange(len(place))
         dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)])
         scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
-        normal, tangent = (rows[:, k].reshape(self.n_points, -1) * scale for k in (0, 1))
+        along = [rows[:, k].reshape(self.n_points, -1) * scale for k in range(rows.shape[1])]
         i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
         used = (i >= 0) & (j >= 0)
         self.point = np.broadcast_to(np.arange(self.n_points)[:, None], used.shape)[used]
-        outer = [np.einsum("pi,pj->pij", x, y).reshape(used.shape)[used] for x, y in
-                 ((normal, normal), (tangent, tangent), (tangent, normal))]  # fmt: skip
-        self.outer = outer
+        self.outer = []
+        for first, second in ((0, 0), *self.slips.products_of_rows):
+            outer = np.einsum("pi,pj->pij", along[first], along[second])
+            if 0 < first < second:  # of two tangents, either way round
+                outer = outer + outer.swapaxes(1, 2)
+            self.outer.append(outer.reshape(used.shape)[used])
         n = len(self.columns)
         keys, self.place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
         self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
         self.diagonal = np.flatnonzero(self.indices == keys // n)
 
-    def factorised(self, stiff_n: np.ndarray, stiff_t: np.ndarray, coupling: np.ndarray) -> SuperLU:
-        """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn. Raises RuntimeError where it is singular."""
+    def parts(self, x: np.ndarray) -> list[np.ndarray]:
+        """N, c, p and a of the vector of an increment."""
+        n = self.n_points
+        return np.split(x, (n, len(x) // 2, len(x) // 2 + n))
+
+    def elastic(self, share: np.ndarray | float = 1.0) -> SuperLU:
+        """LU of the structure while nothing slips; share: of the stiffness of every point."""
+        return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
+
+    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> SuperLU:
+        """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
+
+        Raises RuntimeError where it is singular.
+        """
         self.factorisations += 1
-        p, (nn, tt, tn) = self.point, self.outer
-        values = stiff_n[p] * nn + stiff_t[p] * tt - coupling[p] * tn
+        values = 0.0
+        for factor, outer in zip((stiff_n, *tangential), self.outer, strict=True):
+            values = values + factor[self.point] * outer
         data = np.bincount(self.place, values, len(self.indices))
         path = self.settings.path
         data[self.diagonal] += path.singular * np.abs(data[self.diagonal]).mean()
@@ -144,7 +163,7 @@ class Elastic:
     def residual(self, state: State, before: State) -> float:
         """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
         normal = np.maximum(-self.kn * (self.bn @ state.displacements), 0.0)
-        trial = before.shear - self.ks * (self.bt @ (state.displacements - before.displacements))
-        limit = self.friction * normal
-        unbalanced = self.imbalance(normal, np.clip(trial, -limit, limit), state.load)
+        trial = before.shear - self.ks_t * (self.bt @ (state.displacements - before.displacements))
+        shear = self.slips.limited(trial, self.friction * normal)
+        unbalanced = self.imbalance(normal, shear, state.load)
         return float((np.abs(unbalanced) / self.own).max(initial=0.0))

@@ -1,7 +1,7 @@
 """A primal–dual interior point for one increment (limit.elastic), with a way round the folds of its central path.
 
-All products N p, c± a± equal τ on the central path, which ends in a solution as τ goes to zero. Where
-friction is not associated the problem is not monotone: the path may turn back in τ. There the path is
+All products N p and c ∘ a (limit.slips) equal τ on the central path, which ends in a solution as τ goes to zero.
+Where friction is not associated the problem is not monotone: the path may turn back in τ. There the path is
 followed by its arc length instead (predictor along the tangent, corrector across it) until it comes down.
 """
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.interrupts import look
 from dem_cli.limit.elastic import Direction, Elastic, State
+from dem_cli.limit.slips import apart
 
 
 @dataclass
@@ -23,7 +24,7 @@ class Iterate:
     u: np.ndarray
     load: float
     shear: np.ndarray
-    x: np.ndarray  # N, c₊, c₋, p, a₊, a₋, all positive, (6·n_points,)
+    x: np.ndarray  # N, c, p, a (limit.slips), all positive or inside their cones, (2·(1 + d)·n_points,)
 
     def copy(self) -> Iterate:
         """The same, to be kept."""
@@ -40,17 +41,14 @@ class Increment:
 
     def start(self, tau: float, ahead: float) -> Iterate:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
-        problem, before = self.problem, self.before
+        problem, before, slips = self.problem, self.before, self.problem.slips
         mu = problem.friction
         opening = problem.bn @ before.displacements + before.normal / problem.kn
-        normal, opening = _apart(before.normal - np.maximum(opening, 0.0), tau)
-        one, two = (np.maximum(mu * before.normal + s * before.shear, 0.0) for s in (1.0, -1.0))
-        one, slip_one = _apart(one - ahead * before.slips[0], tau)
-        two, slip_two = _apart(two - ahead * before.slips[1], tau)
-        normal = np.maximum(normal, 0.5 * (one + two) / mu)
-        used = self.settings.friction_used * mu * normal
-        shear = np.clip(0.5 * (one - two), -used, used)
-        x = np.concatenate([normal, mu * normal + shear, mu * normal - shear, opening, slip_one, slip_two])
+        normal, opening = apart(before.normal - np.maximum(opening, 0.0), tau)
+        limit, shear, slip = slips.started(mu * before.normal, before.shear, ahead * before.slip, tau)
+        normal = np.maximum(normal, limit / mu)
+        shear = slips.limited(shear, self.settings.friction_used * mu * normal)
+        x = np.concatenate([normal, slips.reserves(mu * normal, shear), opening, slip])
         return Iterate(before.displacements.copy(), before.load, shear, x)
 
     def solve(
@@ -62,11 +60,12 @@ class Increment:
         ahead  how far slips go on from the last increment, as a share of that
         folds  how many folds of the central path to go round
         """
-        settings, at, length, first = self.settings, self.start(tau, ahead), 1.0, True
+        settings, slips = self.settings, self.problem.slips
+        at, length, first = self.start(tau, ahead), 1.0, True
         kept: tuple[float, Iterate] | None = None
         means: list[float] = []
         while len(means) < settings.slow and not stop():
-            mean = float((at.x[: len(at.x) // 2] * at.x[len(at.x) // 2 :]).mean())
+            mean = float(slips.products(at.x).mean())
             infeasible = self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
                 return self._state(at)
@@ -83,8 +82,8 @@ class Increment:
                     at, kept, means, length, folds = turned, None, [], 1.0, folds - 1
                     continue
             centring = next(share for least, share in settings.centring if length > least or least == 0.0)
-            step = self._direction(at, tau if first else max(centring * mean, self.end))
-            length, first = _to_boundary(at.x, step.positive, settings.boundary), False
+            step = self._direction(tau if first else max(centring * mean, self.end))
+            length, first = self._to_boundary(at, step), False
             _move(at, step, length)
         return None
 
@@ -92,7 +91,7 @@ class Increment:
 
     def _arc(self, tau: float, at: Iterate, fold: float, stop: Callable[[], bool]) -> Iterate | None:
         """From a kept iterate round the fold until τ is well below it; None where that fails."""
-        settings, last, on_path, at = self.settings, None, False, at.copy()
+        settings, slips, last, on_path, at = self.settings, self.problem.slips, None, False, at.copy()
         for _ in range(settings.on_arc):
             if tau < settings.passed * fold:
                 return at
@@ -102,8 +101,8 @@ class Increment:
             if not self._factorise(at):
                 return None
             spread = self._spread(at, tau)
-            onto, along = self._direction(at, tau), self._tangent()
-            relative = tau * along.positive / at.x
+            onto, along = self._direction(tau), self._tangent()
+            relative = slips.relative(at.x, tau * along.positive)
             if not np.abs(relative).max() < settings.endless:
                 return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
@@ -111,15 +110,16 @@ class Increment:
             on_path = on_path or (infeasible < settings.feasible and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
-                offset = onto.positive / at.x
+                offset = slips.relative(at.x, onto.positive)
                 change = -(offset @ tangent[:-1]) / (relative @ tangent[:-1] + tangent[-1])
                 if spread < settings.wide:
-                    fastest = max(-tangent[:-1].min(), settings.growing * tangent[:-1].max())
+                    fall, growth = slips.extremes(tangent[:-1])
+                    fastest = max(-fall, settings.growing * growth)
                     change += tangent[-1] * settings.stride / max(fastest, abs(tangent[-1]) / settings.by_tau)
                     last = tangent
                 change = float(np.clip(change, max(np.log(self.end / tau), -settings.down), settings.up))
             step = onto.and_on(along, tau * change)
-            length = _to_boundary(at.x, step.positive, settings.boundary)
+            length = self._to_boundary(at, step)
             _move(at, step, length)
             tau *= np.exp(length * change)
         return None
@@ -128,55 +128,54 @@ class Increment:
 
     def _residuals(self, at: Iterate) -> float:
         """Residuals of the linear equations into self; returns the largest."""
-        problem, before, mu = self.problem, self.before, self.problem.friction
-        normal, one, two, opening, slip_one, slip_two = np.split(at.x, 6)
+        problem, before, slips = self.problem, self.before, self.problem.slips
+        normal, reserve, opening, slip = problem.parts(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
         self.off_gap = problem.bn @ at.u + normal / problem.kn - opening
         slide = problem.bt @ (at.u - before.displacements)
-        self.off_slide = slip_one - slip_two - (at.shear - before.shear) / problem.ks - slide
-        self.off_one, self.off_two = mu * normal + at.shear - one, mu * normal - at.shear - two
+        self.off_slide = slips.slides(slip) - (at.shear - before.shear) / problem.ks_t - slide
+        self.off_reserve = slips.reserves(problem.friction * normal, at.shear) - reserve
         if self.displacement is None:
             self.off_target = self.target - at.load
         else:
             self.off_target = self.displacement - problem.live @ at.u
-        rest = (self.unbalanced, self.off_gap, self.off_slide, self.off_one, self.off_two)
+        rest = (self.unbalanced, self.off_gap, self.off_slide, self.off_reserve)
         return max(float(np.abs(r).max(initial=0.0)) for r in rest)
 
     def _factorise(self, at: Iterate) -> bool:
         look()
         problem = self.problem
-        normal, one, two, opening, slip_one, slip_two = self.parts = np.split(at.x, 6)
-        self.soft_n = opening + normal / problem.kn
-        self.ratios = slip_one / one, slip_two / two
-        self.soft_t = 1.0 / problem.ks + self.ratios[0] + self.ratios[1]
-        self.stiff_n, self.stiff_t = normal / self.soft_n, 1.0 / self.soft_t
-        self.drag = problem.friction * (self.ratios[0] - self.ratios[1]) / self.soft_t
+        self.normal, reserve, self.opening, slip = problem.parts(at.x)
+        self.soft_n = self.opening + self.normal / problem.kn
+        self.stiff_n = self.normal / self.soft_n
+        self.joints = problem.slips.linear(reserve, slip, problem.friction, problem.ks, self.stiff_n)
         try:
-            self.lu = problem.factorised(self.stiff_n, self.stiff_t, self.drag * self.stiff_n)
+            self.lu = problem.factorised(self.stiff_n, self.joints.stiffness)
         except RuntimeError:
             return False
         self.by_live = self.lu.solve(problem.live)
         return bool(np.isfinite(self.by_live).all())
 
-    def _direction(self, at: Iterate, tau: float) -> Direction:
+    def _direction(self, tau: float) -> Direction:
         """Towards the linear equations and products of τ."""
-        normal, one, two, opening, slip_one, slip_two = self.parts
-        products = tau - normal * opening, tau - one * slip_one, tau - two * slip_two
-        return self._solve(self.unbalanced, self.off_gap, self.off_slide, self.off_one, self.off_two,
-                           self.off_target, products)  # fmt: skip
+        push = (tau - self.normal * self.opening - self.normal * self.off_gap) / self.soft_n
+        forced = self.joints.towards(tau, self.off_reserve)
+        return self._solve(push, forced, self.unbalanced, self.off_gap, self.off_slide, self.off_reserve,
+                           self.off_target)  # fmt: skip
 
     def _tangent(self) -> Direction:
         """Change of the central path by τ."""
-        none, one = np.zeros(self.problem.n_points), np.ones(self.problem.n_points)
-        return self._solve(np.zeros_like(self.unbalanced), none, none, none, none, 0.0, (one, one, one))
+        none = np.zeros_like
+        return self._solve(1.0 / self.soft_n, self.joints.along(), none(self.unbalanced), none(self.off_gap),
+                           none(self.off_slide), none(self.off_reserve), 0.0)  # fmt: skip
 
-    def _solve(self, unbalanced, off_gap, off_slide, off_one, off_two, off_target, products) -> Direction:
-        """Newton's equations, condensed on the free degrees of freedom and bordered by the live load."""
-        problem, mu = self.problem, self.problem.friction
-        normal, one, two, _, slip_one, slip_two = self.parts
-        push = (products[0] - normal * off_gap) / self.soft_n
-        first, second = (products[1] - slip_one * off_one) / one, (products[2] - slip_two * off_two) / two
-        rub = (first - second + off_slide) / self.soft_t - self.drag * push
+    def _solve(self, push, forced, unbalanced, off_gap, off_slide, off_reserve, off_target) -> Direction:
+        """Newton's equations, condensed on the free degrees of freedom and bordered by the live load.
+
+        push, forced: changes of the normal forces and of the slips while nothing else changes.
+        """
+        problem, joints = self.problem, self.joints
+        rub = joints.rubbed(forced, off_slide, push)
         u = self.lu.solve(unbalanced + problem.bnt @ push + problem.btt @ rub)
         if self.displacement is None:
             load = off_target
@@ -185,36 +184,26 @@ class Increment:
         u = u + load * self.by_live
         closing = problem.bn @ u
         d_normal = push - self.stiff_n * closing
-        d_shear = rub - self.stiff_t * (problem.bt @ u) + self.drag * self.stiff_n * closing
-        d_one, d_two = mu * d_normal + d_shear + off_one, mu * d_normal - d_shear + off_two
-        positive = [
-            d_normal, d_one, d_two, off_gap + closing + d_normal / problem.kn,
-            first - self.ratios[0] * (d_one - off_one), second - self.ratios[1] * (d_two - off_two),
-        ]  # fmt: skip
-        return Direction(u, float(load), d_shear, np.concatenate(positive))
+        d_shear = joints.sheared(rub, problem.bt @ u, closing)
+        d_reserve = problem.slips.reserves(problem.friction * d_normal, d_shear) + off_reserve
+        d_opening = off_gap + closing + d_normal / problem.kn
+        d_slip = joints.slipped(forced, d_reserve - off_reserve)
+        return Direction(u, float(load), d_shear, np.concatenate([d_normal, d_reserve, d_opening, d_slip]))
+
+    def _to_boundary(self, at: Iterate, step: Direction) -> float:
+        """Length of the step that goes a share of the way to where something is no more positive, at most one."""
+        slips = self.problem.slips
+        steepest = slips.extremes(slips.relative(at.x, step.positive))[0]
+        return min(1.0, -self.settings.boundary / steepest) if steepest < 0.0 else 1.0
 
     def _spread(self, at: Iterate, mean: float) -> float:
         """Largest ratio of a product to the mean, or of the mean to a product."""
-        products = at.x[: len(at.x) // 2] * at.x[len(at.x) // 2 :]
+        products = self.problem.slips.products(at.x)
         return max(float(products.max()) / mean, mean / max(float(products.min()), 1e-300))
 
     def _state(self, at: Iterate) -> State:
-        normal, _, _, _, slip_one, slip_two = np.split(at.x, 6)
-        return State(at.u, at.load, normal, at.shear, (slip_one, slip_two))
-
-
-def _apart(difference: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two positive numbers with this difference and the product τ."""
-    root = np.sqrt(difference**2 + 4.0 * tau)
-    larger = 0.5 * (np.abs(difference) + root)
-    first = np.where(difference > 0.0, larger, tau / larger)
-    return first, tau / first
-
-
-def _to_boundary(x: np.ndarray, step: np.ndarray, share: float) -> float:
-    """Length of the step that goes a share of the way to where something is no more positive, at most one."""
-    steepest = float((step / x).min(initial=0.0))
-    return min(1.0, -share / steepest) if steepest < 0.0 else 1.0
+        normal, _, _, slip = self.problem.parts(at.x)
+        return State(at.u, at.load, normal, at.shear, slip)
 
 
 def _move(at: Iterate, step: Direction, length: float) -> None:

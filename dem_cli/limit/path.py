@@ -32,7 +32,7 @@ class Path:
     load: float | None = None  # multiplier of the live loads, as users know it
     residual: float = np.inf  # largest unbalanced force under the joint law, in own weights
     normal: np.ndarray | None = None  # [N], (n_points,)
-    shear: np.ndarray | None = None  # on b along the tangent [N], (n_points, 1)
+    shear: np.ndarray | None = None  # on b along the tangents [N], (n_points, d − 1)
     gaps: np.ndarray | None = None  # opening of the points [m], (n_points,)
     displacements: np.ndarray | None = None  # since before gravity, (n_blocks, n_dof)
     mechanism: np.ndarray | None = None  # motion of its increment; its live power is one, (n_blocks, n_dof)
@@ -83,7 +83,7 @@ def trace(
     progress: Callable[[float, float], None] = lambda load, reached: None,
     settings: LimitSettings = DEFAULT_LIMIT,
 ) -> Path:
-    """From gravity to the plateau of the load, 2D.
+    """From gravity to the plateau of the load.
 
     friction  coefficient of every point [-], (n_points,)
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
@@ -161,8 +161,8 @@ def is_plateau(settings: PathSettings, reached: float, since: float, slope: floa
 
 
 def _at_rest(problem: Elastic) -> State:
-    none = np.zeros(problem.n_points)
-    return State(np.zeros(len(problem.columns)), 0.0, np.full(problem.n_points, 0.5), none, (none, none))
+    n, shear = problem.n_points, np.zeros(len(problem.ks_t))
+    return State(np.zeros(len(problem.columns)), 0.0, np.full(n, 0.5), shear, np.zeros(n + len(shear)))
 
 
 def _advance(
@@ -186,8 +186,7 @@ def _compliance(problem: Elastic, state: State) -> float:
     path = problem.settings.path
     closed = state.normal > path.loaded * state.normal.max(initial=1.0)
     share = np.where(closed, 1.0, path.opened)
-    lu = problem.factorised(share * problem.kn, share * problem.ks, np.zeros(problem.n_points))
-    return float(problem.live @ lu.solve(problem.live))
+    return float(problem.live @ problem.elastic(share).solve(problem.live))
 
 
 def _keep(path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float) -> None:
@@ -201,7 +200,8 @@ def _keep(path: Path, structure: Structure, problem: Elastic, state: State, befo
         return  # softer than before: the structure fails where the load was highest
     path.load, path.highest = load, len(path.loads) - 1
     path.residual = problem.residual(state, before)
-    path.normal, path.shear = state.normal * problem.weight, state.shear[:, None] * problem.weight
+    path.normal = state.normal * problem.weight
+    path.shear = state.shear.reshape(-1, problem.n_points).T * problem.weight
     gaps = problem.bn @ state.displacements
     closed = state.normal > problem.kn * (gaps + state.normal / problem.kn)
     path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit

@@ -61,6 +61,11 @@ class Model(ModelArrays):
         return len(self.block_ids)
 
     @property
+    def rotations(self) -> slice:
+        """Columns of generalised vectors that are rotations; what is behind them deforms the block."""
+        return slice(self.dimension, self.dimension + self.inertias.shape[1])
+
+    @property
     def n_parts(self) -> int:
         """Number of convex parts of all blocks."""
         return len(self.part_blocks)

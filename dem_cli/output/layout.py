@@ -160,27 +160,52 @@ CONTACTS = {
         PURE, _PLACE, _XYZ, spatial=True,
     ),
 }  # fmt: skip
+_END = ("joint", "end", "coordinate")
 JOINT_PLACES = {
     "blocks": Described("the two blocks, by their numbers", PURE, ("joint", "side"), ("a", "b")),
-    "ends": _vector("where the joint begins and ends on block a, as drawn", "m", ("joint", "end", "coordinate")),
+    "ends": Described(
+        "where the joint begins and ends on block a, as drawn", "m", _END, _XYZ[:2],
+        Described("the two corners of the joint on block a that are furthest apart, as drawn", "m", _END, _XYZ),
+    ),
     "normals": _vector("unit vector from block a to block b, as drawn", PURE, ("joint", "coordinate")),
-    "length": Described("length of the joint as drawn", "m", _JOINT),
-    "area": Described("length times the smaller thickness of both blocks", "m2", _JOINT),
-}
+    "length": Described("length of the joint as drawn", "m", _JOINT, (), Described("between `ends`", "m", _JOINT)),
+    "area": Described(
+        "length times the smaller thickness of both blocks", "m2", _JOINT, (),
+        Described("area of the overlap as drawn; of lone edges and corners what they stand for", "m2", _JOINT),
+    ),
+    "starts": Described(
+        "first corner of each joint; the last number is their count", PURE, ("joint + 1",), spatial=True
+    ),
+    "corners": Described(
+        "corners around each joint on block a, as drawn, counter-clockwise seen from block b; two of an edge, one of a "
+        "corner", "m", ("corner of a joint", "coordinate"), _XYZ, spatial=True,
+    ),
+}  # fmt: skip
 _STATE = ("frame", "joint")
 JOINT_STATES = {
-    "opening": Described("mean distance of its two ends across the joint, positive open", "m", _STATE),
-    "crack_width": Described("distance of its wider end across the joint; 0 where none is open", "m", _STATE),
+    "opening": Described(
+        "mean distance of its two ends across the joint, positive open", "m", _STATE, (),
+        Described("mean distance across the joint, positive open", "m", _STATE),
+    ),
+    "crack_width": Described(
+        "distance of its wider end across the joint; 0 where none is open", "m", _STATE, (),
+        Described("distance of its widest corner across the joint; 0 where none is open", "m", _STATE),
+    ),
     "slip": Described(
-        "how far the middle of b has slid on a along the tangent, the normal turned by +90°", "m", _STATE
+        "how far the middle of b has slid on a along the tangent, the normal turned by +90°", "m", _STATE, (),
+        Described("how far the middle of b has slid on a", "m", _STATE),
     ),
     "normal_stress": Described("normal force over area, compression positive", "Pa", _STATE),
-    "shear_stress": Described("shear force on b along the tangent over area", "Pa", _STATE),
+    "shear_stress": Described(
+        "shear force on b along the tangent over area", "Pa", _STATE, (),
+        Described("shear force over area", "Pa", _STATE),
+    ),
     "eccentricity": Described(
-        "how far the normal force acts from the middle, along the tangent; 0 without a force", "m", _STATE
+        "how far the normal force acts from the middle, along the tangent; 0 without a force", "m", _STATE, (),
+        Described("how far the normal force acts from the middle; 0 without a force", "m", _STATE),
     ),
     "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _STATE),
-}
+}  # fmt: skip
 _ROW = ("row",)
 HISTORY = {
     "step": Described("solver steps so far", PURE, _ROW),

@@ -177,7 +177,7 @@ def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
 
 def _read_joints(group: h5py.Group, lazy: bool) -> JointHistory:
     states = [group[name] for name in JointStates._fields]
-    places = JointPlaces(*(group[name][:] for name in JointPlaces._fields))
+    places = JointPlaces(**{name: group[name][:] for name in JointPlaces._fields if name in group})
     return JointHistory(places, JointStates(*(states if lazy else [data[:] for data in states])))
 
 

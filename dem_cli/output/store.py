@@ -216,9 +216,10 @@ class ResultWriter:
         if joints is not None and len(joints.places.area):
             self._joints = joints
             group = self.dem.create_group("joints")
-            for name, values in joints.places._asdict().items():
-                describe(group.create_dataset(name, data=values), JOINT_PLACES[name])
-            self._joint_states = GrowingGroup(group, JOINT_STATES, _FRAMES_AT_ONCE)
+            said, states = (declared(table, self.model.dimension) for table in (JOINT_PLACES, JOINT_STATES))
+            for name, values in joints.places.stored().items():
+                describe(group.create_dataset(name, data=values), said[name])
+            self._joint_states = GrowingGroup(group, states, _FRAMES_AT_ONCE)
         self._vtk = ParaViewFiles(self.model, self._joints, self._open)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 

@@ -19,7 +19,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, declared, units_of
 from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.reader import Frames, Results, read
-from dem_cli.output.record import STATES, Frame
+from dem_cli.output.record import OUTLINE, STATES, Frame
 from dem_cli.output.series import MONITOR_UNITS
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
@@ -142,7 +142,8 @@ class Result:
         if found is None:
             raise UsageError(f"{self._path}: these results have no joints; an earlier version wrote them")
         states = found.at(frame % len(self.frames))
-        columns = found.places._asdict() | states._asdict() | {"state": np.array(STATES)[states.state]}
+        places = {name: values for name, values in found.places._asdict().items() if name not in OUTLINE}
+        columns = places | states._asdict() | {"state": np.array(STATES)[states.state]}
         units = units_of(declared(JOINT_PLACES | JOINT_STATES, self.model.dimension))
         return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 

@@ -51,7 +51,7 @@ ALLOWED: dict[str, set[str] | None] = {
     },
     "verify": {"case", "output.reference", "output.scalars"},
     "sweep": {"api", "case", "output"},
-    "report": {"geometry", "model", "output", "post", "render.marks", "render.solids"},
+    "report": {"geometry", "model", "output", "post", "render.chamfered", "render.solids"},
     "render": {"geometry", "model", "output", "post"},
     "post": {"geometry", "model", "motion", "output"},
     "analyses": {

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
+from dem_cli.output.record import JointPlaces
 
-_LINE, _POLYGON, CONVEX_POINT_SET = 3, 7, 41
+_VERTEX, _LINE, _POLYGON, CONVEX_POINT_SET = 1, 3, 7, 41
 _PYRAMIDS = {3: 10, 4: 14}  # cell types by the sides of the base: tetrahedron, pyramid
 _PRISMS = {3: 13, 4: 12, 5: 15, 6: 16}  # wedge, hexahedron, pentagonal and hexagonal prism
 
@@ -30,9 +31,12 @@ def polygons(starts: np.ndarray) -> Cells:
     return Cells(np.full(len(starts) - 1, _POLYGON, np.uint8), starts.astype(np.int64), np.arange(starts[-1]))
 
 
-def lines(n: int) -> Cells:
-    """Lines between two points each, one line after the other."""
-    return Cells(np.full(n, _LINE, np.uint8), 2 * np.arange(n + 1), np.arange(2 * n))
+def outlines_of_joints(places: JointPlaces) -> Cells:
+    """Joints as they were drawn: in the plane lines, in space polygons, lines and single points."""
+    starts = places.starts if len(places.starts) else 2 * np.arange(len(places.area) + 1)
+    types = np.array([_POLYGON, _VERTEX, _LINE], np.uint8)
+    counts = np.diff(starts)
+    return Cells(types[np.where(counts > 2, 0, counts)], starts.astype(np.int64), np.arange(starts[-1]))
 
 
 def cells_of(model: Model) -> Cells:

@@ -41,26 +41,41 @@ def seen_from(azimuth: float, elevation: float) -> Axonometry:
     return Axonometry(right, np.cross(eye, right), eye)
 
 
-def azimuth_of(model: Model, frame: Frame | None) -> float:
-    """Azimuth in degrees from which most is seen: of the wide side, from where the blocks move to in this frame."""
+def wide_side(model: Model) -> np.ndarray:
+    """Along the wider side of the box around the blocks that can move: x or y, unit, (2,)."""
     free = ~model.fixed if not model.fixed.all() else model.fixed
-    corners = rest_vertices(model)[free[model.vertex_blocks]]
-    extents = np.ptp(corners[:, :2], axis=0)
-    along = np.eye(2)[int(extents[1] > extents[0])]
+    extents = np.ptp(rest_vertices(model)[free[model.vertex_blocks], :2], axis=0)
+    return np.eye(2)[int(extents[1] > extents[0])]
+
+
+def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) -> float:
+    """Azimuth in degrees from which most is seen: of the wide side, from where the blocks move to in this frame.
+
+    aside: from the middle of that side [deg].
+    """
+    free = ~model.fixed if not model.fixed.all() else model.fixed
+    along = wide_side(model)
     across = np.array([along[1], -along[0]])
     motion = np.zeros(2)
     if frame is not None:
         moved = (frame.positions - model.centroids)[free, :2]
-        motion = moved.sum(axis=0) if np.abs(moved).max() > _STILL * extents.max() else motion
+        motion = moved.sum(axis=0) if np.abs(moved).max() > _STILL * np.ptp(model.centroids, axis=0).max() else motion
     sides = [vector if motion @ vector >= 0.0 else -vector for vector in (across, along)]
-    aside = np.radians(AZIMUTH_ASIDE)
-    eye = np.cos(aside) * sides[0] + np.sin(aside) * sides[1]
+    turn = np.radians(aside)
+    eye = np.cos(turn) * sides[0] + np.sin(turn) * sides[1]
     return float(np.degrees(np.arctan2(eye[1], eye[0])))
 
 
 def axonometry(
-    model: Model, frame: Frame | None, azimuth: float | None = None, elevation: float | None = None
+    model: Model,
+    frame: Frame | None,
+    azimuth: float | None = None,
+    elevation: float | None = None,
+    oblique: bool = True,
 ) -> Axonometry:
-    """The view from an azimuth and an elevation in degrees; None: as it is best."""
-    azimuth = azimuth_of(model, frame) if azimuth is None else azimuth
-    return seen_from(azimuth, ELEVATION if elevation is None else elevation)
+    """The view from an azimuth and an elevation in degrees; None: as it is best, or straight on where not oblique."""
+    if azimuth is None:
+        azimuth = azimuth_of(model, frame, AZIMUTH_ASIDE if oblique else 0.0)
+    if elevation is None:
+        elevation = ELEVATION if oblique else 0.0
+    return seen_from(azimuth, elevation)

@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.geometry.polygon import following
 from dem_cli.geometry.rotation import tangents_of
-from dem_cli.output.record import ContactRecord
+from dem_cli.output.record import STATES, ContactRecord
 
 _INNER = 1e-3  # of the reach of its joint: a point so close to the middle is none of its corners
 
@@ -27,6 +27,15 @@ class JointStrokes(NamedTuple):
 def strokes(contacts: ContactRecord) -> JointStrokes:
     """Of all joints that have an extent; what is one point has none."""
     return _STROKES[contacts.points.shape[1]](contacts)
+
+
+def visible_strokes(contacts: ContactRecord) -> JointStrokes:
+    """As `strokes`, without closed joints in space: there the edges of the stones show these."""
+    found = strokes(contacts)
+    if contacts.points.shape[1] == 2:
+        return found
+    kept = contacts.state[found.points] != STATES.index("sticking")
+    return JointStrokes(*(values[kept] for values in found))
 
 
 def middles(contacts: ContactRecord) -> np.ndarray:

@@ -13,7 +13,7 @@ from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
 from dem_cli.post.scene.axonometry import Axonometry
 from dem_cli.post.scene.hidden_surfaces import NOTHING, SeenSurface, Window, seen_surface, window_of
-from dem_cli.post.scene.joint_strokes import strokes
+from dem_cli.post.scene.joint_strokes import visible_strokes
 from dem_cli.post.scene.plane_drawing import joint_width, state_colour
 
 _FINEST = 1800  # pixels along the longer side of a picture
@@ -109,9 +109,8 @@ class SpaceDrawing:
         """Each contact point colours its corner of the joint, as far as it can be seen; closed joints are edges."""
         from matplotlib.collections import LineCollection
 
-        contacts, found = frame.contacts, strokes(frame.contacts)
-        kept = contacts.state[found.points] != STATES.index("sticking")
-        starts, ends, points = found.starts[kept], found.ends[kept], found.points[kept]
+        contacts = frame.contacts
+        starts, ends, points = visible_strokes(contacts)
         if self.seen is None or not len(points):
             return
         pixel = self.seen.window.pixel

@@ -76,12 +76,10 @@ def twins(files: list[Path]) -> list[dict[str, Any]]:
     """Plane cases beside their prisms in space: static ones, of joints that the geometry of the start describes."""
     rows = []
     for file in files:
-        loaded = from_file(file, "output.frames=0")
-        case = loaded.case
-        if case.analysis.kind not in STATIC or getattr(case.analysis, "follow", 0.0):
-            loaded = from_file(file, "output.frames=0", "analysis.follow=0.0") if case.analysis.kind == "pushover" else None
-        if loaded is None:
+        kind = from_file(file).case.analysis.kind
+        if kind not in STATIC:
             continue
+        loaded = from_file(file, "output.frames=0", *(["analysis.follow=0.0"] if kind == "pushover" else []))
         case, model = loaded.case.model_copy(update={"monitor": ()}), api.build_model(loaded)
         if not _has_a_twin(case, model):
             continue

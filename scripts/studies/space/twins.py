@@ -10,7 +10,7 @@ from dem_cli.model.model import Model
 
 
 def twin(model: Model) -> Model:
-    """A plane model in space: prisms of its polygons, half of their thickness to either side, the same weights and loads.
+    """A plane model in space: prisms of its polygons, half of their thickness to either side, with the same loads.
 
     A moment about z of the plane, from x to its y, is one about −y in space.
     """

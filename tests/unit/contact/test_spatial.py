@@ -359,6 +359,15 @@ def test_a_point_at_the_centre_keeps_area_and_both_moments():
             assert areas[:-1].sum() / areas.sum() == pytest.approx(share, rel=1e-12)
 
 
+def test_torsion_of_a_square_joint_by_its_layout():
+    """Σ w r over A a, what slides at once under uniform pressure: 1/√2 of corners, a third of it with the centre."""
+    model = spatial_model([BASE, box([0, 0, 0], [1, 1, 1])])
+    for centred, exact in ((False, np.sqrt(0.5)), (True, np.sqrt(0.5) / 3.0)):
+        joints = start_joints(model, centred).joints
+        arms = np.linalg.norm(joints.points - [0.5, 0.5, 0.0], axis=1)
+        assert (joints.kn / KN) @ arms == pytest.approx(exact, rel=1e-14)
+
+
 def test_pieces_of_one_block_share_no_joint_and_do_not_touch_from_inside():
     """An L of two pieces on a base: only faces that can be touched."""
     ell = [box([0, 0, 0], [1, 1, 1]), box([1, 0, 0], [2, 1, 0.5])]

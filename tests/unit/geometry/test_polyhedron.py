@@ -82,7 +82,7 @@ def test_given_faces_of_one_plane_become_one():
 @pytest.mark.parametrize(
     ("points", "loops", "words"),
     [
-        (CUBE, CUBE_FACES[:5], "do not close: the edge between corners"),
+        (CUBE, CUBE_FACES[:5], "do not close: the edge from"),
         (CUBE, [*CUBE_FACES[:5], [1, 5, 7]], "do not close"),
         (CUBE, [*CUBE_FACES[:5], [1, 5, 7, 8]], "face 6 names corner 8; corners count from 0 to 7"),
         (CUBE, [*CUBE_FACES[:5], [1, 5, 7, 5]], "face 6 names a corner twice"),

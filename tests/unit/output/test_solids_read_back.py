@@ -5,14 +5,17 @@ from __future__ import annotations
 import h5py
 import numpy as np
 import pytest
-from synthetic.solid_runs import drum, solid_frames, solid_wall, write_solid_run
+from synthetic.solid_runs import DEPTH, drum, solid_frames, solid_wall, write_solid_run
 from synthetic.spatial import spatial_model
 
+from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.geometry.polyhedron import box, hull
+from dem_cli.output.joint_table import write_joints
 from dem_cli.output.layout import CONTACTS, FRAMES, MODEL, declared
-from dem_cli.output.paraview.cells import CONVEX_POINT_SET, cells_of
+from dem_cli.output.paraview.cells import CONVEX_POINT_SET, cells_of, outlines_of_joints
 from dem_cli.output.paraview.vtk import export_pvd, write_geometry
 from dem_cli.output.reader import read
+from dem_cli.output.record import JointPlaces
 
 DENSITY = 2000.0  # of the made-up models
 TETRAHEDRON, HEXAHEDRON, WEDGE, PYRAMID, PENTAGONAL, HEXAGONAL = 10, 12, 13, 14, 15, 16
@@ -66,13 +69,17 @@ def test_forces_in_space(run):
 
 
 def volumes(cells):
+    return measured(cells, "Volume")
+
+
+def measured(cells, size_of):
     vtk = pytest.importorskip("vtkmodules.vtkFiltersVerdict")
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     size = vtk.vtkCellSizeFilter()
     size.SetInputData(cells)
     size.Update()
-    return vtk_to_numpy(size.GetOutput().GetCellData().GetArray("Volume"))
+    return vtk_to_numpy(size.GetOutput().GetCellData().GetArray(size_of))
 
 
 def faces_look_outwards(cell, places) -> bool:
@@ -154,3 +161,34 @@ def test_series_for_older_paraview(run, tmp_path):
     assert [path.name for path in series] == ["blocks.pvd", "contacts.pvd"]
     grid = vtu(tmp_path / "blocks_0007.vtu")
     np.testing.assert_allclose(volumes(grid), run[1].masses / DENSITY, rtol=1e-5)
+
+
+def test_joints_are_polygons_that_move_with_the_blocks(tmp_path):
+    """ParaView reads as many polygons as there are joints, with their areas; the table has a line for each."""
+    vtk = pytest.importorskip("vtkmodules.vtkIOHDF")
+    model = solid_wall()
+    folder = write_solid_run(tmp_path, model, solid_frames(model, 2), DrawnJoints)
+    found, drawn = read(folder).joints, DrawnJoints(model)
+    for name, values in drawn.places._asdict().items():
+        np.testing.assert_array_equal(getattr(found.places, name), values, err_msg=name)
+    assert found.at(1).opening.max() == pytest.approx(0.5 * DEPTH * np.sin(0.5))  # leaning by 0.5 about its lower edge
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(folder / "joints.vtkhdf"))
+    reader.UpdateInformation()
+    reader.SetStep(0)
+    reader.Update()
+    grid = reader.GetOutput()
+    assert [grid.GetCellType(i) for i in range(grid.GetNumberOfCells())] == [7] * len(drawn.places.area)
+    np.testing.assert_allclose(measured(grid, "Area"), drawn.places.area, rtol=1e-5)
+    write_joints(read(folder), 1, tmp_path / "joints.csv")
+    head, first = (tmp_path / "joints.csv").read_text().splitlines()[:2]
+    assert head.startswith("block a,block b,x [m],y [m],z [m],steepness [deg],length [m],area [m2],opening [m]")
+    assert len(first.split(",")) == len(head.split(","))
+
+
+def test_lone_edges_and_corners_are_lines_and_points():
+    places = JointPlaces(
+        np.zeros((3, 2), int), np.zeros((3, 2, 3)), np.zeros((3, 3)), np.zeros(3), np.ones(3),
+        np.array([0, 1, 3, 7]), np.zeros((7, 3)),
+    )  # fmt: skip
+    assert outlines_of_joints(places).types.tolist() == [1, 3, 7]

@@ -140,7 +140,7 @@ def test_pictures_of_a_run_in_space(tmp_path):
 
     from dem_cli.post.run_pictures import draw_all
 
-    model = solid_wall(2, 2)
+    model = solid_wall(3, 2)
     folder = write_solid_run(tmp_path, model, solid_frames(model, 4))
     written = [path.name for path in draw_all(folder, tmp_path, animate=True)]
     assert written == ["capacity.png", "collapse.png", "energy.png", "collapse.gif"]
