@@ -46,7 +46,7 @@ class System(NamedTuple):
         """K [N/m, N, N m], (n_free, n_free)."""
         from scipy.sparse import diags_array
 
-        roots = diags_array(np.sqrt(self.masses))
+        roots = diags_array(np.sqrt(self.masses.ravel()))
         return (roots @ self.matrix @ roots).tocsr()
 
 
