@@ -54,8 +54,9 @@ def _in_plane(model: Model, frames: Sequence[Frame], asked: Standpoint) -> Rende
 def _in_space(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
     farthest = max(frames, key=lambda frame: frame.displacement)
     axes = axonometry(model, farthest, asked.azimuth, asked.elevation, asked.view != "front")
-    upright = np.array([0.0, 0.0, 1.0])
-    return RenderedView(axes, Axonometry(axes.right, upright, np.cross(axes.right, upright)), True)
+    ahead = axes.eye + np.cross(axes.right, (0.0, 0.0, 1.0))  # half as high as the reader: tops and sides are lit
+    ahead /= np.linalg.norm(ahead)
+    return RenderedView(axes, Axonometry(axes.right, np.cross(ahead, axes.right), ahead), True)
 
 
 _VIEWS: dict[int, Callable[[Model, Sequence[Frame], Standpoint], RenderedView]] = {2: _in_plane, 3: _in_space}
