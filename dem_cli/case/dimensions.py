@@ -53,11 +53,9 @@ SCOPES = (
     Scope("damping", 2, YET),
     Scope("initial", 2, YET),
     Scope("calibration", 2, YET),
-    Scope("imperfection", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
-    Scope("monitor.between", 2, YET),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
@@ -128,7 +126,7 @@ def in_space(table: Table) -> Table:
         if isinstance(value, tuple) and value and name not in table.model_fields_set:
             kind = kind_of(field.annotation, field.metadata)
             length = next((limit for limit in kind.limits if isinstance(limit, VectorLength)), None)
-            padded: Any = value if length is None else length.padded(value)
+            padded: Any = length.padded(value) if length is not None and len(value) == length.planar else value
         elif isinstance(value, tuple):
             padded = tuple(in_space(item) if isinstance(item, CaseModel) else item for item in value)
         elif isinstance(value, dict):
