@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.assembly.drawn_blocks import drawn_block
+from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.cross_references import check_names
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 
 ALONG_AXIS = 1e-9  # of a force: round-off
+IMPERFECT = {2: imperfect, 3: imperfect_in_space}
 
 
 class Assembly(NamedTuple):
@@ -58,7 +60,7 @@ def assembly(case: Case) -> Assembly:
         raise CaseError(problems)
     doubts: list[CaseProblem] = []
     if case.imperfection:  # names and numbers are those of the blocks as drawn
-        blocks, doubts = imperfect(case, body, blocks)
+        blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
         body = _bodies(case, blocks, names)
     loads = _point_loads(case, body)
     return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts))

@@ -53,7 +53,6 @@ SCOPES = (
     Scope("damping", 2, YET),
     Scope("initial", 2, YET),
     Scope("calibration", 2, YET),
-    Scope("imperfection", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
@@ -128,7 +127,7 @@ def in_space(table: Table) -> Table:
         if isinstance(value, tuple) and value and name not in table.model_fields_set:
             kind = kind_of(field.annotation, field.metadata)
             length = next((limit for limit in kind.limits if isinstance(limit, VectorLength)), None)
-            padded: Any = value if length is None else length.padded(value)
+            padded: Any = length.padded(value) if length is not None and len(value) == length.planar else value
         elif isinstance(value, tuple):
             padded = tuple(in_space(item) if isinstance(item, CaseModel) else item for item in value)
         elif isinstance(value, dict):

@@ -15,7 +15,15 @@ from dem_cli.geometry.outlines import furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
-from dem_cli.kernels.records import FACES, BlockShapes, Bodies, Contacts, Joints, SpatialGeometry
+from dem_cli.kernels.records import (
+    FACES,
+    BlockShapes,
+    Bodies,
+    Contacts,
+    Joints,
+    MovingJoints,
+    SpatialGeometry,
+)
 from dem_cli.kernels.separation import separations
 from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR
 from dem_cli.model.model import Model
@@ -48,7 +56,7 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
 
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
-) -> tuple[Joints, SpatialGeometry]:
+) -> tuple[MovingJoints, SpatialGeometry]:
     """Joints with contact points at the corners of their overlap, and stiffness by the area of each; not yet placed.
 
     Where the layout of a joint asks for more than its ends, there is one at its centre as well (`_with_centres`).
@@ -121,10 +129,6 @@ def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies:
     for side in (0, 1):
         arms = geometry.places - bodies.positions[joints.blocks[owners, side]]
         joints.levers[:, 9 * side : 9 * side + 9] = np.cross(arms[:, None], along).reshape(-1, 9)
-
-
-def level(joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-    """Nothing to do: all points of a joint have its frame."""
 
 
 def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:

@@ -60,10 +60,8 @@ def open_gaps_doubt(model: Model) -> str | None:
     gaps = gaps_of_start(model)
     if not len(gaps.widths):
         return None
-    return (
-        f"{gap_words(model, gaps)}: nothing rests there, as the geometry of the start is kept; "
-        'with analysis.kinematics = "large" gaps close'
-    )
+    hint = '; with analysis.kinematics = "large" gaps close' if may_move(model) else ""
+    return f"{gap_words(model, gaps)}: nothing rests there, as the geometry of the start is kept{hint}"
 
 
 def live_scale(model: Model) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pydantic import Field, model_validator
 
@@ -31,7 +31,9 @@ class Side(CaseModel):
         description="how far they reach away from the face [m]; default: strip, else the wall's thickness",
         examples=[0.8],
     )
-    height: Positive | None = Field(default=None, description="height [m]; default: that of the wall", examples=[8.0])
+    height: Positive | None = Field(
+        default=None, description="height above the foot of the wall [m]; default: that of the wall", examples=[8.0]
+    )
     material: str = Field(default="", description="a name in [materials]; default: that of the wall", examples=["rock"])
 
     @model_validator(mode="after")
@@ -52,25 +54,34 @@ class Side(CaseModel):
         return length / 2.0 if self.ends == "both" else length
 
 
-def side_blocks(sides: tuple[Side, ...], length: float, height: float, thickness: float) -> list[Block]:
-    """Fixed blocks behind the faces of a wall of that length, height and thickness [m], in local places."""
-    return [block for i, side in enumerate(sides) for block in _behind(side, i, length, height, thickness)]
+class SupportedWall(NamedTuple):
+    """What sides need to know of their wall [m]."""
+
+    length: float
+    height: float
+    thickness: float
+    foot: float  # where sides begin: as deep as a base that has no margin, else at the foot of the wall
 
 
-def _behind(side: Side, i: int, length: float, height: float, thickness: float) -> list[Block]:
-    reach, height = side.reach or side.strip or thickness, side.height or height
+def side_blocks(sides: tuple[Side, ...], wall: SupportedWall) -> list[Block]:
+    """Fixed blocks behind the faces of a wall, in local places."""
+    return [block for i, side in enumerate(sides) for block in _behind(side, i, wall)]
+
+
+def _behind(side: Side, i: int, wall: SupportedWall) -> list[Block]:
+    reach, height = side.reach or side.strip or wall.thickness, (side.height or wall.height) - wall.foot
     sign = -1.0 if side.face[0] == "-" else 1.0
     if not side.long:
-        start = -reach if sign < 0.0 else length
-        shape = rectangle(start, 0.0, reach, height)
-        return [Block(f"side-{i + 1}", (shape,), side.material, thickness, fixed=True)]
-    low, high = sorted([sign * thickness / 2.0, sign * (thickness / 2.0 + reach)])
-    width = side.strip or length
-    strips = {"left": 0.0, "right": length - width}
+        start = -reach if sign < 0.0 else wall.length
+        shape = rectangle(start, wall.foot, reach, height)
+        return [Block(f"side-{i + 1}", (shape,), side.material, wall.thickness, fixed=True)]
+    low, high = sorted([sign * wall.thickness / 2.0, sign * (wall.thickness / 2.0 + reach)])
+    width = side.strip or wall.length
+    strips = {"left": 0.0, "right": wall.length - width}
     named = {f"side-{i + 1}": 0.0}
     if side.strip is not None:
         named = {f"side-{i + 1}-{end}": x for end, x in strips.items() if side.ends in (end, "both")}
     return [
-        Block(name, (rectangle(x, 0.0, width, height),), side.material, fixed=True, across=(low, high))
+        Block(name, (rectangle(x, wall.foot, width, height),), side.material, fixed=True, across=(low, high))
         for name, x in named.items()
     ]

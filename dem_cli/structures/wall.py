@@ -11,7 +11,7 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Stru
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.sides import Side, side_blocks
+from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
 MOST_BLOCKS = 1_000_000
 NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or height are not made
@@ -101,6 +101,11 @@ class Wall(StructureBase):
         return self.block[0] * self.blocks_per_course
 
     @property
+    def base_depth(self) -> float:
+        """Height of the base [m]."""
+        return self.base_height or self.block[1]
+
+    @property
     def levels(self) -> np.ndarray:
         """Heights of the bed joints from the foot to the top [m], (courses + 1,)."""
         if self.course_heights:
@@ -184,10 +189,10 @@ def build(wall: Wall) -> list[Block]:
     if wall.base:
         left = min(box[0, 0] for box in boxes) - wall.base_extension
         right = max(box[-1, 2] for box in boxes) + wall.base_extension
-        height = wall.base_height or wall.block[1]
-        shape = rectangle(left, -height, right - left, height)
+        shape = rectangle(left, -wall.base_depth, right - left, wall.base_depth)
         blocks.append(base_block("base", shape, wall.thickness, wall.base_extension))
-    blocks += side_blocks(wall.sides, wall.length, float(wall.levels[-1]), wall.thickness)
+    foot = -wall.base_depth if wall.base and not wall.base_extension else 0.0
+    blocks += side_blocks(wall.sides, SupportedWall(wall.length, float(wall.levels[-1]), wall.thickness, foot))
     small = NARROWEST_PIECE * min(wall.block[0], wall.block[1])
     for k, box in enumerate(boxes):
         pieces = box

@@ -195,3 +195,42 @@ def test_what_is_wrong(says, case_of):
     with pytest.raises(CaseError) as caught:
         assemble(case_of(dimension=3, **tables))
     assert [f"{'.'.join(map(str, p.path))}: {p.message}" for p in caught.value.problems] == [says]
+
+
+ERRORS = [
+    {"height": [-0.0005, 0.0005], "length": {"mean": 0.0, "deviation": 0.0001}, "wedge": 0.0002},
+    {"block": "wall-3-2", "height": 0.0003},
+    {"lean": 0.01, "restack": False},
+]
+
+
+def test_imperfections_are_those_of_the_elevation(case_of, space, wall):
+    """A wall with errors is the planar one extruded, wherever it stands; another one beside it has its own."""
+    turned = wall | {"rotation_deg": 90.0, "origin": [1.0, 2.0, 3.0], "sides": [{"face": "-y", "strip": 0.02}]}
+    flat = assemble(case_of(structure=[wall], imperfection=ERRORS))
+    solid = space(structure=[turned, wall | {"id": "other"}], imperfection=ERRORS)
+    for name in flat.block_ids:
+        i, j = flat.numbers[name], solid.numbers[name]
+        planar = flat.vertices[flat.vertex_blocks == i] + flat.centroids[i]
+        corners = solid.vertices[solid.vertex_blocks == j] + solid.centroids[j]
+        found = np.column_stack([corners[:, 1] - 2.0, corners[:, 2] - 3.0])  # x of the wall runs along y
+        assert found == pytest.approx(np.tile(planar, (2, 1)), abs=1e-12)
+        assert np.unique(corners[:, 0].round(9)) == pytest.approx([0.96, 1.04])
+        assert solid.masses[j] == pytest.approx(flat.masses[i], rel=1e-9)
+    assert solid.masses[solid.numbers["other-3-2"]] != pytest.approx(solid.masses[solid.numbers["wall-3-2"]], rel=1e-6)
+
+
+NO_IMPERFECTIONS = {
+    "imperfection.0.block: a block drawn by hand has no imperfections in 3D; draw it as it is": {"block": "t"},
+    "imperfection.0: block 't' is drawn by hand and has none in 3D: say which 'structure' is meant": {},
+    "imperfection.0.structure: structure 'arch' is of kind 'arch'; only walls, columns and blocks drawn by hand have "
+    "imperfections": {"structure": "arch"},
+}
+
+
+@pytest.mark.parametrize("says", NO_IMPERFECTIONS)
+def test_imperfections_that_there_are_none_of(says, space, wall):
+    table = NO_IMPERFECTIONS[says] | {"height": 0.1}
+    with pytest.raises(CaseError) as caught:
+        space(structure=[wall, ARCH], block=[{"id": "t", "vertices": TETRAHEDRON}], imperfection=[table])
+    assert [f"{'.'.join(map(str, p.path))}: {p.message}" for p in caught.value.problems] == [says]

@@ -43,13 +43,19 @@ def boxes(**wall):
     ],
 )
 def test_where_sides_are(side, expected):
-    found = boxes(sides=[side])
+    found = boxes(sides=[side], base_height=0.3, base_extension=0.2)  # a base with a margin stays below
     made = {name: box for name, box in found.items() if "side" in name}
     assert set(made) == set(expected)
     for name, (low, high) in expected.items():
         assert made[name][0] == pytest.approx(low)
         assert made[name][1] == pytest.approx(high)
         assert made[name][2]
+
+
+def test_sides_go_as_deep_as_a_base_without_a_margin():
+    assert boxes(sides=[{"face": "-y"}], base_height=0.3)["wall-side-1"][0] == pytest.approx([0.0, -1.2, -0.3])
+    assert boxes(sides=[{"face": "-y", "height": 1.5}], base=False)["wall-side-1"][0][2] == 0.0
+    assert boxes(sides=[{"face": "-y", "height": 1.5}])["wall-side-1"][1][2] == 1.5
 
 
 def test_the_wall_touches_its_sides_and_only_they_are_fixed():
