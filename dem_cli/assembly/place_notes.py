@@ -38,8 +38,9 @@ def common_place(model: Model, parts: np.ndarray) -> str:
     found = common(normals[faces], offsets[faces])
     if found is None:
         return ""
-    whole = found.volume >= ALL * model.parts.volumes[parts].min()
-    return f", {found.volume:.3g} m3{' (all of it)' if whole else ''} around {rounded(found.centroid, model.parts.sizes[parts].min())}"
+    whole = " (all of it)" if found.volume >= ALL * model.parts.volumes[parts].min() else ""
+    place = rounded(found.centroid, model.parts.sizes[parts].min())
+    return f", {found.volume:.3g} m3{whole} around {place}"
 
 
 def rounded(point: np.ndarray, size: float) -> str:
