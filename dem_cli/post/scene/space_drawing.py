@@ -73,9 +73,8 @@ class SpaceDrawing:
         self.seen = seen = seen_surface(places, self.starts, self.corners, window)
         normals, sheets = self._sheets(places)
         stone = np.where(self.model.fixed[self.owners, np.newaxis], to_rgb(style.GROUND), to_rgb(style.STONE))
-        lit = np.clip(
-            stone * (_AMBIENT + normals @ (np.array(_LIGHT) * (self.lit_from, 1.0, 1.0)))[:, np.newaxis], 0.0, 1.0
-        )
+        light = np.array(_LIGHT) * (self.lit_from, 1.0, 1.0)
+        lit = np.clip(stone * (_AMBIENT + normals @ light)[:, np.newaxis], 0.0, 1.0)
         colours = np.rint(255.0 * np.concatenate([lit, [(1.0, 1.0, 1.0)]])).astype(np.uint8)  # the last one: nothing
         picture = colours[seen.faces]
         picture[_edges(np.append(sheets, NOTHING)[seen.faces])] = np.rint(255.0 * np.array(to_rgb(style.STONE_EDGE)))
