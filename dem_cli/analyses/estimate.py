@@ -5,6 +5,7 @@ Only the kernels of detection run here; the stepping loop is not compiled.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,7 +120,7 @@ def _joints(case: Case, sim: Simulation) -> Rows:
     rows = [("joints", f"{number:,}{near}, {len(sim.joints.kn):,} contact points")]
     materials = sim.model.block_material[sim.joints.blocks]
     named = sim.properties.by_material[materials[:, 0], materials[:, 1]]
-    bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], 1]) > BED
+    bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], sim.model.dimension - 1]) > BED
     for k, name in enumerate(sim.properties.names):
         here = named == k
         count = int((here & bed).sum())
@@ -210,14 +211,22 @@ def _load(case: Case, model: Model) -> str:
     if pattern is None:
         moved = f", {len(case.settlement)} support(s) moved" if case.settlement else ""
         return f"dead loads only{moved}"
-    fx, fy = model.live_loads[:, : model.dimension].sum(axis=0)
-    total = f"[{fx + 0.0:.4g}, {fy + 0.0:.4g}] N"
+    forces = model.live_loads[:, : model.dimension].sum(axis=0) + 0.0
+    total = f"[{', '.join(f'{force:.4g}' for force in forces)}] N"
     what = {
         "mass": f"λ × weight of each block along {list(case.analysis.direction)}",
         "live": "λ × live loads",
-        "tilt": f"table turned by atan λ towards {'+x' if case.analysis.direction[0] > 0 else '−x'}",
+        "tilt": f"table turned by atan λ towards {_side(case.analysis.direction[:-1])}",
     }[pattern]
     return f"{pattern}: {what}; {total} at λ = 1"
+
+
+def _side(sideways: Sequence[float]) -> str:
+    """Where a table tilts: +x, −y, or a horizontal direction."""
+    along = [i for i, part in enumerate(sideways) if part != 0.0]
+    if len(along) == 1:
+        return f"{'+' if sideways[along[0]] > 0.0 else '−'}{'xy'[along[0]]}"
+    return str(list(sideways))
 
 
 def _monitors(case: Case) -> str:

@@ -127,18 +127,18 @@ def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
 def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     """The structure moved along a mode so far that it can be seen; `step` is the number of the mode."""
     settings = sim.settings.modes
-    model, d = sim.model, sim.model.dimension
+    model, d, rotations = sim.model, sim.model.dimension, sim.model.rotations
     free = ~model.fixed
-    reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, d:]).max(axis=1) * sim.shape.radii
+    reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, rotations]).max(axis=1) * sim.shape.radii
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
-    turn = float(np.abs(shape[:, d:]).max())
+    turn = float(np.abs(shape[:, rotations]).max())
     amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
     return rest._replace(
         step=number,
         displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
         positions=rest.positions + amplitude * shape[:, :d],
-        orientations=rest.orientations + amplitude * shape[:, d:],
+        orientations=rest.orientations + amplitude * shape[:, rotations],
         velocities=np.zeros_like(rest.velocities),
     )
 

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.drawn_blocks import drawn_block
+from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.cross_references import check_names
-from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
-from dem_cli.geometry import polygon
-from dem_cli.geometry.rotation import cross
-from dem_cli.model.blocks import Block
+from dem_cli.case.wording import show
+from dem_cli.errors import CaseError, CaseProblem, dotted
+from dem_cli.geometry.rotation import moments
+from dem_cli.model.blocks import Block, block_corners
+from dem_cli.model.bodies import bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import GENERATORS
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import BlockTable, Case
+    from dem_cli.case.schema import Case
+
+
+ALONG_AXIS = 1e-9  # of a force: round-off
+IMPERFECT = {2: imperfect, 3: imperfect_in_space}
 
 
 class Assembly(NamedTuple):
@@ -34,8 +41,8 @@ class PointLoad(NamedTuple):
     """A [[load]] with its block found."""
 
     block: int
-    force: np.ndarray  # [N], (2,)
-    arm: np.ndarray  # from the centroid to the point of application [m], (2,)
+    force: np.ndarray  # [N], (d,)
+    arm: np.ndarray  # from the centroid to the point of application [m], (d,)
     dead: bool
 
 
@@ -53,7 +60,7 @@ def assembly(case: Case) -> Assembly:
         raise CaseError(problems)
     doubts: list[CaseProblem] = []
     if case.imperfection:  # names and numbers are those of the blocks as drawn
-        blocks, doubts = imperfect(case, body, blocks)
+        blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
         body = _bodies(case, blocks, names)
     loads = _point_loads(case, body)
     return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts))
@@ -76,10 +83,10 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
             problems.append(CaseProblem(("structure", i, *keys), str(error)))
             continue
         local[parameters.id] = generated
-        blocks += place(generated, parameters, ("structure", i))
+        blocks += place(generated, parameters, ("structure", i), case.dimension)
     for i, table in enumerate(case.block):
         try:
-            blocks.append(_explicit(table, i))
+            blocks.append(drawn_block(table, i, case.dimension))
         except CaseError as error:
             problems += error.problems
     problems += _repeated_names(blocks)
@@ -105,22 +112,6 @@ def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:
     return names, np.array(table, np.int64)
 
 
-def _explicit(table: BlockTable, i: int) -> Block:
-    """The block of the i-th [[block]]; raises CaseError with a problem for each bad piece."""
-    pieces: list[tuple[KeyPath, Sequence[Any]]] = [(("parts", k), part) for k, part in enumerate(table.parts or ())]
-    if table.vertices is not None:
-        pieces = [(("vertices",), table.vertices)]
-    parts, problems = [], []
-    for key, corners in pieces:
-        try:
-            parts.append(polygon.in_order(corners))
-        except ValueError as error:
-            problems.append(CaseProblem(("block", i, *key), str(error)))
-    if problems:
-        raise CaseError(problems)
-    return Block(table.id, tuple(parts), table.material, table.thickness, table.fixed, ("block", i))
-
-
 def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
     first: dict[str, Block] = {}
     problems = []
@@ -135,42 +126,32 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
 
 
 def _sorted(blocks: list[Block]) -> list[Block]:
-    """From the lowest up, from left to right: neighbours get numbers close to each other."""
-    lows = np.array([np.concatenate(block.parts).min(axis=0) for block in blocks])
+    """From the lowest up, then along x, in space also along y: neighbours get numbers close to each other."""
+    lows = np.array([block_corners(block).min(axis=0) for block in blocks])
     step = 1e-6 * (float(np.ptp(lows, axis=0).max()) or 1.0)  # against round-off within a course
-    order = np.lexsort((lows[:, 0], np.rint(lows[:, 1] / step)))
+    *sideways, up = lows.T
+    order = np.lexsort((sideways[-1], *(np.rint(axis / step) for axis in (*sideways[-2::-1], up))))
     return [blocks[i] for i in order]
 
 
 def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Model:
     """The model with its masses, still without loads; names: aliases of blocks."""
-    n = len(blocks)
-    parts = [part for block in blocks for part in block.parts]
-    part_blocks = np.repeat(np.arange(n), [len(block.parts) for block in blocks])
-    part_starts = np.concatenate([[0], np.cumsum([len(part) for part in parts])])
-    vertices = np.concatenate(parts)
-    areas = polygon.compound(polygon.properties_of_all(vertices, part_starts), part_blocks, n)
     materials = list(case.materials)
     index = {name: k for k, name in enumerate(materials)}
     material = np.array([index[block.material] for block in blocks], np.int64)
     thickness = np.array([block.thickness for block in blocks])
     density = np.array([m.density for m in case.materials.values()])[material]
-    vertex_blocks = np.repeat(part_blocks, np.diff(part_starts))
+    bodies = bodies_of(case.dimension, [block.parts for block in blocks], density, thickness)
+    n, n_dof = len(blocks), case.dimension + bodies.inertias.shape[1]
     return Model(
-        dimension=2,
+        **bodies._asdict(),
         block_ids=tuple(block.id for block in blocks),
         material_names=tuple(materials),
         block_material=material,
         fixed=np.array([block.fixed for block in blocks]),
         thickness=thickness,
-        masses=density * thickness * areas.area,
-        inertias=(density * thickness * areas.polar_moment)[:, None],
-        centroids=areas.centroid,
-        part_blocks=part_blocks.astype(np.int64),
-        part_starts=part_starts.astype(np.int64),
-        vertices=vertices - areas.centroid[vertex_blocks],
-        dead_loads=np.zeros((n, 3)),
-        live_loads=np.zeros((n, 3)),
+        dead_loads=np.zeros((n, n_dof)),
+        live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
     )
 
@@ -179,47 +160,70 @@ def _point_loads(case: Case, model: Model) -> list[PointLoad]:
     loads = []
     for load in case.load:
         block = model.numbers[load.block]
-        arm = np.zeros(2) if load.at is None else np.array(load.at) - model.centroids[block]
+        arm = np.zeros(model.dimension) if load.at is None else np.array(load.at) - model.centroids[block]
         loads.append(PointLoad(block, np.array(load.force), arm, load.kind == "dead"))
     return loads
 
 
 def _with_loads(case: Case, model: Model, loads: Sequence[PointLoad]) -> Model:
     """Dead loads: weight and dead point loads. Live loads: by the pattern of the analysis, or zero."""
-    dead = [load for load in loads if load.dead]
+    d, dead = model.dimension, [load for load in loads if load.dead]
     pattern = getattr(case.analysis, "pattern", None)
-    weight = np.zeros((model.n_blocks, 3))
-    weight[:, 1] = -model.masses * case.gravity
+    weight = np.zeros_like(model.dead_loads)
+    weight[:, d - 1] = -model.masses * case.gravity
     free = ~model.fixed[:, None]
-    live = np.zeros((model.n_blocks, 3))
+    live = np.zeros_like(model.live_loads)
     if pattern == "mass":
-        live[:, :2] = -weight[:, 1:2] * _direction(case)
+        live[:, :d] = -weight[:, d - 1 : d] * _direction(case)
     elif pattern == "tilt":
-        turn = np.array([[0.0, -1.0], [1.0, 0.0]]) * np.sign(_direction(case)[0])
-        live[:, :2] = weight[:, :2] @ turn.T
-        live += _resultants(model.n_blocks, [load._replace(force=turn @ load.force) for load in dead])
+        turn = _quarter_turn(case)
+        live[:, :d] = weight[:, :d] @ turn.T
+        live += _resultants(model, [load._replace(force=turn @ load.force) for load in dead])
     elif pattern == "live":
-        live = _resultants(model.n_blocks, [load for load in loads if not load.dead])
-    dead_loads = weight + _resultants(model.n_blocks, dead)
+        live = _resultants(model, [load for load in loads if not load.dead])
+    dead_loads = weight + _resultants(model, dead)
     return model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
 
 
 def _direction(case: Case) -> np.ndarray:
-    """The direction of the analysis as a unit vector, (2,)."""
+    """The direction of the analysis as a unit vector, (d,)."""
     direction = np.array(case.analysis.direction, float)
-    length = np.hypot(*direction)
+    length = np.hypot.reduce(direction)
     if length == 0.0:
-        problem = CaseProblem(("analysis", "direction"), "[0, 0] is not allowed; a direction has a length")
-        raise CaseError([problem])
-    if case.analysis.pattern == "tilt" and direction[0] == 0.0:
-        message = "a table tilts towards +x or −x; the direction must have an x component"
+        message = f"{show(case.analysis.direction)} is not allowed; a direction has a length"
         raise CaseError([CaseProblem(("analysis", "direction"), message)])
     return direction / length
 
 
-def _resultants(n_blocks: int, loads: Sequence[PointLoad]) -> np.ndarray:
-    """Forces and moments about the centroids, (n_blocks, 3) [N, N m]."""
-    total = np.zeros((n_blocks, 3))
+def _quarter_turn(case: Case) -> np.ndarray:
+    """What a table does to forces, seen from it, once it has tilted by 90° towards the direction of the case, (d, d).
+
+    About the horizontal axis square to the direction: what pulled down pulls along it. At an angle θ on the way, dead
+    loads are cos θ of themselves and sin θ of themselves so turned. Raises CaseError where they are not: without a
+    direction, or for a dead force along the axis, which stays what it is.
+    """
+    towards, up = _direction(case), np.zeros(case.dimension)
+    towards[-1], up[-1] = 0.0, 1.0
+    length = np.hypot.reduce(towards)
+    if length == 0.0:
+        way = {
+            2: "towards +x or −x; the direction must have an x component",
+            3: "sideways; the direction is horizontal",
+        }
+        raise CaseError([CaseProblem(("analysis", "direction"), f"a table tilts {way[case.dimension]}")])
+    towards /= length
+    for i, load in enumerate(case.load):
+        force = np.array(load.force)
+        along = force - (force @ towards) * towards - (force @ up) * up
+        if load.kind == "dead" and np.hypot.reduce(along) > ALONG_AXIS * np.hypot.reduce(force):
+            message = f"{show(load.force)} is not allowed: it has a part along the axis about which the table tilts"
+            raise CaseError([CaseProblem(("load", i, "force"), message)])
+    return np.outer(up, towards) - np.outer(towards, up)
+
+
+def _resultants(model: Model, loads: Sequence[PointLoad]) -> np.ndarray:
+    """Forces and moments about the centroids, (n_blocks, n_dof) [N, N m]."""
+    total = np.zeros_like(model.dead_loads)
     for load in loads:
-        total[load.block] += [*load.force, cross(load.arm, load.force)]
+        total[load.block] += [*load.force, *moments(load.arm[None], load.force[None])[0]]
     return total

@@ -12,7 +12,7 @@ from dem_cli.assembly.assemble import joint_table
 from dem_cli.case.plausibility import SHAKES, BlockSizes, size_doubts
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem
-from dem_cli.geometry.rotation import cross
+from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -45,14 +45,15 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProble
 def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
     free = np.flatnonzero(~model.fixed).tolist()
     corners = undeformed(model)[np.isin(model.vertex_blocks, free)]
-    sizes = np.sqrt(model.shapes.volumes[free])
+    sizes = model.shapes.volumes[free] ** (1.0 / model.dimension)
     return BlockSizes(
         [model.block_ids[i] for i in free],
         [blocks[i].path for i in free],
         sizes.tolist(),
         model.thickness[free].tolist(),
         float(np.median(sizes)) if len(free) else 0.0,
-        float(np.hypot(*np.ptp(corners, axis=0))) if len(free) else 0.0,
+        float(np.hypot.reduce(np.ptp(corners, axis=0))) if len(free) else 0.0,
+        model.dimension,
     )
 
 
@@ -106,7 +107,7 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
     for i, load in enumerate(case.load):
         away = _away(case, model, i)
-        if away > np.hypot(*(high - low)):
+        if away > np.hypot.reduce(high - low):
             message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
@@ -117,16 +118,9 @@ def _away(case: Case, model: Model, i: int) -> float:
     load = case.load[i]
     if load.at is None:
         return 0.0
-    topology, number = model.topology, model.numbers[load.block]
-    own = model.part_blocks[topology.face_parts] == number
-    start, end = undeformed(model)[topology.ends[own]].swapaxes(0, 1)
-    along, to_point = end - start, np.array(load.at) - start
-    share = np.clip((to_point * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    distance = np.hypot(*(to_point - share[:, None] * along).T)
-    outside = cross(along, to_point) < 0.0
-    parts = topology.face_parts[own]
-    within = any(not outside[parts == part].any() for part in np.unique(parts))
-    return 0.0 if within else float(distance.min())
+    number, corners, starts = model.numbers[load.block], undeformed(model), model.part_starts
+    own = np.flatnonzero(model.part_blocks == number)
+    return min(distance(corners[starts[p] : starts[p + 1]], np.array(load.at)) for p in own)
 
 
 def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
@@ -135,16 +129,16 @@ def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
     A lower estimate: their whole weight on joints as long as they are wide together, in median smallest edges.
     """
     names, by_material = joint_table(case)
-    corners = undeformed(model)
+    corners, d = undeformed(model), model.dimension
     for k, name in enumerate(names):
         kn = case.joints[name].kn
         having = (by_material == k).any(axis=1)[model.block_material] & ~model.fixed
         if kn == "auto" or not having.any():
             continue
-        width = float(np.ptp(corners[having[model.vertex_blocks], 0]))
-        weight = float(np.hypot(*model.dead_loads[having, :2].sum(axis=0)))
+        plan = float(np.prod(np.ptp(corners[having[model.vertex_blocks], : d - 1], axis=0)))  # [m^(d-1)]
+        weight = float(np.hypot.reduce(model.dead_loads[having, :d].sum(axis=0)))
         edge = float(np.median(model.shapes.edges[having]))
-        sinks = weight / (width * float(model.thickness[having].mean()) * kn)
+        sinks = weight / (plan * float(model.thickness[having].mean()) * kn)
         if sinks > SINKS * edge:
             units = [unit for unit, factor in STIFFNESS_UNITS.items() if sinks <= 0.01 * SINKS * edge * factor]
             hint = f"; did you mean {show(kn)} {' or '.join(units)}?" if units else ""

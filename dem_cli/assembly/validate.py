@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.place_notes import NOTES
+from dem_cli.case.wording import show
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
 from dem_cli.contact.gaps import CLOSING_GAP, joined, joint_reach
 from dem_cli.contact.layout import PointLayout, steepest
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import unturned
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
@@ -27,6 +30,12 @@ MASS_RATIO = 1e6  # heaviest over lightest free block
 STEEPEST_SIDE = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
 REMOTE_STRUCTURE = 1e8  # distance from the origin over the size of a typical free part
 SHOWN_MISTAKES = 5  # mistakes of one sort that are reported one by one
+
+
+NO_SIZE = {  # what is said of a part that is flat
+    2: "has no area, or its corners run clockwise",
+    3: "has no volume, or its faces look inwards",
+}
 
 
 class Neighbours(NamedTuple):
@@ -125,12 +134,12 @@ def warnings(model: Model) -> list[str]:
     if not free.any():
         return ["every block is fixed: nothing can move"]
     part = np.nonzero(free[model.part_blocks])[0]
-    sizes, areas = model.parts.sizes[part], model.parts.volumes[part]
+    sizes, widths = model.parts.sizes[part], _widths(model)[part]
     names = [model.block_ids[i] for i in model.part_blocks[part]]
     block = np.nonzero(free)[0]
     return [
         *_remote(model, float(np.median(sizes))),
-        *_slivers(areas / sizes**2, names),
+        *_slivers(widths / sizes, names),
         *_spread("size", sizes, names, SIZE_RATIO),
         *_spread("mass", model.masses[block], [model.block_ids[i] for i in block], MASS_RATIO),
     ]
@@ -142,17 +151,23 @@ def _remote(model: Model, size: float) -> list[str]:
     Solvers count coordinates from the structure (model.scales.origin_of); what the case says cannot be mended.
     """
     low, high = model.centroids.min(axis=0), model.centroids.max(axis=0)
-    away = float(np.hypot(*np.maximum(np.maximum(low, -high), 0.0)))
+    away = float(np.hypot.reduce(np.maximum(np.maximum(low, -high), 0.0)))
     if away <= REMOTE_STRUCTURE * size:
         return []
+    from_origin = f"{away:.3g} m from {show([0] * model.dimension)}, {away / size:.1e} times the size of one"
     return [
-        f"the blocks lie {away:.3g} m from [0, 0], {away / size:.1e} times the size of one: too few digits are left to "
-        "say which faces touch; shift the structure to the origin"
+        f"the blocks lie {from_origin}: too few digits are left to say which faces touch; "
+        "shift the structure to the origin"
     ]
 
 
+def _widths(model: Model) -> np.ndarray:
+    """About the smallest side of each part [m], (n_parts,)."""
+    return shapes_of(model.vertices).widths(model.vertices, model.part_starts, model.topology)
+
+
 def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
-    """`slim`: area over the square of the diagonal, about width over length."""
+    """`slim`: width over the diagonal, of each part."""
     wrong = np.nonzero(slim < SLIVER_WIDTH)[0]
     if not wrong.size:
         return []
@@ -171,11 +186,12 @@ def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """Parts without area or not convex."""
-    least = polygon.ROUND_OFF * model.parts.sizes**2
+    least = polygon.ROUND_OFF * model.parts.sizes**model.dimension
     flat = model.parts.volumes <= least
-    bent = ~polygon.are_convex(model.vertices, model.part_starts) & ~flat
+    shapes = shapes_of(model.vertices)
+    bent = ~shapes.are_convex(model.vertices, model.part_starts, model.topology, model.parts.sizes) & ~flat
     found = []
-    for wrong, what in ((flat, "has no area, or its corners run clockwise"), (bent, "is not convex")):
+    for wrong, what in ((flat, NO_SIZE[model.dimension]), (bent, "is not convex")):
         hit = np.unique(model.part_blocks[wrong])
         found += _first_few([(blocks[i].path, f"block '{blocks[i].id}' {what}") for i in hit])
     return found
@@ -192,8 +208,8 @@ def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, no
             continue
         seen.add(pair)
         first, second = (blocks[i] for i in pair)
-        depth = -near.separation[k]
-        found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth:.3g} m{note}"))
+        depth = f"{-near.separation[k]:.3g} m{NOTES[model.dimension].overlap(model, near.parts[k])}"
+        found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth}{note}"))
     return _first_few(found)
 
 
@@ -209,6 +225,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
         block, depth = near.blocks[k, 0], -near.separation[k]
         p, q = near.parts[k] - first_part[block] + 1
         message = f"parts {p} and {q} of block '{blocks[block].id}' overlap by {depth:.3g} m"
+        message += NOTES[model.dimension].overlap(model, near.parts[k])
         found.append((blocks[block].path, message))
     touching = same & joined(near.separation, near.scale)
     group = _components(model.n_parts, near.parts[touching])
@@ -229,7 +246,7 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
         i, j, gap = _nearest_pair(model, inside)
         others = int(inside.sum()) - 1
         also = f" and {others} more touching it" if others else ""
-        message = f"nothing holds up block '{blocks[i].id}'{also}"
+        message = f"nothing holds up block '{blocks[i].id}'{NOTES[model.dimension].place(model, i)}{also}"
         message += f"; the nearest other block is '{blocks[j].id}', about {gap:.3g} m away"
         found.append((blocks[i].path, message))
     return _first_few(found)
@@ -263,7 +280,7 @@ def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
     high = np.maximum.reduceat(corners, starts, axis=0)
     i = int(np.nonzero(inside)[0][0])
     gaps = np.maximum(np.maximum(low - high[i], low[i] - high), 0.0)
-    distance = np.where(inside, np.inf, np.hypot(*gaps.T))
+    distance = np.where(inside, np.inf, np.hypot.reduce(gaps, axis=1))
     j = int(np.argmin(distance))
     return i, j, float(distance[j])
 

@@ -123,12 +123,12 @@ def loops(sim: Simulation) -> dict[str, Callable]:
     """Stepping loops that do the same motion, by what they have."""
     from dem_cli.bench.bare_loop import make_bare
     from dem_cli.engine.loops import compiled_advance
-    from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+    from dem_cli.kernels.contact_forces import make_contact_forces
     from dem_cli.kernels.drift import drift_centroids, drift_corners
     from dem_cli.kernels.planar_forces import make_planar_forces
 
     if sim.kinematics == "fixed":
-        parts = (of_bodies(make_contact_forces(sim.law.function, integrates_gap=True)), drift_centroids)
+        parts = (make_contact_forces(sim.law.function), drift_centroids)
     else:
         parts = (make_planar_forces(sim.law.function), drift_corners)
     full = compiled_advance(sim.kinematics, sim.law)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
-PACKAGES = ("numpy", "numba", "scipy", "clarabel", "pymunk", "Box2D")
+PACKAGES = ("numpy", "numba", "scipy", "clarabel", "pymunk", "Box2D", "mujoco-core", "compas_cra")
 
 
 def one_thread() -> None:

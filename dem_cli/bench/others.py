@@ -83,13 +83,14 @@ def page(records: list[Measurement]) -> list[str]:
     ):
         chosen = [r for r in records if r.case in names]
         if chosen:
-            lines += ["", f"{title}: error · CPU seconds.", "", *_table(chosen, names)]
+            lines += ["", f"{title}: error · CPU seconds.", "", *table(chosen, names)]
     best = [line for program in dict.fromkeys(r.axis for r in records) for line in _best(records, program)]
     return [*lines, "", *best]
 
 
-def _table(records: list[Measurement], names: tuple[str, ...]) -> list[str]:
-    cells = {(r.axis, r.value, r.case): _cell(r) for r in records}
+def table(records: list[Measurement], names: tuple[str, ...]) -> list[str]:
+    """Programs and settings against structures: error · CPU seconds."""
+    cells = {(r.axis, r.value, r.case): cell(r) for r in records}
     shown = [name for name in names if any(r.case == name for r in records)]
     rows = [
         (program, str(setting), *(cells.get((program, setting, name), "") for name in shown))
@@ -98,7 +99,8 @@ def _table(records: list[Measurement], names: tuple[str, ...]) -> list[str]:
     return lines_of(("program", "setting", *shown), rows)
 
 
-def _cell(r: Measurement) -> str:
+def cell(r: Measurement) -> str:
+    """Error and CPU seconds of a load."""
     load = r.found["load"]
     error = r.found["error"]
     what = "falls by itself" if load == 0.0 else percent(error) if error is not None else r.found["status"]

@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.joints import empty_contacts
-from dem_cli.kernels.records import Contacts, Joints
+from dem_cli.kernels.records import Contacts, FixedJoints
 
 if TYPE_CHECKING:
     from dem_cli.engine.tracking import JointTracking
@@ -23,10 +23,10 @@ def shares(layout: str) -> np.ndarray:
     return (np.arange(n) + 0.5) / n if layout.endswith("inside") else np.linspace(0.0, 1.0, n)
 
 
-def refined(joints: Joints, contacts: Contacts, places: np.ndarray) -> tuple[Joints, Contacts]:
+def refined(joints: FixedJoints, contacts: Contacts, places: np.ndarray) -> tuple[FixedJoints, Contacts]:
     """The same joints with points at `places` along them, the same stiffness in all; unloaded contacts.
 
-    Levers and gaps are linear between the two ends, because both have the same frame.
+    Gaps are linear between the two ends, because both have the same frame.
     """
     n, m = len(joints.blocks), len(places)
 
@@ -37,9 +37,7 @@ def refined(joints: Joints, contacts: Contacts, places: np.ndarray) -> tuple[Joi
 
     joints = joints._replace(
         starts=np.arange(0, n * m + 1, m),
-        frames=joints.frames[0::2].repeat(m, axis=0),
-        levers=between(joints.levers),
-        points=between(joints.points),
+        places=between(joints.places),
         kn=joints.kn[0::2].repeat(m) * (2.0 / m),
         ks=joints.ks[0::2].repeat(m) * (2.0 / m),
     )
@@ -62,7 +60,7 @@ def points_per_joint(layout: str) -> Iterator[None]:
 
         def _track(self, n_memory: int, reach: float) -> JointTracking:
             tracking = super()._track(n_memory, reach)
-            if layout != "2" and not tracking.moves:
+            if layout != "2" and isinstance(tracking.joints, FixedJoints):
                 joints, contacts = refined(tracking.joints, tracking.contacts, places)
                 tracking.take(JointArrays(joints, tracking.geometry, contacts))
             return tracking

@@ -22,10 +22,13 @@ GROUPS = {  # name -> title, in the order of the page
     "sweeps": "Sweeps",
     "features": "Cost of features",
     "others": "Beside pymunk and Box2D",
+    "spatial": "Growth with size in space",
+    "peers": "Beside MuJoCo and compas_cra, in space",
     "startup": "From shell to shell",
 }
+PLACES = {"spatial": "spatial.sizes", "peers": "spatial.peers"}  # where a group is no module of its name
 
 
 def module(name: str) -> Any:
     """The module of a group, imported when it is used."""
-    return import_module(f"dem_cli.bench.{name}")
+    return import_module(f"dem_cli.bench.{PLACES.get(name, name)}")

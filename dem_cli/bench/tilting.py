@@ -44,7 +44,7 @@ class EngineWorld(Protocol):
         """Go on by so many time steps."""
 
     def places(self) -> np.ndarray:
-        """Centroids of the free blocks in the engine's units, (n_free, 2)."""
+        """Centroids of the free blocks in the engine's units, (n_free, d)."""
 
 
 def stands(world: EngineWorld, setting: EngineSettings, load: float) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
+from dem_cli.case.base import CaseModel, KeyProblem, Positive, Vector
 from dem_cli.laws.profile import ProfileShape, pair
 
 
@@ -47,7 +47,7 @@ class Calibration(CaseModel):
     block: str | None = Field(
         default=None, description="id of the block whose centroid was watched", examples=["column-14"]
     )
-    point: Pair | None = Field(
+    point: Vector | None = Field(
         default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 0.5]]
     )
     component: Literal["x", "y"] | None = Field(

@@ -11,9 +11,14 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from dem_cli.case.vector import VectorLength
+
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
-Pair = tuple[float, float]  # a point, vector or force in the x–y plane
+Name = Annotated[str, Field(min_length=1)]
+Pair = tuple[float, float]  # two numbers, whatever the dimension of the case
+Vector = Annotated[tuple[float, ...], VectorLength(2, 3)]  # a point, vector or force in the space of the case
+Twist = Annotated[tuple[float, ...], VectorLength(3, 6)]  # a vector, then turns: about z, in space about x, y and z
 
 
 class KeyProblem(ValueError):
@@ -50,11 +55,13 @@ class StructureBase(CaseModel):
     material: str = Field(
         default="", description="a name in [materials]; may be left out when there is only one", examples=["stone"]
     )
-    origin: Pair = Field(
+    origin: Vector = Field(
         default=(0.0, 0.0), description="where the structure's own origin is placed [m]", examples=[[3.0, 0.0]]
     )
     rotation_deg: float = Field(
-        default=0.0, description="turned about its origin, counter-clockwise [deg]", examples=[5.0]
+        default=0.0,
+        description="turned about its origin, counter-clockwise; in 3D in plan, about the vertical [deg]",
+        examples=[5.0],
     )
 
     @property

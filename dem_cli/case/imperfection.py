@@ -30,7 +30,8 @@ class Imperfection(CaseModel):
     Errors are in the axes of the structure before it is turned. A number is the same for every block; [least, most]
     is drawn uniformly and { mean, deviation } normally, for each block from `seed`, the number of the table and
     the name of the block, so that it does not depend on what other blocks there are. Errors of several tables add
-    up; the blocks are laid again with all errors of tables with `restack`, those of the others come on top.
+    up; the blocks are laid again with all errors of tables with `restack`, those of the others come on top. In 3D
+    errors are those of structures alone, in the plane in which they are drawn: x along them, y upwards.
     """
 
     block: str | None = Field(

@@ -18,6 +18,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from dem_cli.case.base import OneOrMoreSchema
+from dem_cli.case.dimensions import known_in
 from dem_cli.case.wording import DeclaredType, allowed, is_table, kind_of
 
 NAME_PLACEHOLDER = "NAME"  # stands for a name of the user's choice: [materials.NAME]
@@ -50,12 +51,23 @@ class CaseTable(NamedTuple):
         return f"[[{name}]]" if self.several else f"[{name}]"
 
     @property
+    def dimension(self) -> int | None:
+        """The only dimension of cases that may have it, or this kind of it; None: both."""
+        inside = (known_in(self.path[:k]) for k in range(1, len(self.path) + 1))
+        of_kind = known_in((*self.path, self.tag), self.kinds[0]) if self.tag and self.kinds else None
+        return next(filter(None, inside), None) or of_kind
+
+    @property
     def about(self) -> str:
         """What it is: its docstring without the heading there, a paragraph a line; of a law, that of the module."""
         source = sys.modules[self.declared.__module__] if self.tag == "law" else self.declared
         paragraphs = re.split(r"\n\s*\n", inspect.cleandoc(source.__doc__ or ""))
         lines = [" ".join(paragraph.split()) for paragraph in paragraphs]
-        return lines[0] if self.tag == "law" else HEADING.sub("", "\n".join(lines)) or self.said
+        text = lines[0] if self.tag == "law" else HEADING.sub("", "\n".join(lines)) or self.said
+        first, *others = text.split("\n")
+        if self.dimension is not None:
+            first = first.rstrip(".") + only_in(self.dimension) + "." * first.endswith(".")
+        return "\n".join([first, *others])
 
     @property
     def keys(self) -> list[CaseKey]:
@@ -75,6 +87,11 @@ class CaseKey(NamedTuple):
     def path(self) -> str:
         """With the table: joints.NAME.friction."""
         return ".".join((*self.table.path, self.name))
+
+    @property
+    def dimension(self) -> int | None:
+        """The only dimension of cases that may have it, where its table is in both; None: both."""
+        return None if self.table.dimension else known_in((*self.table.path, self.name))
 
     @property
     def kind(self) -> DeclaredType:
@@ -102,7 +119,8 @@ class CaseKey(NamedTuple):
     def meaning(self) -> str:
         """In words, without the default and, where there is only one, the unit."""
         text = DEFAULT.sub("", self.description)
-        return (BRACKETS.sub("", text) if len(self.units) == 1 else text).strip()
+        text = (BRACKETS.sub("", text) if len(self.units) == 1 else text).strip()
+        return text + only_in(self.dimension)
 
     @property
     def allowed(self) -> str:
@@ -144,6 +162,24 @@ class CaseKey(NamedTuple):
         """A line with it, without the table; empty for a table of tables that has sections of its own."""
         value = self.field.examples[0] if self.field.examples else self._default
         return "" if value in EMPTY_VALUES else f"{self.name} = {toml(value)}"
+
+
+def only_in(dimension: int | None) -> str:
+    """The remark about a table or key that cases of one dimension alone may have."""
+    return "" if dimension is None else f" ({dimension}D only)"
+
+
+def json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    """JSON Schema of a case file; descriptions say what cases of one dimension alone may have."""
+    schema = model.model_json_schema()
+    for table in tables(model):
+        place = schema["$defs"][table.declared.__name__] if table.path else schema
+        if table.dimension is not None:
+            place["description"] = table.about
+        for key in table.keys:
+            if key.dimension is not None:
+                place["properties"][key.name]["description"] = key.description + only_in(key.dimension)
+    return schema
 
 
 def tables(model: type[BaseModel]) -> list[CaseTable]:

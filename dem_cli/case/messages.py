@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from dem_cli.case.base import KeyProblem
+from dem_cli.case.vector import OTHER_DIMENSION
 from dem_cli.case.wording import (
     DeclaredType,
     allowed,
@@ -41,7 +43,11 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
     found: list[CaseProblem] = []
     unions: dict[KeyPath, list[tuple[ErrorLocation, Any]]] = {}
-    for item in error.errors(include_url=False):
+    errors = error.errors(include_url=False)
+    within = {item["loc"][:k] for item in errors for k in range(len(item["loc"]))}
+    for item in errors:
+        if item["type"] == "too_short" and item["loc"] in within:  # for want of items that are wrong themselves
+            continue
         if item["type"] == "missing" and isinstance(item["loc"][-1], int):  # the list is too short
             item["type"], item["loc"] = "too_short", item["loc"][:-1]
         spot = follow(model, item["loc"], item["type"])
@@ -59,7 +65,24 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
             found.append(CaseProblem(path, not_allowed(value_at(data, path), kinds)))
     meant = {(*p.path[:-1], name) for p in found if p.at_key for name in re.findall("did you mean '(.*)'", p.message)}
     found = [p for p in found if p.path not in meant or not p.message.startswith("missing")]
-    return list(dict.fromkeys(found))
+    return first_of_list(list(dict.fromkeys(found)))
+
+
+def first_of_list(found: Sequence[CaseProblem]) -> list[CaseProblem]:
+    """Of vectors of one list that are of another dimension, the first says how many there are: all have one cause."""
+    alike: dict[KeyPath, list[CaseProblem]] = {}
+    for problem in found:
+        if isinstance(problem.path[-1] if problem.path else "", int) and problem.message.endswith(OTHER_DIMENSION):
+            alike.setdefault(problem.path[:-1], []).append(problem)
+    more = {several[0]: len(several) - 1 for several in alike.values()}
+    left_out = {problem for several in alike.values() for problem in several[1:]}
+    return [
+        replace(problem, message=f"{problem.message} (and {more[problem]} more in this list)")
+        if more.get(problem)
+        else problem
+        for problem in found
+        if problem not in left_out
+    ]
 
 
 def describe(spot: ErrorLocation, item: Any, data: dict[str, Any]) -> CaseProblem:

@@ -57,9 +57,10 @@ USUAL = {
     "jcs": STRENGTH,
     # a barrel vault; the largest stone ever moved; many blocks of an arch or a wall
     "thickness": UsualRange(0.0, 50.0, "m", "the depth of a structure", (0.02, 5.0), LENGTHS),
-    "block": UsualRange(0.0, 20.0, "m", "the size of a block, root of its area", (0.02, 5.0), LENGTHS),
-    "blocks": UsualRange(0.0, 8.0, "m", "the size of blocks, root of their area", (0.02, 5.0), LENGTHS),
+    "block": UsualRange(0.0, 20.0, "m", "the size of a block, {root}", (0.02, 5.0), LENGTHS),
+    "blocks": UsualRange(0.0, 8.0, "m", "the size of blocks, {root}", (0.02, 5.0), LENGTHS),
 }  # fmt: skip
+ROOTS = {2: "root of {} area", 3: "cube root of {} volume"}  # dimension -> what the size of a block is
 STEEPEST = 2.0  # friction coefficient, tan(63°)
 
 
@@ -120,9 +121,10 @@ def _live_doubts(case: Case) -> Iterator[CaseProblem]:
     if pattern == "live" and "direction" in case.analysis.model_fields_set:
         yield CaseProblem(("analysis", "direction"), "not used: pattern = 'live' has its own directions", at_key=True)
     elif pattern == "mass":
-        x, y = case.analysis.direction
-        if math.hypot(x, y) > 0.0 and abs(x) <= VERTICAL * math.hypot(x, y):
-            what = "heavier" if y < 0.0 else "lighter"
+        *sideways, up = case.analysis.direction
+        length = math.hypot(*sideways, up)
+        if length > 0.0 and math.hypot(*sideways) <= VERTICAL * length:
+            what = "heavier" if up < 0.0 else "lighter"
             message = f"along gravity: blocks become {what}, and nothing pushes them sideways"
             yield CaseProblem(("analysis", "direction"), message)
 
@@ -132,17 +134,20 @@ class BlockSizes(NamedTuple):
 
     ids: Sequence[str]
     paths: Sequence[KeyPath]  # of the tables that they come from
-    sizes: Sequence[float]  # root of the area [m]
+    sizes: Sequence[float]  # root of the area, cube root of the volume [m]
     thickness: Sequence[float]  # depth out of plane [m]
     median: float  # of the sizes [m]
     extent: float  # of all of them together [m]
+    dimension: int
 
 
 def size_doubts(blocks: BlockSizes) -> Iterator[CaseProblem]:
     """Warnings about blocks that are too large, or too deep, to be in metres: one each, at the first such block."""
     if not blocks.sizes:
         return
-    usual = USUAL["blocks" if len(blocks.sizes) >= MANY else "block"]
+    several = len(blocks.sizes) >= MANY
+    usual = USUAL["blocks" if several else "block"]
+    usual = usual._replace(what=usual.what.format(root=ROOTS[blocks.dimension].format("their" if several else "its")))
     if text := usual.doubt(float(f"{blocks.median:.4g}")):
         first = next(i for i, size in enumerate(blocks.sizes) if size >= blocks.median)
         yield CaseProblem(blocks.paths[first], f"block '{blocks.ids[first]}': {text}")

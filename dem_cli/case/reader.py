@@ -14,7 +14,7 @@ from typing import Any
 import tomli
 from pydantic import ValidationError
 
-from dem_cli.case import cross_references, retired_keys
+from dem_cli.case import cross_references, dimensions, retired_keys
 from dem_cli.case.impossible import impossible_values, parsed
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import Override, apply, parse
@@ -130,21 +130,20 @@ def read_case(
 
 def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Case:
     """The case in `data`, or CaseError with every mistake in the order of the file."""
-    if data.get("dimension") == 3 and data["dimension"] is not True:  # the rest would be misread as 2D
-        found = [CaseProblem(("dimension",), "3D is not available yet in this version: only 2")]
-        raise CaseError(found, source.render)
     found = list(impossible_values(data))
     if found:
         raise CaseError(found, source.render)
     data = copy.deepcopy(data)
     source.old_keys, found = retired_keys.rename(data, {override.path for override in source.overrides})
     cross_references.complete(data, source.name)
+    # folder: where relative paths start
+    context = {"folder": source.path.parent, "dimension": dimensions.dimension_of(data)}
     case = None
     try:
-        case = model.model_validate(data, context={"folder": source.path.parent})  # where relative paths start
+        case = model.model_validate(data, context=context)
     except ValidationError as error:
         found += problems_from(error, model, data)
-    found += cross_references.problems(data)
+    found += [*cross_references.problems(data), *dimensions.problems(data)]
     if case is None or found:
         found.sort(key=lambda problem: source.locate(problem.path, problem.at_key))
         raise CaseError(found, source.render)

@@ -17,20 +17,20 @@ from pydantic import BeforeValidator, Field, create_model, model_validator
 from dem_cli.case.base import (
     CaseModel,
     KeyProblem,
+    Name,
     NonNegative,
     OneOrMoreSchema,
-    Pair,
     Positive,
     StructureBase,
+    Vector,
     one_or_more,
     sequence_of,
 )
+from dem_cli.case.block_table import BlockTable
+from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.reference import Reference
 from dem_cli.case.sweep import Sweep
-
-Name = Annotated[str, Field(min_length=1)]
-Polygon = Annotated[tuple[Pair, ...], Field(min_length=3)]
 
 
 class Material(CaseModel):
@@ -52,40 +52,12 @@ class Interface(CaseModel):
     joint: str = Field(description="a name in [joints]", examples=["seat"])
 
 
-class BlockTable(CaseModel):
-    """[[block]]: one block, drawn by hand."""
-
-    id: Name = Field(description="name of the block", examples=["lintel"])
-    vertices: Polygon | None = Field(
-        default=None,
-        description="corners of a convex block, in any order [m]",
-        examples=[[[0.0, 0.0], [1.0, 0.0], [1.0, 0.3], [0.0, 0.3]]],
-    )
-    parts: Annotated[tuple[Polygon, ...], Field(min_length=1)] | None = Field(
-        default=None,
-        description="instead of vertices: convex pieces of a concave block, which move as one [m]",
-        examples=[[[[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]], [[0.4, 0.0], [0.4, 0.4], [0.0, 0.4]]]],
-    )
-    material: str = Field(
-        default="", description="a name in [materials]; may be left out when there is only one", examples=["stone"]
-    )
-    thickness: Positive = Field(default=1.0, description="depth out of plane [m]")
-    fixed: bool = Field(default=False, description="cannot move (base, support)", examples=[True])
-
-    @model_validator(mode="after")
-    def _one_shape(self) -> BlockTable:
-        if (self.vertices is None) == (self.parts is None):
-            found = "'vertices' and 'parts' are" if self.parts else "neither 'vertices' nor 'parts' is"
-            raise ValueError(f"{found} given; a block has one of them")
-        return self
-
-
 class Load(CaseModel):
     """[[load]]: a force on a block."""
 
     block: str = Field(description="id of the block that it acts on", examples=["lintel"])
-    force: Pair = Field(description="force [N]", examples=[[100.0, 0.0]])
-    at: Pair | None = Field(
+    force: Vector = Field(description="force [N]", examples=[[100.0, 0.0]])
+    at: Vector | None = Field(
         default=None, description="point of application [m]; default: centroid of the block", examples=[[0.0, 1.75]]
     )
     kind: Literal["dead", "live"] = Field(
@@ -97,7 +69,7 @@ class Settlement(CaseModel):
     """[[settlement]]: a support that is moved."""
 
     block: str = Field(description="id of a fixed block", examples=["right-pier-base"])
-    displacement: Pair = Field(
+    displacement: Vector = Field(
         default=(0.0, 0.0), description="how far its centroid moves [m]", examples=[[0.01, -0.02]]
     )
     rotation_deg: float = Field(
@@ -124,7 +96,7 @@ class Monitor(CaseModel):
     block: str | None = Field(
         default=None, description="id of a block: its centroid is followed", examples=["top-right"]
     )
-    point: Pair | None = Field(
+    point: Vector | None = Field(
         default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 1.9]]
     )
     between: tuple[str, str] | None = Field(
@@ -135,12 +107,12 @@ class Monitor(CaseModel):
     quantity: Literal["displacement", "rotation", "velocity", "acceleration", "opening", "slip"] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
-        "a joint: opening [m] (largest separation of its two ends, negative: pressed) or slip [m] of the second "
-        "block against the first, at the middle, along the normal turned by +90°",
+        "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
+        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length",
         examples=["rotation"],
     )
-    component: Literal["x", "y"] | None = Field(
-        default=None, description="of the vector; default: its length", examples=["x"]
+    component: Literal["x", "y", "z"] | None = Field(
+        default=None, description="of the vector, in 3D also of the rotation; default: its length", examples=["x"]
     )
     absolute: bool = Field(
         default=False,
@@ -159,7 +131,7 @@ class Monitor(CaseModel):
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
             listed = ", ".join(f"'{name}'" for name in allowed)
             raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
-        if self.quantity not in OF_POINTS and self.component is not None:
+        if self.quantity in AT_JOINTS and self.component is not None:
             article = "an" if self.quantity[0] in "aeiou" else "a"
             raise KeyProblem(
                 f"'{self.component}' is not allowed; {article} {self.quantity} has no component", "component"
@@ -174,7 +146,7 @@ class Monitor(CaseModel):
         """Where it is, in words."""
         if self.between is not None:
             return " | ".join(self.between)
-        return self.block if self.block is not None else "({:g}, {:g})".format(*self.point or ())
+        return self.block if self.block is not None else f"({', '.join(f'{x:g}' for x in self.point or ())})"
 
 
 class Output(CaseModel):
@@ -205,8 +177,10 @@ class Case(CaseModel):
     title: str = Field(
         default="", description="one line; default: the name of the file", examples=["A wall of 21 blocks"]
     )
-    dimension: Literal[2] = Field(default=2, description="of space; only 2 so far")
-    gravity: NonNegative = Field(default=9.81, description="acceleration towards −y [m/s2]")
+    dimension: Literal[2, 3] = Field(
+        default=2, description="2: blocks in the x–y plane, y upwards; 3: blocks in space, z upwards"
+    )
+    gravity: NonNegative = Field(default=9.81, description="acceleration towards −y, in 3D towards −z [m/s2]")
     seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
     dem: ProgramStamp | None = Field(default=None, description="written by the program")
     materials: dict[str, Material] = Field(min_length=1, description="materials by name")
@@ -234,6 +208,10 @@ class Case(CaseModel):
         for one in self.reference:
             one.resolved_to(getattr(self.analysis, "resolution", None))
         return self
+
+    @model_validator(mode="after")
+    def _vectors_of_space(self) -> Case:
+        return in_space(self) if self.dimension == 3 else self
 
     @property
     def default_joint(self) -> str:

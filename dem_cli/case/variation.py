@@ -15,7 +15,9 @@ from dem_cli.case.wording import nearest
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, plain
 
 WHERE: KeyPath = ("analysis", "vary")
-NO_STRUCTURE = ("title", "seed", "dem", "output", "monitor", "reference", "sweep", "calibration", "motion", "damping")
+NO_STRUCTURE = (
+    "title", "dimension", "seed", "dem", "output", "monitor", "reference", "sweep", "calibration", "motion", "damping",
+)  # fmt: skip
 
 
 def parts_of(text: str) -> list[str]:

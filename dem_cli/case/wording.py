@@ -76,6 +76,9 @@ def allowed_one(kind: DeclaredType, many: bool = False) -> str:
         return either(arguments)
     if origin is dict or is_table(declared):
         return "tables" if many else "a table" + (" with at least one entry" if least else "")
+    own_words = next((limit.allowed for limit in kind.limits if hasattr(limit, "allowed")), None)
+    if own_words is not None:  # an annotation such as VectorLength
+        return str(own_words(many))
     if origin in (tuple, list):
         variable = origin is list or arguments[-1] is Ellipsis
         count = (f"at least {least} " if least else "") if variable else f"{len(arguments)} "

@@ -9,6 +9,7 @@ from typing import Any
 import tomli_w
 from pydantic import ValidationError
 
+from dem_cli.case import dimensions
 from dem_cli.case.base import CaseModel
 from dem_cli.case.overrides import plain_value
 from dem_cli.case.schema import Case
@@ -40,6 +41,7 @@ def case_text(case: Case) -> str:
             data[key] = [effective(table) for table in value]
         else:
             data[key] = value
+    dimensions.leave_out(data)
     return HEADER + on_one_line(tomli_w.dumps(data))
 
 

@@ -43,7 +43,8 @@ def command(
 ) -> None:
     """Measure cost and error of dem: all groups, or those named.
 
-    Groups: kernels, joints, precision, time_histories, growth, threads, sweeps, features, others, startup.
+    Groups: kernels, joints, precision, time_histories, growth, threads, sweeps, features, others, spatial, peers,
+    startup.
     """
     one_thread()
     from dem_cli.bench.page import data_file, keep, render, write

@@ -129,8 +129,9 @@ def facts(entry: CaseEntry) -> dict[str, Any]:
     found: dict[str, Any] = {"path": entry.path, "table": table.heading, "kinds": list(entry.kinds)}
     if key is None:
         keys = [facts(type(entry)(table, inner, entry.kinds)) for inner in table.keys]
-        return {**found, "meaning": table.about, "page": entry.page, "keys": keys}
+        return {**found, "meaning": table.about, "dimension": table.dimension, "page": entry.page, "keys": keys}
     return {
-        **found, "meaning": key.meaning, "units": list(key.units), "allowed": key.allowed, "required": key.required,
-        "default": key.default or None, "example": key.example or None, "page": entry.page,
+        **found, "meaning": key.meaning, "dimension": key.dimension or table.dimension, "units": list(key.units),
+        "allowed": key.allowed, "required": key.required, "default": key.default or None,
+        "example": key.example or None, "page": entry.page,
     }  # fmt: skip

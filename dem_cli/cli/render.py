@@ -21,7 +21,12 @@ STILL, MOVIES = ".png", (".gif", ".mp4")
     "--frame", default="last", show_default=True, metavar="WHICH",
     help="Of a still: last, failure, a number from 0, or a time such as 2.5s.",
 )  # fmt: skip
-@click.option("--view", type=click.Choice(("front", "3d")), default="front", show_default=True)
+@click.option("--view", type=click.Choice(("front", "3d")), help="Default: front; of structures in space 3d.")
+@click.option(
+    "--azimuth", type=float, metavar="DEG",
+    help="Of a structure in space: where one stands, from x towards y; default: where it moves to.",
+)  # fmt: skip
+@click.option("--elevation", type=click.FloatRange(-90.0, 90.0), metavar="DEG", help="How high one stands.")
 @click.option(
     "--scale", type=click.FloatRange(min=0.0, min_open=True), metavar="FACTOR",
     help="Of displacements; default: as they are, or larger where nobody would see them.",
@@ -45,7 +50,9 @@ def command(
     output: Path | None,
     movie: str | None,
     frame: str,
-    view: str,
+    view: str | None,
+    azimuth: float | None,
+    elevation: float | None,
     scale: float | None,
     colour: str,
     joints: bool,
@@ -57,12 +64,13 @@ def command(
     from dem_cli.output.folder import write_error
     from dem_cli.output.reader import read
     from dem_cli.render.render import RenderOptions, render_apart
+    from dem_cli.render.view import Standpoint
 
     path = target(folder, output, movie)
     if path.suffix in MOVIES and frame != "last":
         raise UsageError("--frame is for stills; a movie shows all frames")
     read(folder)  # what is wrong with the results is said before anything is started
-    look = RenderOptions(frame, view, scale, colour, joints, forces, size, fps)
+    look = RenderOptions(frame, Standpoint(view, azimuth, elevation), scale, colour, joints, forces, size, fps)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         render_apart(folder, path, look)

@@ -15,5 +15,6 @@ def command() -> None:
     `#:schema ./dem.schema.json` and `dem schema > dem.schema.json` has been run beside it.
     """
     from dem_cli.api import make_case_model
+    from dem_cli.case.keys import json_schema
 
-    click.echo(json.dumps(make_case_model().model_json_schema(), indent=2, ensure_ascii=False))
+    click.echo(json.dumps(json_schema(make_case_model()), indent=2, ensure_ascii=False))

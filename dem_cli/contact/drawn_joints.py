@@ -1,8 +1,9 @@
-"""Joints as they were drawn: opening, crack width, slip, stress and eccentricity of each at any instant, 2D.
+"""Joints as they were drawn: opening, crack width, slip, stress and eccentricity of each at any instant.
 
-A joint is a pair of edges that face each other in the undeformed structure. It is followed by the material points at
-its two ends, however far the blocks have moved, so that it stays one joint when contact points come and go. What is
-across and along it is said by block a, with which it turns. Forces are those of all contact points of its two blocks.
+A joint is a pair of faces that face each other in the undeformed structure. It is followed by the material points
+around it (in the plane its two ends), however far the blocks have moved, so that it stays one joint when contact points
+come and go. What is across and along it is said by block a, with which it turns. Forces are those of all contact points
+of its two blocks.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.contact.between import StartJoints
-from dem_cli.geometry.rotation import across, turned
+from dem_cli.contact.joints import DrawnFaces
+from dem_cli.geometry.outlines import away_from, furthest
+from dem_cli.geometry.rotation import beside, tangents_of, turning
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, JointPlaces, JointStates
 
@@ -20,95 +23,104 @@ OPEN, STICKING, SLIDING = (STATES.index(name) for name in ("open", "sticking", "
 
 
 class JointInstant(NamedTuple):
-    """All joints at one instant."""
+    """All joints at one instant; in the plane each has two places, in space those of JointPlaces.starts."""
 
     states: JointStates
-    gaps: np.ndarray  # distance across the joint at its two ends, positive open [m], (n, 2)
-    ends: np.ndarray  # where these are, half way between both blocks [m], (n, 2, d)
+    gaps: np.ndarray  # distance across the joint at its places, positive open [m], (n, 2); in space (n_places,)
+    ends: np.ndarray  # where these are, half way between both blocks [m], (n, 2, 2); in space (n_places, 3)
 
 
 class DrawnJoints:
     """The joints of a structure as it was drawn; `at` follows them. `places` never change."""
 
     def __init__(self, model: Model):
-        start = StartJoints(model)
-        keys = _keys(start.blocks, model.n_blocks)
+        faces = StartJoints(model).faces
+        keys = _keys(faces.blocks, model.n_blocks)
         order = np.argsort(keys, kind="stable")
-        self.model, self.keys, blocks = model, keys[order], start.blocks[order]
-        normals, on_first, on_second = start.sides(start.edges[order])
-        self.arms = [on - model.centroids[blocks[:, i], np.newaxis] for i, on in enumerate((on_first, on_second))]
-        self.apart = on_second - on_first
-        lengths = start.lengths[order]
-        areas = lengths * model.thickness[blocks].min(axis=1, initial=np.inf)
-        self.places = JointPlaces(blocks, on_first, normals, lengths, areas)
+        self.model, self.keys, self.faces = model, keys[order], faces.taken(order)
+        self.owners = np.repeat(np.arange(len(order)), np.diff(self.faces.starts))
+        on = (self.faces.on_first, self.faces.on_second)
+        self.blocks = [self.faces.blocks[self.owners, i] for i in (0, 1)]  # of each place
+        self.arms = [on[i] - model.centroids[self.blocks[i]] for i in (0, 1)]
+        self.apart = on[1] - on[0]
+        self.places = joint_places(self.faces)
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
-        """Where the blocks are (centroids [m], (n_blocks, d), and angles [rad], (n_blocks, 1)), under these forces."""
-        blocks, normals, area = self.places.blocks, self.places.normals, self.places.area
-        moved, angles = positions - self.model.centroids, orientations[:, 0]
-        shifts = []
-        for i, arms in enumerate(self.arms):
-            swung = turned(arms, angles[blocks[:, i], np.newaxis]) - arms
-            shifts.append(moved[blocks[:, i], np.newaxis] + swung)
+        """Where the blocks are (centroids [m], (n_blocks, d), and how they have turned), under these forces."""
+        faces, owners, n = self.faces, self.owners, len(self.places.area)
+        moved, shifts = positions - self.model.centroids, []
+        for block, arms in zip(self.blocks, self.arms, strict=True):
+            shifts.append(moved[block] + (turning(orientations[block])(arms) - arms))
         apart = self.apart + shifts[1] - shifts[0]
-        ends = self.places.ends + shifts[0] + 0.5 * apart
-        normals = turned(normals, angles[blocks[:, 0]])
-        tangents = across(normals)
-        gaps = (apart * normals[:, np.newaxis]).sum(axis=2)
-        owners = self._owners(contacts, ends)
-        forces, turning, state = self._forces(contacts, owners, ends, normals, tangents)
-        pressed = forces[:, 0] != 0.0
+        ends = faces.on_first + shifts[0] + 0.5 * apart
+        normals = turning(orientations[faces.blocks[:, 0]])(faces.normals)
+        tangents = tangents_of(normals, beside(normals))
+        gaps = (apart * normals[owners]).sum(axis=1)
+        slides = [self._means((apart * along[owners]).sum(axis=1)) for along in tangents]
+        pressure, shear, offset, state = self._forces(contacts, ends, normals, tangents)
         states = JointStates(
-            opening=gaps.mean(axis=1),
-            crack_width=np.maximum(gaps.max(axis=1, initial=0.0), 0.0),
-            slip=(apart * tangents[:, np.newaxis]).sum(axis=2).mean(axis=1),
-            normal_stress=forces[:, 0] / area,
-            shear_stress=forces[:, 1] / area,
-            eccentricity=np.divide(turning, forces[:, 0], out=np.zeros(len(area)), where=pressed),
+            opening=self._means(gaps),
+            crack_width=np.maximum(np.maximum.reduceat(gaps, faces.starts[:-1]) if n else gaps, 0.0),
+            slip=_measured(slides),
+            normal_stress=pressure / faces.areas,
+            shear_stress=shear / faces.areas,
+            eccentricity=np.divide(offset, pressure, out=np.zeros(n), where=pressure != 0.0),
             state=state,
         )
-        return JointInstant(states, gaps, ends)
+        two = not len(self.places.starts)
+        return JointInstant(states, gaps.reshape(n, 2) if two else gaps, ends.reshape(n, 2, -1) if two else ends)
 
-    def _owners(self, contacts: ContactRecord, ends: np.ndarray) -> np.ndarray:
+    def _means(self, values: np.ndarray) -> np.ndarray:
+        """Means over the area of each joint, of values at its places."""
+        return np.bincount(self.owners, self.faces.shares * values, len(self.places.area))
+
+    def _owners(self, contacts: ContactRecord, ends: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Joint of each contact point, (n_points,): the nearest one of its blocks; −1: they had none."""
         keys = _keys(contacts.blocks, self.model.n_blocks)
         first, after = (np.searchsorted(self.keys, keys, side) for side in ("left", "right"))
         owners = np.where(after > first, first, -1)
         several = np.flatnonzero(after - first > 1)
-        best = _distances(contacts.points[several], ends[owners[several]])
+        points, starts = contacts.points[several], self.faces.starts
+        best = away_from(points, owners[several], ends, starts, normals)
         for further in range(1, int((after - first).max(initial=1))):
             other = np.minimum(first[several] + further, after[several] - 1)
-            distance = _distances(contacts.points[several], ends[other])
+            distance = away_from(points, other, ends, starts, normals)
             owners[several] = np.where(distance < best, other, owners[several])
             best = np.minimum(distance, best)
         return owners
 
     def _forces(
-        self, contacts: ContactRecord, owners: np.ndarray, ends: np.ndarray, normals: np.ndarray, tangents: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of each joint: normal and shear force [N], (n, 2); normal force times eccentricity [N m]; state."""
-        n, there = len(normals), owners >= 0
-        at, own = owners[there], np.flatnonzero(there)
-        along = contacts.normals[own]
-        force = contacts.normal_force[own, np.newaxis] * along + contacts.shear_force[own] * across(along)
-        across_joint = (force * normals[at]).sum(axis=1)
-        shear = (force * tangents[at]).sum(axis=1)
-        arms = ((contacts.points[own] - ends.mean(axis=1)[at]) * tangents[at]).sum(axis=1)
-        sums = [np.bincount(at, values, n) for values in (across_joint, shear, across_joint * arms)]
+        self, contacts: ContactRecord, ends: np.ndarray, normals: np.ndarray, tangents: list[np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Of each joint: normal force, shear force [N], normal force times eccentricity [N m]; state."""
+        n, owners = len(normals), self._owners(contacts, ends, normals)
+        own = np.flatnonzero(owners >= 0)
+        at, force = owners[own], contacts.forces()[own]
+        middles = np.stack([self._means(along) for along in ends.T], axis=1)
+        arms, across_joint = contacts.points[own] - middles[at], (force * normals[at]).sum(axis=1)
+        shears = [np.bincount(at, (force * along[at]).sum(axis=1), n) for along in tangents]
+        offsets = [np.bincount(at, across_joint * (arms * along[at]).sum(axis=1), n) for along in tangents]
         closed = np.bincount(at, contacts.state[own] != OPEN, n) > 0
         slides = np.bincount(at, contacts.state[own] == SLIDING, n) > 0
         state = np.select([slides, closed], [SLIDING, STICKING], OPEN).astype(np.int8)
-        return np.stack(sums[:2], axis=1), sums[2], state
+        return np.bincount(at, across_joint, n), _measured(shears), _measured(offsets), state
+
+
+def joint_places(faces: DrawnFaces) -> JointPlaces:
+    """Joints as they were drawn, for the results."""
+    if faces.normals.shape[1] == 2:
+        ends = faces.on_first.reshape(-1, 2, 2)
+        return JointPlaces(faces.blocks, ends, faces.normals, faces.lengths, faces.areas)
+    ends = faces.on_first[furthest(faces.on_first, faces.starts)]
+    outlines = {"starts": faces.starts, "corners": faces.on_first}
+    return JointPlaces(faces.blocks, ends, faces.normals, faces.lengths, faces.areas, **outlines)
+
+
+def _measured(components: list[np.ndarray]) -> np.ndarray:
+    """What has one component with its sign, what has two by its length."""
+    return components[0] if len(components) == 1 else np.hypot(*components)
 
 
 def _keys(blocks: np.ndarray, n_blocks: int) -> np.ndarray:
     """One number for each pair of blocks, (n,)."""
     return blocks[:, 0] * n_blocks + blocks[:, 1]
-
-
-def _distances(points: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Distance of each point (n, 2) from a line between two ends (n, 2, 2) [m], (n,)."""
-    along = ends[:, 1] - ends[:, 0]
-    share = ((points - ends[:, 0]) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    nearest = ends[:, 0] + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
-    return np.hypot(*(points - nearest).T)

@@ -12,10 +12,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.contact.edges import edges_of, overlap_lengths
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.geometry import geometry_of
+from dem_cli.contact.joints import JointProperties
 from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
-from dem_cli.geometry.rotation import cross
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 from dem_cli.model.scales import smallest_edge
@@ -59,7 +58,8 @@ def gaps_of_start(model: Model) -> StartGaps:
     scale = sizes[faces.parts].min(axis=1)
     apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)
     close = joined(faces.separation, scale)
-    kept = apart & (close | _facing(model, faces, corners, scale) & (faces.separation <= NOTICED_GAP * scale))
+    facing = geometry_of(model.dimension).facing(model, faces, corners, STEEPEST, CLOSING_GAP * scale)
+    kept = apart & (close | facing & (faces.separation <= NOTICED_GAP * scale))
     blocks, widths, close = model.part_blocks[faces.parts[kept]], faces.separation[kept], close[kept]
     order = np.argsort(widths, kind="stable")
     _, first = np.unique(np.sort(blocks[order], axis=1), axis=0, return_index=True)
@@ -77,20 +77,13 @@ def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
     joints, gaps = built.joints, built.contacts.gaps
     if not len(joints.blocks):
         return StartGaps(joints.blocks, gaps, gaps > 0.0)
-    first, last = joints.starts[:-1], joints.starts[1:] - 1
-    length = np.sqrt(((joints.points[last] - joints.points[first]) ** 2).sum(axis=1))
+    first = joints.starts[:-1]
+    arms = joints.points - joints.points[first][joints.owners]
+    length = np.sqrt(np.maximum.reduceat((arms**2).sum(axis=1), first))
     nearest, widest = np.minimum.reduceat(gaps, first), np.maximum.reduceat(gaps, first)
     wedge = (nearest <= 0.0) & (widest > TOUCHING_GAP * smallest) & (widest <= STEEPEST * length)
     order = np.flatnonzero(wedge)[np.argsort(widest[wedge], kind="stable")]
     return StartGaps(joints.blocks[order], widest[order], np.ones(len(order), bool))
-
-
-def _facing(model: Model, faces: Faces, corners: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Faces that look at each other over a length, nearly parallel, (n,) bool; 2D. scale: sizes of the parts [m]."""
-    edges = edges_of(model, faces)
-    along, across = corners[edges[:, 1]] - corners[edges[:, 0]], corners[edges[:, 3]] - corners[edges[:, 2]]
-    parallel = np.abs(cross(along, across)) <= STEEPEST * np.hypot(*along.T) * np.hypot(*across.T)
-    return parallel & (overlap_lengths(edges, corners) > CLOSING_GAP * scale)
 
 
 def gap_words(model: Model, gaps: StartGaps) -> str:

@@ -10,10 +10,10 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-from dem_cli.contact import planar
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact import planar, spatial
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
 from dem_cli.errors import UsageError
-from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
 
 
@@ -31,6 +31,9 @@ class JointGeometry(Protocol):
     def kept(self) -> Self:
         """The same with a copy of what changes."""
 
+    def settled(self) -> Self:
+        """What is still asked for when points stay where they were placed."""
+
 
 Geometry = TypeVar("Geometry", bound=JointGeometry)
 Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing
@@ -44,7 +47,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
     def points(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Returning | None
-    ) -> tuple[Joints, Geometry]:
+    ) -> tuple[MovingJoints, Geometry]:
         """Joints between faces with their stiffness, and their geometry; not yet placed."""
 
     def place(self, joints: Joints, geometry: Geometry, contacts: Contacts, bodies: Bodies) -> None:
@@ -56,8 +59,11 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
         """Of faces that are near each other, those that can carry force between blocks that do not move."""
 
-    def level(self, joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-        """Gives all points of each joint one frame."""
+    def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+        """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""
+
+    def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+        """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties
@@ -79,7 +85,8 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
-GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar}
+GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}
+MOVING = (2,)  # dimensions in which joints are placed where the blocks are; else they are those of the start
 
 
 def geometry_of(dimension: int) -> AnyNarrowPhase:

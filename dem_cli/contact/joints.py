@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.contact.layout import PointLayout
-from dem_cli.kernels.records import Contacts, Joints
+from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.model import Model
 
 
@@ -21,6 +21,31 @@ class Faces(NamedTuple):
     def where(self, kept: np.ndarray) -> Faces:
         """Those of a mask (n,) bool."""
         return Faces(*(field[kept] for field in self))
+
+
+class DrawnFaces(NamedTuple):
+    """Pairs of faces that share a joint in the undeformed structure, with the outline of each as places on both.
+
+    Pair j has the places starts[j]:starts[j + 1]: in the plane both ends, in space the corners around the overlap.
+    """
+
+    blocks: np.ndarray  # the two blocks, (n, 2) int64
+    normals: np.ndarray  # unit, from the first to the second, (n, d)
+    starts: np.ndarray  # (n + 1,) int64
+    on_first: np.ndarray  # on the first block [m], (n_places, d)
+    on_second: np.ndarray  # opposite, on the second [m], (n_places, d)
+    shares: np.ndarray  # of the joint that belong to each place, (n_places,)
+    lengths: np.ndarray  # between the two places that are furthest apart [m], (n,)
+    areas: np.ndarray  # [m²], (n,)
+
+    def taken(self, order: np.ndarray) -> DrawnFaces:
+        """Those with these numbers, in this order."""
+        places = points_of(self.starts, order)
+        starts = np.concatenate([[0], np.cumsum(np.diff(self.starts)[order])])
+        return DrawnFaces(
+            self.blocks[order], self.normals[order], starts, self.on_first[places], self.on_second[places],
+            self.shares[places], self.lengths[order], self.areas[order],
+        )  # fmt: skip
 
 
 class JointProperties(NamedTuple):
@@ -61,7 +86,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
 
 def joints_of(
     model: Model, faces: Faces, properties: JointProperties, starts: np.ndarray, areas: np.ndarray, shares: np.ndarray
-) -> Joints:
+) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
@@ -71,7 +96,7 @@ def joints_of(
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
-    return Joints(
+    return MovingJoints(
         blocks=blocks,
         starts=starts,
         frames=np.zeros((n_points, d * d)),
@@ -92,6 +117,6 @@ def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 def only_points(joints: Joints, kept: np.ndarray) -> Joints:
     """The joints with some of their points only; kept: (n_points,) bool."""
-    upto = np.concatenate([[0], np.cumsum(kept)])
-    points = {name: getattr(joints, name)[kept] for name in ("frames", "levers", "points", "kn", "ks")}
-    return joints._replace(starts=upto[joints.starts], **points)
+    starts = np.concatenate([[0], np.cumsum(kept)])[joints.starts]
+    own = ("places",) if isinstance(joints, FixedJoints) else ("frames", "levers", "points")
+    return joints._replace(starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")})

@@ -18,7 +18,10 @@ VERTEX_SHARE = 0.5
 
 
 class PointLayout(NamedTuple):
-    """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them."""
+    """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them.
+
+    In space a plane joint has its points at the corners of the overlap, and with any layout one at the centre as well.
+    """
 
     points: int = 2
     sides: tuple[int, int] | None = None

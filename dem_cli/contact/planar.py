@@ -7,13 +7,13 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.contact.chains import Chains, come_back, made_chains
-from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
-from dem_cli.contact.joints import Faces, JointProperties, joints_of
-from dem_cli.geometry.rotation import cross
+from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
-from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, PlanarGeometry
+from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
@@ -48,7 +48,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Chains | None = None
-) -> tuple[Joints, PlanarGeometry]:
+) -> tuple[MovingJoints, PlanarGeometry]:
     """Joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
 
     chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
@@ -86,16 +86,31 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
     return faces.where((overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach))
 
 
-def level(joints: Joints, contacts: Contacts, positions: np.ndarray) -> None:
-    """Gives all points of each joint one frame, that of its closer end; positions: of the blocks [m], (n_blocks, 2)."""
-    first, last = joints.starts[:-1], joints.starts[1:] - 1
-    source = np.where(contacts.gaps[last] < contacts.gaps[first], last, first)
-    joints.frames[:] = joints.frames[source][joints.owners]
-    normals = joints.frames[:, :2]
-    for side in (0, 1):
-        arms = joints.points - positions[joints.blocks[joints.owners, side]]
-        joints.levers[:, 2 * side] = cross(arms, normals)
-        joints.levers[:, 2 * side + 1] = (arms * normals).sum(axis=1)
+def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+    """Edges that look at each other, nearly parallel, over a length of more than `least` [m], (n,) bool."""
+    edges = edges_of(model, faces)
+    along, against = corners[edges[:, 1]] - corners[edges[:, 0]], corners[edges[:, 3]] - corners[edges[:, 2]]
+    parallel = np.abs(cross(along, against)) <= sine * np.hypot(*along.T) * np.hypot(*against.T)
+    return parallel & (overlap_lengths(edges, corners) > least)
+
+
+def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+    """Pairs of edges that overlap by more than `least` [m], with both ends of the overlap."""
+    low, high = overlap_ends(edges_of(model, faces), corners)
+    kept = faces.where(high - low > least)
+    edges, lengths = edges_of(model, kept), (high - low)[high - low > least]
+    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
+    along = (a1 - a0) / np.hypot(*(a1 - a0).T)[:, np.newaxis]
+    places = np.stack(overlap_ends(edges, corners), axis=1)[..., np.newaxis]
+    on_first = a0[:, np.newaxis] + places * along[:, np.newaxis]
+    past = ((on_first - b0[:, np.newaxis]) * along[:, np.newaxis]).sum(axis=2)
+    share = past / ((b1 - b0) * along).sum(axis=1)[:, np.newaxis]
+    on_second = b0[:, np.newaxis] + share[..., np.newaxis] * (b1 - b0)[:, np.newaxis]
+    blocks = model.part_blocks[kept.parts]
+    return DrawnFaces(
+        blocks, -across(along), 2 * np.arange(len(blocks) + 1), on_first.reshape(-1, 2), on_second.reshape(-1, 2),
+        np.full(2 * len(blocks), 0.5), lengths, lengths * model.thickness[blocks].min(axis=1, initial=np.inf),
+    )  # fmt: skip
 
 
 def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:

@@ -7,8 +7,8 @@ import numpy as np
 from dem_cli.contact.assemble import JointArrays, build_joints
 from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import geometry_of
+from dem_cli.contact.joint_planes import in_planes
 from dem_cli.contact.joints import JointProperties
-from dem_cli.geometry.rotation import unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
@@ -17,8 +17,8 @@ TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 
 def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
     """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,)."""
-    n, n_dof = model.n_blocks, model.dimension + model.inertias.shape[1]
-    positions, orientations = model.centroids - origin, unturned(n, model.dimension)
+    n, n_dof = model.dead_loads.shape
+    positions, orientations = model.centroids - origin, np.zeros_like(model.inertias)
     corners = world_corners(block_shape(model), positions, orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,
@@ -45,12 +45,12 @@ def joints_of_start(
     """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
 
     smallest: shortest edge of a block [m] (model.scales). Faces that meet corner to corner are left out: to
-    first order they cannot carry force. All points of a joint share one frame, that of its closer end.
+    first order they cannot carry force. All points of a joint lie in one plane.
     """
     narrow, reach = geometry_of(model.dimension), TOUCHING_GAP * smallest
     faces = narrow.touching(model, narrow.find(model, bodies.corners, reach), bodies.corners, reach)
     built = build_joints(model, faces, bodies, properties, n_memory)
     close_touching(built.contacts, smallest)
     bond_touching(model, built.joints, built.contacts, properties)
-    narrow.level(built.joints, built.contacts, bodies.positions)
-    return built
+    planes = in_planes(built.joints, built.contacts.gaps, bodies.positions)
+    return built._replace(joints=planes, geometry=built.geometry.settled())

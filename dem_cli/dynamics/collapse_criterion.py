@@ -77,4 +77,4 @@ def _fastest(sim: DynamicSimulation) -> int:
     """The block with the largest velocity of a corner."""
     d = sim.model.dimension
     speeds = np.sqrt((sim.bodies.velocities[:, :d] ** 2).sum(axis=1))
-    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, d:]).max(axis=1)).argmax())
+    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, sim.model.rotations]).max(axis=1)).argmax())

@@ -86,7 +86,7 @@ def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) ->
     """
     d = model.dimension
     found = springs_of(model, joints, settings=settings.frequency)
-    roots = np.sqrt(found.masses)
+    roots = np.sqrt(found.masses.ravel())
     dead = model.dead_loads[found.blocks]
     still = _solved(found, dead.ravel() / roots)
     points = len(joints.kn)
@@ -99,7 +99,7 @@ def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) ->
         sideways = np.zeros_like(dead)
         sideways[:, axis] = np.sqrt((dead[:, :d] ** 2).sum(axis=1))
         moved = (_solved(found, sideways.ravel() / roots) / roots).reshape(dead.shape)
-        turns = np.abs(moved[:, d:]).max(axis=1)
+        turns = np.abs(moved[:, model.rotations]).max(axis=1)
         largest = max(largest, float(turns[turns < settings.rocking.mechanism].max(initial=0.0)))
     return largest
 

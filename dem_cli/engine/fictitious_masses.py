@@ -27,7 +27,7 @@ def fictitious_masses(
     rows = np.abs(relative_motion(joints, model.dimension))
     blocks = joints.blocks[joints.owners]
     weights = np.ones(inverse_out.shape)
-    weights[:, model.dimension :] = 1.0 / shape.radii[:, None]
+    weights[:, model.rotations] = 1.0 / shape.radii[:, None]
     free = ~model.fixed
     reach = np.zeros(rows.shape[:2])
     for side in (0, 1):

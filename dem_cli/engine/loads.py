@@ -15,19 +15,19 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
     live_scale: factor on the live loads; radii: of the blocks [m], (n_blocks,); narrowest_arm: of its radius, the
     least width that a block's moments are compared with.
     """
-    d, r, n = model.dimension, model.inertias.shape[1], model.n_blocks
+    d = model.dimension
     dead = model.dead_loads.copy()
     live = model.live_loads * live_scale
     dead[model.fixed] = 0.0
     live[model.fixed] = 0.0
-    force_scales = np.empty((n, d + r))
+    force_scales = np.empty_like(dead)
     force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
     arms = np.clip(model.shapes.widths, narrowest_arm * radii, radii)  # small moments turn a needle over
-    force_scales[:, d:] /= arms[:, None]
+    force_scales[:, model.rotations] /= arms[:, None]
     return Loads(
         dead=np.ascontiguousarray(dead),
         live=np.ascontiguousarray(live),
-        inverse_masses=np.zeros((n, d + r)),
+        inverse_masses=np.zeros_like(dead),
         force_scales=force_scales,
-        speed_limits=np.full((n, d + r), np.inf),
+        speed_limits=np.full_like(dead, np.inf),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from dem_cli.kernels.advance import make_advance
-from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.drift import drift_centroids, drift_corners
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
@@ -17,8 +17,7 @@ from dem_cli.laws.law import Law
 def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
     """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
     if kinematics == "fixed":
-        forces = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
-        return make_advance(of_bodies(forces), drift_centroids)
+        return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids)
     make = make_profiled_forces if profiled else make_planar_forces
     return make_advance(make(law.function, law.bonded, rigid=True), drift_corners)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import rotation_vectors
+from dem_cli.geometry.rotation import quaternions, rotation_vectors
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
@@ -37,10 +37,10 @@ def largest_elastic(sim: Simulation) -> float:
 
 def live_displacement(sim: Simulation) -> float:
     """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
-    d = sim.model.dimension
+    d, rotations = sim.model.dimension, sim.model.rotations
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
-    return float(travel + (live[free, d:] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
+    return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
 def dead_scale(sim: Simulation) -> float:
@@ -63,7 +63,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
     loads, control, d = sim.loads, sim.control, sim.model.dimension
     force = control[slot.DEAD_FACTOR] * loads.dead[:, :d] + control[slot.LIVE_FACTOR] * loads.live[:, :d]
     light = loads.inverse_masses.copy()
-    light[:, d:] *= sim.shape.radii[:, None] ** 2
+    light[:, sim.model.rotations] *= sim.shape.radii[:, None] ** 2
     return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
 
 
@@ -105,7 +105,7 @@ def closure(sim: Simulation) -> float:
 
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
-    joints, contacts = sim.joints, sim.measured()
+    joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
     owner = joints.owners
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
@@ -115,12 +115,13 @@ def contact_record(sim: Simulation) -> ContactRecord:
         joint=owner,
         blocks=joints.blocks[owner],
         points=joints.points + sim.origin,
-        normals=joints.frames[:, : sim.model.dimension].copy(),
+        normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
         shear_force=contacts.shear,
         gap=contacts.gaps,
         slip=contacts.slip,
         state=state.astype(np.int8),
+        tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
 
 
@@ -129,5 +130,5 @@ def frame(sim: Simulation, stage: str) -> Frame:
     bodies = sim.bodies
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        bodies.orientations.copy(), bodies.velocities.copy(), contact_record(sim), sim.time,
+        quaternions(bodies.orientations), bodies.velocities.copy(), contact_record(sim), sim.time,
     )  # fmt: skip

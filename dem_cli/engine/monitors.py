@@ -1,7 +1,7 @@
-"""[[monitor]]: numbers followed through a run; the same formulas for one instant and for a stretch of time, 2D.
+"""[[monitor]]: numbers followed through a run; the same formulas for one instant and for a stretch of time.
 
-A sample holds position (with the angle), velocity and acceleration of a block, all at one instant and relative
-to the base: samples are (n, n_watched, 3, n_dof).
+A sample holds position (with the angle, in space the rotation vector), velocity and acceleration of a block, all at
+one instant and relative to the base: samples are (n, n_watched, 3, n_dof).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import across, swept, turned_by
+from dem_cli.geometry.rotation import angles_of, beside, swept, tangents_of, turning
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -36,51 +36,55 @@ class PointMotion:
     """How all points move over a stretch of time."""
 
     def __init__(self, points: Points, samples: np.ndarray):
-        self.points, self.samples = points, samples[:, points.rows]
-        angles = self.samples[:, :, 0, 2]
-        self.cosines, self.sines = np.cos(angles), np.sin(angles)
+        self.points, self.samples, self.d = points, samples[:, points.rows], points.arms.shape[1]
+        self.orientations = self.samples[:, :, 0, self.d :]
         self.arms = self.turned(points.arms)
 
     def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
-        return turned_by(vectors, self.cosines[:, which], self.sines[:, which])
+        return turning(self.orientations[:, which])(vectors)
 
     @cached_property
     def displacement(self) -> np.ndarray:
         """From the undeformed places [m], (n, n_points, d)."""
-        return self.samples[:, :, 0, :2] - self.points.starts + self.arms - self.points.arms
+        return self.samples[:, :, 0, : self.d] - self.points.starts + self.arms - self.points.arms
 
     @cached_property
     def velocity(self) -> np.ndarray:
         """v + ω × r, (n, n_points, d)."""
         motion = self.samples[:, :, 1]
-        return motion[:, :, :2] + swept(motion[:, :, 2:], self.arms)
+        return motion[:, :, : self.d] + swept(motion[:, :, self.d :], self.arms)
 
     @cached_property
     def acceleration(self) -> np.ndarray:
-        """a + α × r − ω² r, (n, n_points, d)."""
-        spins, change = self.samples[:, :, 1, 2:], self.samples[:, :, 2]
-        return change[:, :, :2] + swept(change[:, :, 2:], self.arms) - spins**2 * self.arms
+        """a + α × r + ω × (ω × r), (n, n_points, d)."""
+        spins, change = self.samples[:, :, 1, self.d :], self.samples[:, :, 2]
+        towards = swept(spins, swept(spins, self.arms))
+        return change[:, :, : self.d] + swept(change[:, :, self.d :], self.arms) + towards
 
 
 class JointMonitors(NamedTuple):
-    """Pairs of points that lay opposite each other across joints: at its two ends for an opening, in the middle for a
-    slip. They are measured in the undeformed frame of the joint, which turns with the first block.
+    """Pairs of points that lay opposite each other across joints: at its ends or corners for an opening, in the middle
+    for a slip. They are measured in the undeformed frame of the joint, which turns with the first block.
     """
 
     first: np.ndarray  # points on the first block, (n_pairs,)
     second: np.ndarray  # and on the second
     apart: np.ndarray  # from the first to the second, undeformed [m], (n_pairs, d)
-    axes: np.ndarray  # along which they are measured, undeformed: the normal, or the tangent for a slip, (n_pairs, d)
+    axes: np.ndarray  # along which they are measured, undeformed: the normal, or a tangent for a slip, (n_pairs, d)
     begins: np.ndarray  # first pair of each of these monitors, (n,)
     columns: np.ndarray  # and its number among all, (n,)
+    lengths: np.ndarray  # whether its pairs are the two components of a slip in space, (n,) bool
 
     def fill(self, out: np.ndarray, motion: PointMotion) -> None:
-        """The largest of the pairs of each monitor [m], into its column of out (n, n_monitors)."""
+        """The largest of the pairs of each monitor, or the length of both [m], to its column of out (n, n_monitors)."""
         moved = motion.displacement
         distances = self.apart + moved[:, self.second] - moved[:, self.first]
         along = (distances * motion.turned(self.axes, self.first)).sum(axis=2)
-        out[:, self.columns] = np.maximum.reduceat(along, self.begins, axis=1)
+        largest = np.maximum.reduceat(along, self.begins, axis=1)
+        if self.lengths.any():
+            largest = np.where(self.lengths, np.sqrt(np.add.reduceat(along**2, self.begins, axis=1)), largest)
+        out[:, self.columns] = largest
 
 
 class PointMonitor(NamedTuple):
@@ -95,15 +99,13 @@ class PointMonitor(NamedTuple):
     def fill(self, out: np.ndarray, motion: PointMotion, base: np.ndarray) -> None:
         """Its column of out (n, n_monitors)."""
         if self.quantity == "rotation":
-            out[:, self.column] = motion.samples[:, self.point, 0, 2]
-            return
-        vectors = getattr(motion, self.quantity)[:, self.point]
-        if self.absolute:
-            vectors = vectors + base[:, OF_BASE[self.quantity]]
-        if self.component is None:
-            out[:, self.column] = np.hypot(vectors[:, 0], vectors[:, 1])
+            vectors = motion.orientations[:, self.point]
+            length = angles_of(vectors)
         else:
-            out[:, self.column] = vectors[:, "xy".index(self.component)]
+            vectors = getattr(motion, self.quantity)[:, self.point]
+            vectors = vectors + base[:, OF_BASE[self.quantity]] if self.absolute else vectors
+            length = np.linalg.norm(vectors, axis=1)
+        out[:, self.column] = length if self.component is None else vectors[:, "xyz".index(self.component)]
 
 
 class Monitors:
@@ -130,7 +132,8 @@ class Monitors:
         if pairs:
             first, second, apart, axes, columns = map(np.array, zip(*pairs, strict=True))
             unique, begins = np.unique(columns, return_index=True)
-            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique)
+            lengths = np.array([model.dimension > 2 and self.tables[k].quantity == "slip" for k in unique])
+            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique, lengths)
         self._points = self._all_points()
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
@@ -187,11 +190,12 @@ class Monitors:
         self._joints = self._joints or StartJoints(self.model)
         ends = self._joints.ends(first, second)
         assert ends is not None  # assembly/validate.py
-        places, axis = list(zip(ends.on_first, ends.on_second, strict=True)), ends.normal
+        places = [(*pair, ends.normal) for pair in zip(ends.on_first, ends.on_second, strict=True)]
         if quantity == "slip":
-            places, axis = [(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))], across(ends.normal)
+            normal = ends.normal[np.newaxis]
+            places = [(*ends.middles(), tangent[0]) for tangent in tangents_of(normal, beside(normal))]
         rows = []
-        for on_first, on_second in places:
+        for on_first, on_second, axis in places:
             apart = self.model.centroids[second] + on_second - self.model.centroids[first] - on_first
             rows.append((self._point(first, on_first), self._point(second, on_second), apart, axis, column))
         return rows

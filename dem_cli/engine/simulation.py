@@ -239,7 +239,7 @@ class Simulation:
     def limit_speed(self, limit: float) -> None:
         """Largest motion of a centroid or of a corner about it in a step [m]: pseudo-time is no time to fall freely."""
         self.loads.speed_limits[:] = limit
-        self.loads.speed_limits[:, self.model.dimension :] /= self.shape.radii[:, None]
+        self.loads.speed_limits[:, self.model.rotations] /= self.shape.radii[:, None]
 
     # -- what analyses write -----------------------------------------------------------------------
 
@@ -273,7 +273,7 @@ class Simulation:
         """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]; 2D. Forces stay."""
         bodies, d = self.bodies, self.model.dimension
         bodies.positions[:] += motion[:, :d]
-        bodies.orientations[:] += motion[:, d:]
+        bodies.orientations[:] += motion[:, self.model.rotations]
         bodies.corners[:] = world_corners(self.shape, bodies.positions, bodies.orientations)
         self.taken_back += motion
         bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * np.abs(motion[:, d])
@@ -297,7 +297,7 @@ class Simulation:
         d = self.model.dimension
         self.contacts.normal[:], self.contacts.shear[:], self.contacts.gaps[:] = normal, shear, gaps
         self.bodies.positions[:] = self.reference_positions + displacements[:, :d]
-        self.bodies.orientations[:] = displacements[:, d:]
+        self.bodies.orientations[:] = displacements[:, self.model.rotations]
         self.bodies.velocities[:] = 0.0
 
     def open_books(self, friction: float) -> None:

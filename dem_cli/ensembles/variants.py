@@ -83,7 +83,7 @@ def other_sizes(
     weights[:, -1] = -gravity * model.masses
     dead = model.dead_loads.copy()
     dead[:, :d] -= weights  # what is left are point loads, which act where they did
-    dead[:, d:] -= moments(shifts, dead[:, :d])
+    dead[:, model.rotations] -= moments(shifts, dead[:, :d])
     dead[:, d - 1] += factors * weights[:, -1]
     dead[:, : d - 1] += factors[:, None] * weights[:, -1:] * lean
     return model._replace(

@@ -155,17 +155,26 @@ def _reject_duplicates(points: np.ndarray, gap: float) -> None:
 
 
 def _hull(ordered: np.ndarray, gap: float) -> np.ndarray:
-    """Strict convex hull by the monotone chain, from points sorted by y then x; counter-clockwise."""
+    """Strict convex hull of points sorted by y then x; counter-clockwise."""
+    return ordered[outline(ordered, gap)]
 
-    def chain(points: np.ndarray) -> list[np.ndarray]:
-        kept: list[np.ndarray] = []
-        for p in points:
-            while len(kept) > 1 and _left_of(kept[-2], p, kept[-1]) >= -gap:
+
+def outline(ordered: np.ndarray, gap: float) -> list[int]:
+    """Numbers of the corners of the strict convex hull by the monotone chain, of points (n, 2) sorted by y then x.
+
+    Counter-clockwise; points within `gap` [m] of the line between their neighbours are none.
+    """
+
+    def chain(numbers: range) -> list[int]:
+        kept: list[int] = []
+        for k in numbers:
+            while len(kept) > 1 and _left_of(ordered[kept[-2]], ordered[k], ordered[kept[-1]]) >= -gap:
                 kept.pop()
-            kept.append(p)
+            kept.append(k)
         return kept[:-1]
 
-    return np.array(chain(ordered) + chain(ordered[::-1]))
+    n = len(ordered)
+    return chain(range(n)) + chain(range(n - 1, -1, -1))
 
 
 def _left_of(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> float:

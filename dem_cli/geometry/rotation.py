@@ -1,10 +1,13 @@
 """Rotation of vectors in the plane and in space: by angles or unit quaternions, quarter turns, cross products, moments.
 
-Orientations of n blocks are (n, 1), angles [rad], or (n, 4), unit quaternions with the scalar first; vectors are (n, 2)
-or (n, 3), spins and moments (n, 1) or (n, 3): the lengths say the dimension. Kernels have their own (kernels/vec.py).
+Orientations of n blocks are (n, 1), angles [rad], (n, 4), unit quaternions with the scalar first, or (n, 3), rotation
+vectors, axis times angle [rad]: small ones add up, as those of geometry of the start do. Vectors are (n, 2) or (n, 3),
+spins and moments (n, 1) or (n, 3): the lengths say the dimension. Kernels have their own (kernels/vec.py).
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -54,11 +57,29 @@ def swept(spins: np.ndarray, arms: np.ndarray) -> np.ndarray:
     return spins * across(arms) if arms.shape[-1] == 2 else np.cross(spins, arms)
 
 
+def turning(orientations: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """A function that turns vectors (..., d) with blocks of these orientations, (..., 1), (..., 3) or (..., 4).
+
+    What the orientations give, cosines or matrices, is worked out once.
+    """
+    if orientations.shape[-1] == 1:
+        cosines, sines = np.cos(orientations[..., 0]), np.sin(orientations[..., 0])
+        return lambda vectors: turned_by(vectors, cosines, sines)
+    flat = matrices(orientations.reshape(-1, orientations.shape[-1]))
+    turns = flat.reshape(*orientations.shape[:-1], 3, 3)
+    return lambda vectors: np.einsum("...ij,...j->...i", turns, vectors)
+
+
 def frames(stored: np.ndarray, dimension: int) -> np.ndarray:
     """Unit normal and tangents, (n, d, d), from frames (n, d·d); in the plane only normals are up to date."""
     if dimension == 2:
         return np.stack([stored[:, :2], across(stored[:, :2])], axis=1)
     return stored.reshape(-1, dimension, dimension)
+
+
+def tangents_of(normals: np.ndarray, first: np.ndarray) -> list[np.ndarray]:
+    """Tangents, d − 1 of (n, d): in the plane normals turned by +90°, in space the first ones and normal × first."""
+    return [across(normals)] if normals.shape[1] == 2 else [first, np.cross(normals, first)]
 
 
 def unturned(n: int, dimension: int) -> np.ndarray:
@@ -70,12 +91,14 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
     """How far each block has turned [rad], (n,): with its sign in the plane, from 0 to π in space."""
     if orientations.shape[1] == 1:
         return orientations[:, 0]
+    if orientations.shape[1] == 3:
+        return np.linalg.norm(orientations, axis=1)
     return 2.0 * np.arccos(np.clip(np.abs(orientations[:, 0]), 0.0, 1.0))
 
 
 def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
     """Axis times angle of each rotation [rad], (n, r): in the plane the angle, in space the shorter way round."""
-    if orientations.shape[1] == 1:
+    if orientations.shape[1] < 4:
         return orientations
     shorter = orientations * np.where(orientations[:, :1] < 0.0, -1.0, 1.0)
     sines = np.linalg.norm(shorter[:, 1:], axis=1, keepdims=True)
@@ -83,12 +106,21 @@ def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
     return shorter[:, 1:] * np.divide(angles, sines, out=np.full_like(sines, 2.0), where=sines > 0.0)
 
 
+def quaternions(orientations: np.ndarray) -> np.ndarray:
+    """Orientations as frames keep them: angles in the plane (n, 1), unit quaternions in space (n, 4)."""
+    if orientations.shape[1] != 3:
+        return orientations.copy()
+    angles = np.linalg.norm(orientations, axis=1, keepdims=True)
+    half = 0.5 * np.sinc(angles / (2.0 * np.pi))  # sin(θ/2)/θ
+    return np.column_stack([np.cos(0.5 * angles), half * orientations])
+
+
 def matrices(orientations: np.ndarray) -> np.ndarray:
-    """Rotation matrices: (n, 1) angles -> (n, 2, 2); (n, 4) unit quaternions -> (n, 3, 3)."""
+    """Rotation matrices: (n, 1) angles -> (n, 2, 2); (n, 4) unit quaternions or (n, 3) vectors -> (n, 3, 3)."""
     if orientations.shape[1] == 1:
         c, s = np.cos(orientations[:, 0]), np.sin(orientations[:, 0])
         return np.stack((np.stack((c, -s), axis=1), np.stack((s, c), axis=1)), axis=1)
-    w, x, y, z = orientations.T
+    w, x, y, z = quaternions(orientations).T
     rows = (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),

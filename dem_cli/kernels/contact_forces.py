@@ -1,8 +1,8 @@
-"""The one loop over contact points: relative motion, law, forces on the blocks, friction work.
+"""The loop over joints whose geometry does not move, 2D and 3D: relative motion, law, forces on the blocks, work lost.
 
-The same in 2D and 3D and for both kinematics: with fixed geometry the gap is integrated from the
-closing velocity (exact for constant levers, so that the joint stiffness drops out of a failure load);
-with moving geometry frames, levers and gaps are placed before this loop, or in it (planar_forces.py).
+Joint by joint: the motion of b against a at one anchor and its spin are worked out once in the frame of the joint; a
+point adds its place in the joint plane. Forces add up in the frame and are turned into space once. The gap is
+integrated from the closing velocity (exact for constant arms, so that the joint stiffness drops out of a failure load).
 """
 
 from __future__ import annotations
@@ -11,133 +11,53 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, inline, named
-from dem_cli.kernels.vec import (
-    add_at,
-    add_torques,
-    axpy,
-    components,
-    compose,
-    dot,
-    load,
-    load_frame,
-    load_levers,
-    norm,
-    scale,
-    store,
-    turn,
-)
+from dem_cli.kernels.contact_point import make_press, push_apart
+from dem_cli.kernels.jit import inline, named
+from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
+from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
-@always_inline
-def meeting(gap, opened):
-    """The gap that a point shows its spring in the steps in which it closes or opens, in time histories.
-
-    With overlaps x before, y now and z next the leapfrog does the work f (z − x)/2, and a closed spring holds k y z/2
-    between two steps. Nothing is gained or lost on the way from an open point (x < 0) where f (z − x) = k y z; with
-    z = 2 y − x that is f = k y (y + d)/2d, d = y − x, and the same on the way out. Exact but for what the speed changes
-    within the step.
-    """
-    step = abs(opened)
-    if gap >= 0.0 or gap <= -step:
-        return gap
-    return 0.5 * gap * (step - gap) / step
-
-
-def make_press(law: Callable, bonded: bool = False) -> Callable:
-    """What happens at one point that touches or did: law and lost work, as a function for the loops.
-
-    bonded: the law carries tension or deforms for good across the joint, so that normal springs lose work too.
-    """
-
-    @always_inline
-    def press(
-        gap, opened, pressed, frame, levers_a, levers_b, relative, spin_a, spin_b, dt, old, kn, ks,
-        parameters, joint, memory, point,
-    ):  # fmt: skip
-        """One point: (normal, shear force, slip path, work lost) [N, N, m, J].
-
-        opened: by how much the gap grew in this step [m]; pressed, old: normal and shear force before it [N].
-        """
-        slid_a, slid_b = turn(levers_a, spin_a)[1], turn(levers_b, spin_b)[1]
-        slide = scale(dt, axpy(1.0, components(frame, relative)[1], axpy(-1.0, slid_a, slid_b)))
-        normal, shear, slipped = law(gap, slide, old, kn, ks, parameters, joint, memory, point)
-        if not slipped:
-            return normal, shear, 0.0, 0.0
-        # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
-        plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
-        path = norm(plastic) if normal > 0.0 else 0.0
-        lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
-        if bonded and not (pressed >= 0.0 and normal >= 0.0 and pressed * normal == 0.0):
-            # The same across the joint: work done on the spring, less what it stores; to meet or part costs nothing.
-            lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
-        return normal, shear, path, lost
-
-    return named(press, law, "bonded" if bonded else "")
-
-
-def make_contact_forces(law: Callable, integrates_gap: bool, bonded: bool = False) -> Callable:
+def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
     press = make_press(law, bonded)
 
     @inline
-    def contact_forces(joints, contacts, velocities, forces, dt, like, like_rotation):
-        """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
-        blocks, starts, frames, levers = joints.blocks, joints.starts, joints.frames, joints.levers
-        kns, kss, parameters = joints.kn, joints.ks, joints.law
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory = contacts.slip, contacts.memory
+    def contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
+        """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
+        blocks, starts, axes, arms, places = joints.blocks, joints.starts, joints.axes, joints.arms, joints.places
+        gaps, normals, velocities, forces = contacts.gaps, contacts.normal, bodies.velocities, bodies.forces
         d = len(like)
-        friction_work = 0.0
+        lost = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+            frame = load_frame(axes, joint, like)
+            arm_a, arm_b = load(arms, joint, 0, like), load(arms, joint, d, like)
             spin_a = load(velocities, a, d, like_rotation)
             spin_b = load(velocities, b, d, like_rotation)
-            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
-            force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
-            loaded = False
+            moved = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), moved)
+            opens, slides = components(frame, scale(dt, moved))
+            spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
-                gap = before = gaps[point]
-                if not bonded and not integrates_gap and gap >= 0.0 and normals[point] == 0.0:
+                place = load(places, point, 0, like[1:])
+                opened = opens + opening_at(spin, place)
+                gap = gaps[point] + opened
+                gaps[point] = gap
+                if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
-                frame = load_frame(frames, point, like)
-                levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
-                if integrates_gap:
-                    spun_a, spun_b = dot(levers_a[0], spin_a), dot(levers_b[0], spin_b)
-                    gap += dt * (dot(frame[0], relative) + spun_b - spun_a)
-                    gaps[point] = gap
-                    if not bonded and gap >= 0.0 and normals[point] == 0.0:
-                        continue
-                loaded = True
-                normal, shear, path, work = press(
-                    gap, gap - before, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
-                    load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
-                )  # fmt: skip
-                if path > 0.0:
-                    slips[point] += path
-                friction_work += work
-                normals[point] = normal
-                store(shears, point, 0, shear)
-                force = compose(frame, normal, shear, force)
-                torque_a = add_torques(levers_a, normal, shear, torque_a)
-                torque_b = add_torques(levers_b, normal, shear, torque_b)
-            if loaded:
-                add_at(forces, a, 0, force, -1.0)
-                add_at(forces, b, 0, force, 1.0)
-                add_at(forces, a, d, torque_a, -1.0)
-                add_at(forces, b, d, torque_b, 1.0)
-        return friction_work
+                normal, shear, work = press(
+                    gap, opened, sliding_at(slides, spin, place), joints, contacts, joint, point
+                )
+                lost += work
+                push += normal
+                rub = axpy(1.0, shear, rub)
+                twist = add_moment_at(place, normal, shear, twist)
+            force, couple = compose(frame, push, rub, scale(0.0, like)), seen_outside(frame, twist)
+            torque_a, torque_b = axpy(1.0, moment(arm_a, force), couple), axpy(1.0, moment(arm_b, force), couple)
+            push_apart(forces, a, b, force, torque_a, torque_b)
+        return lost
 
-    return named(contact_forces, law, "opening" if integrates_gap else "", "bonded" if bonded else "")
-
-
-def of_bodies(loop: Callable) -> Callable:
-    """The same loop, called with the bodies."""
-
-    @inline
-    def bodies_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
-        return loop(joints, contacts, bodies.velocities, bodies.forces, dt, like, like_rotation)
-
-    return named(bodies_forces, loop)
+    return named(contact_forces, law, "bonded" if bonded else "")

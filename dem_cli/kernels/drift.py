@@ -39,14 +39,15 @@ def _turn(angle):
 
 @inline
 def drift_centroids(bodies, shape, dt, like):
-    """Positions from velocities."""
+    """Positions and rotation vectors from velocities; to first order rotations add up."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
-    d = len(like)
+    d, r = len(like), orientations.shape[1]
     for number in range(positions.shape[0]):
         i = np.uint64(number)
         for k in range(d):
             positions[i, k] += dt * velocities[i, k]
-        orientations[i, 0] += dt * velocities[i, d]
+        for k in range(r):
+            orientations[i, k] += dt * velocities[i, d + k]
     return 0.0
 
 

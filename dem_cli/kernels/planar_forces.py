@@ -1,8 +1,7 @@
 """The loop over contact points whose geometry moves, 2D: gaps first, everything else only where blocks touch.
 
-The same as placing all points (planar_geometry.measure) and then the loop of contact_forces.py, bit by bit,
-in two thirds of the time: frames and levers stay in registers. The arrays `frames`, `levers` and `points` of
-the joints are not kept up to date by it; `measure` does that where somebody wants to read them.
+Each end of a joint has a frame of its own. Frames and levers stay in registers: the arrays `frames`, `levers` and
+`points` of the joints are not kept up to date by it; `measure` does that where somebody wants to read them.
 """
 
 from __future__ import annotations
@@ -11,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_forces import make_press, meeting
+from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
-from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
+from dem_cli.kernels.vec import axpy, load, scale, sliding
 
 
 def make_planar_forces(
@@ -32,9 +31,8 @@ def make_planar_forces(
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
-        kns, kss, parameters, frames, levers = joints.kn, joints.ks, joints.law, joints.frames, joints.levers
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale, closures = contacts.slip, contacts.memory, contacts.stale, contacts.closure
+        frames, levers = joints.frames, joints.levers
+        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         friction_work = 0.0
@@ -80,40 +78,25 @@ def make_planar_forces(
                     frames[first, 0], frames[first, 1] = frame[0]
                     levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
                     levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
-                normal, shear, path, work = press(
-                    gap_low, opened_low, normals[first], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
-                    load(shears, first, 0, like[1:]), kns[first], kss[first], parameters, joint, memory, first,
-                )  # fmt: skip
-                if path > 0.0:
-                    slips[first] += path
+                slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
                 friction_work += work
-                normals[first] = normal
-                store(shears, first, 0, shear)
-                force = compose(frame, normal, shear, force)
-                torque_a = add_torques(levers_a, normal, shear, torque_a)
-                torque_b = add_torques(levers_b, normal, shear, torque_b)
+                force, torque_a, torque_b = add_force(
+                    frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
+                )  # fmt: skip
             if on_high:
                 frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
                 if keeps:
                     frames[second, 0], frames[second, 1] = frame[0]
                     levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
                     levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
-                normal, shear, path, work = press(
-                    gap_high, opened_high, normals[second], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
-                    load(shears, second, 0, like[1:]), kns[second], kss[second], parameters, joint, memory, second,
-                )  # fmt: skip
-                if path > 0.0:
-                    slips[second] += path
+                slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
                 friction_work += work
-                normals[second] = normal
-                store(shears, second, 0, shear)
-                force = compose(frame, normal, shear, force)
-                torque_a = add_torques(levers_a, normal, shear, torque_a)
-                torque_b = add_torques(levers_b, normal, shear, torque_b)
-            add_at(forces, a, 0, force, -1.0)
-            add_at(forces, b, 0, force, 1.0)
-            add_at(forces, a, d, torque_a, -1.0)
-            add_at(forces, b, d, torque_b, 1.0)
+                force, torque_a, torque_b = add_force(
+                    frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
+                )  # fmt: skip
+            push_apart(forces, a, b, force, torque_a, torque_b)
         return friction_work
 
     flags = ("bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "", "rigid" if rigid else "")

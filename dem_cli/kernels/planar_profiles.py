@@ -14,10 +14,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_forces import make_press, meeting
+from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, share_of
-from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, load, scale, store
+from dem_cli.kernels.vec import axpy, load, scale, sliding
 
 
 @always_inline
@@ -75,10 +75,8 @@ def make_profiled_forces(
             joints.blocks, joints.starts, geometry.edges, geometry.scales, geometry.profile
         )  # fmt: skip
         frames, levers, places_out = joints.frames, joints.levers, joints.points
-        kns, kss, parameters = joints.kn, joints.ks, joints.law
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, geometry.sunk
-        closures = contacts.closure
+        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
+        sunk = geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         lost = 0.0
@@ -173,23 +171,14 @@ def make_profiled_forces(
                     places_out[point, 0], places_out[point, 1] = place
                     continue
                 loaded = True
-                normal, shear, path, work = press(
-                    gap, opened, normals[point], frame, levers_a, levers_b, relative, spin_a, spin_b, dt,
-                    load(shears, point, 0, like[1:]), kns[point], kss[point], parameters, joint, memory, point,
-                )  # fmt: skip
-                if path > 0.0:
-                    slips[point] += path
+                slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
-                normals[point] = normal
-                store(shears, point, 0, shear)
-                force = compose(frame, normal, shear, force)
-                torque_a = add_torques(levers_a, normal, shear, torque_a)
-                torque_b = add_torques(levers_b, normal, shear, torque_b)
+                force, torque_a, torque_b = add_force(
+                    frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
+                )  # fmt: skip
             if loaded:
-                add_at(forces, a, 0, force, -1.0)
-                add_at(forces, b, 0, force, 1.0)
-                add_at(forces, a, d, torque_a, -1.0)
-                add_at(forces, b, d, torque_b, 1.0)
+                push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid}

@@ -1,7 +1,7 @@
 """The arrays that the kernels work on, each with its meaning, unit and shape.
 
-n_dof = d + r: d translations, then r rotations. Time is the solver's: seconds in dynamics, one unit
-per step in quasi-static runs (with fictitious masses).
+n_dof = d + r: d translations, then r rotations; room for more coordinates of a block is behind them. Time is the
+solver's: seconds in dynamics, one unit per step in quasi-static runs (with fictitious masses).
 """
 
 from __future__ import annotations
@@ -10,12 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.kernels.fixed_joints import FixedJoints
+
 
 class Bodies(NamedTuple):
     """Changing state of the blocks."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, d)
-    orientations: np.ndarray  # 2D: angle [rad], (n_blocks, 1)
+    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3): they add up where
+    # geometry is that of the start
     velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
     unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)
@@ -35,8 +38,8 @@ class BlockShapes(NamedTuple):
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
 
 
-class Joints(NamedTuple):
-    """Pairs of faces that touch or may touch; a joint owns points starts[j]:starts[j + 1]."""
+class MovingJoints(NamedTuple):
+    """Pairs of faces that touch or may touch, point by point; a joint owns points starts[j]:starts[j + 1]."""
 
     blocks: np.ndarray  # blocks a and b, (n_joints, 2)
     starts: np.ndarray  # first point of each joint, (n_joints + 1,)
@@ -53,6 +56,10 @@ class Joints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
 
+# What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
+Joints = MovingJoints | FixedJoints
+
+
 class PlanarGeometry(NamedTuple):
     """What the two edges of each joint are in the plane, row by row as `Joints`; all of it constant but `sunk`."""
 
@@ -64,9 +71,56 @@ class PlanarGeometry(NamedTuple):
     profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are plane
     sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
 
+    def settled(self) -> PlanarGeometry:
+        """What is still asked for when points stay where they were placed: all of it."""
+        return self
+
     def kept(self) -> PlanarGeometry:
         """The same with a copy of what changes."""
         return self._replace(sunk=self.sunk.copy())
+
+
+class Polyhedra(NamedTuple):
+    """Convex parts in space, in place, as detection and contact geometry read them (model.topology)."""
+
+    corners: np.ndarray  # [m], (n_vertices, 3)
+    part_starts: np.ndarray  # part p has the corners part_starts[p]:part_starts[p + 1]
+    part_faces: np.ndarray  # and the faces part_faces[p]:part_faces[p + 1]
+    face_starts: np.ndarray  # face f has the corners face_corners[face_starts[f]:face_starts[f + 1]]
+    face_corners: np.ndarray  # counter-clockwise seen from outside
+    normals: np.ndarray  # unit, outwards, (n_faces, 3)
+    part_edges: np.ndarray  # part p has the edges part_edges[p]:part_edges[p + 1]
+    edges: np.ndarray  # two corners, and the two faces that meet along each, (n_edges, 4)
+    sizes: np.ndarray  # diagonals of the boxes around the parts [m], (n_parts,)
+
+
+class SpatialGeometry(NamedTuple):
+    """Where the parts of each joint in space met, row by row as `Joints`; the geometry of the start.
+
+    All points of a joint lie in one plane, across its normal.
+    """
+
+    faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
+    features: np.ndarray  # corners or edges that make each point, by which it is known again, (n_points,)
+    kinds: np.ndarray  # FACES, RIM_OF_A, RIM_OF_B or EDGES, (n_joints,) int8
+    corners: (
+        np.ndarray
+    )  # how many of the points of a joint are its outline; the one after these is its centre, (n_joints,)
+    axes: np.ndarray  # unit normal from a to b, and two tangents, (n_joints, 9)
+    places: np.ndarray  # of the points, in the coordinates in which they were found [m], (n_points, 3)
+    gaps: np.ndarray  # along the normal, positive open [m], (n_points,)
+    areas: np.ndarray  # of the joints [m²], (n_joints,)
+
+    def settled(self) -> SpatialGeometry:
+        """What is still asked for when points stay where they were placed; these are then with the joints."""
+        return self._replace(axes=np.zeros((0, 9)), places=np.zeros((0, 3)), gaps=np.zeros(0))
+
+    def kept(self) -> SpatialGeometry:
+        """The same with a copy of what changes: nothing."""
+        return self
+
+
+FACES, RIM_OF_A, RIM_OF_B, EDGES = 0, 1, 2, 3  # of SpatialGeometry.kinds
 
 
 class Contacts(NamedTuple):

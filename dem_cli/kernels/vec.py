@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline, overload
+from dem_cli.kernels.jit import always_inline, inline, overload
 
 
 def load(array, row, start, like):
@@ -175,6 +175,13 @@ def _turn(levers, rotation):
     if len(levers) == 2:
         return lambda levers, rotation: (dot(levers[0], rotation), (dot(levers[1], rotation),))
     return lambda levers, rotation: (dot(levers[0], rotation), (dot(levers[1], rotation), dot(levers[2], rotation)))
+
+
+@always_inline
+def sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt):
+    """How far b slides along the tangents against a in a step at a point with these levers [m]."""
+    slid_a, slid_b = turn(levers_a, spin_a)[1], turn(levers_b, spin_b)[1]
+    return scale(dt, axpy(1.0, components(frame, relative)[1], axpy(-1.0, slid_a, slid_b)))
 
 
 def add_torques(levers, normal_part, tangent_parts, start):

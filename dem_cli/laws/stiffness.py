@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
+AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
@@ -29,10 +30,11 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
         default=None,
-        description="contact points of a plane joint, at Gauss-Lobatto places; "
-        "default: 2; 5 where the joint can crack, 3 where it is elastic",
+        description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D the vertices of the area "
+        "of contact, or its centre as well; default: 2; 5 where the joint can crack, 3 where it is elastic; in 3D "
+        "vertices, there with the centre",
         examples=[5],
     )
 
@@ -44,5 +46,7 @@ class StiffJoint(CaseModel):
 
     @property
     def contact_points(self) -> int:
-        """Number of contact points of a plane joint."""
-        return self.plane_points if self.points is None else self.points
+        """Number of contact points of a plane joint in 2D; in 3D 2 stands for the vertices alone."""
+        if self.points is None:
+            return self.plane_points
+        return self.points if isinstance(self.points, int) else AREA_POINTS[self.points]

@@ -7,6 +7,7 @@ up of the part above the line are left out: the figure is no bound, it says what
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -66,15 +67,17 @@ def hand_check(case: Case) -> float | None:
 def _pushed_sideways(analysis: Any) -> bool:
     """Whether the load is the multiplier times the weight of each block, along x (a tilting table is the same)."""
     pattern = getattr(analysis, "pattern", None)
-    if pattern != "mass":
-        return pattern == "tilt"
-    x, y = analysis.direction
-    return abs(y) <= FLAT * abs(x)
+    if pattern not in ("mass", "tilt"):
+        return False
+    x, *others = analysis.direction
+    if pattern == "tilt":  # what points up does not matter
+        others = others[:-1]
+    return math.hypot(*others) <= FLAT * abs(x)
 
 
 def _regular(wall: Any) -> bool:
     """Half-block stagger, flush ends, equal courses, no openings, upright."""
     stagger = wall.block[0] / 2 if wall.offset is None else wall.offset
     halves = wall.bond != "stack" and np.isclose(stagger, wall.block[0] / 2)
-    equal = not (wall.course_heights or wall.course_lengths or wall.openings)
+    equal = not (wall.course_heights or wall.course_lengths or wall.openings or wall.sides)
     return bool(halves and equal and wall.ends == "half" and wall.rotation_deg == 0.0 and wall.courses > 1)

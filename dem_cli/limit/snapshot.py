@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import swept
+from dem_cli.geometry.rotation import quaternions, swept
 from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
@@ -39,7 +39,7 @@ def frame(structure: Structure, collapse: Collapse, tilting: bool = False) -> Fr
     return Frame(
         collapse.stage, collapse.steps, collapse.load,
         float(np.linalg.norm(moved[:, :d], axis=1).max(initial=0.0)),
-        model.centroids + moved[:, :d], moved[:, d:].copy(), collapse.velocities.copy(),
+        model.centroids + moved[:, :d], quaternions(moved[:, d:]), collapse.velocities.copy(),
         _contacts(structure, collapse, moved, factor),
     )  # fmt: skip
 
@@ -72,6 +72,7 @@ def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, facto
         gap=motion[:, 0].copy(),
         slip=slides,
         state=state.astype(np.int8),
+        tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
 
 

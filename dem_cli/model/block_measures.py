@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry import polygon
+from dem_cli.geometry import parts
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology
 
 
@@ -24,24 +25,26 @@ class BlockMeasures(NamedTuple):
     """Of each block."""
 
     volumes: np.ndarray  # in the plane areas [m^d], (n_blocks,)
-    widths: np.ndarray  # about the smaller side: volume over largest extent of the narrowest part [m], (n_blocks,)
+    widths: np.ndarray  # about the smallest side, of the narrowest part (geometry/parts.py) [m], (n_blocks,)
     edges: np.ndarray  # length of the shortest edge [m], (n_blocks,)
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
 
 
-def part_measures(vertices: np.ndarray, part_starts: np.ndarray) -> PartMeasures:
-    """Of parts in the plane, with corners as in Model."""
-    return PartMeasures(polygon.properties_of_all(vertices, part_starts).area, polygon.sizes(vertices, part_starts))
+def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> PartMeasures:
+    """Of parts with corners as in Model."""
+    volumes = shapes_of(vertices).volumes(vertices, part_starts, topology)
+    return PartMeasures(volumes, parts.sizes(vertices, part_starts))
 
 
 def block_measures(
-    vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, vertex_blocks: np.ndarray, parts: PartMeasures
+    vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, part_blocks: np.ndarray, of_parts: PartMeasures
 ) -> BlockMeasures:
-    """Of blocks in the plane, with corners from their centroids as in Model."""
-    n = int(part_blocks[-1]) + 1 if len(part_blocks) else 0
-    start, end = vertices[topology.ends].swapaxes(0, 1)
+    """Of blocks, with corners from their centroids as in Model."""
+    n, shapes = int(part_blocks[-1]) + 1 if len(part_blocks) else 0, shapes_of(vertices)
+    ends, edge_parts = shapes.edges(topology)
+    start, end = vertices[ends].swapaxes(0, 1)
     widths, edges, radii = np.full(n, np.inf), np.full(n, np.inf), np.zeros(n)
-    np.minimum.at(widths, part_blocks, parts.volumes / parts.sizes)
-    np.minimum.at(edges, part_blocks[topology.face_parts], np.sqrt(((end - start) ** 2).sum(axis=1)))
-    np.maximum.at(radii, vertex_blocks, np.sqrt((vertices**2).sum(axis=1)))
-    return BlockMeasures(np.bincount(part_blocks, parts.volumes, n), widths, edges, radii)
+    np.minimum.at(widths, part_blocks, shapes.widths(vertices, part_starts, topology))
+    np.minimum.at(edges, part_blocks[edge_parts], np.sqrt(((end - start) ** 2).sum(axis=1)))
+    np.maximum.at(radii, np.repeat(part_blocks, np.diff(part_starts)), np.sqrt((vertices**2).sum(axis=1)))
+    return BlockMeasures(np.bincount(part_blocks, of_parts.volumes, n), widths, edges, radii)

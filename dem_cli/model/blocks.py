@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -13,14 +14,23 @@ from dem_cli.errors import KeyPath
 class Block:
     """One rigid block.
 
-    parts      convex pieces that move as one, each an (n, 2) array of corners [m], counter-clockwise
-    thickness  depth out of plane [m] (2D)
+    parts      convex pieces that move as one: in the plane (n, 2) arrays of corners [m], counter-clockwise; in space
+               polyhedra
+    thickness  depth out of plane [m]; in space 1
+    across     of a generated block, that is drawn in a plane: from where to where it goes square to that in space [m];
+               None: half the thickness to either side
     path       where in the case file it comes from, for error messages
     """
 
     id: str
-    parts: tuple[np.ndarray, ...]
+    parts: tuple[Any, ...]  # of np.ndarray, or of Polyhedron
     material: str
     thickness: float = 1.0
     fixed: bool = False
+    across: tuple[float, float] | None = None
     path: KeyPath = field(default=(), compare=False)
+
+
+def block_corners(block: Block) -> np.ndarray:
+    """All corners of a block [m], (n, d)."""
+    return np.concatenate([getattr(part, "vertices", part) for part in block.parts])

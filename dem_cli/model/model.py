@@ -12,9 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.compounds import inner_edges
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
 from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
+
+NONE = np.zeros(0, np.int64)
+NO_AXES = np.zeros((0, 4))
 
 
 class ModelArrays(NamedTuple):
@@ -27,7 +30,7 @@ class ModelArrays(NamedTuple):
     fixed: np.ndarray  # blocks that cannot move, (n_blocks,) bool
     thickness: np.ndarray  # depth out of plane [m], (n_blocks,)
     masses: np.ndarray  # [kg], (n_blocks,)
-    inertias: np.ndarray  # about the centroid [kg m2], (n_blocks, r)
+    inertias: np.ndarray  # about the centroid, in space the principal ones [kg m2], (n_blocks, r)
     centroids: np.ndarray  # undeformed place [m], (n_blocks, d)
     part_blocks: np.ndarray  # block that each convex part belongs to, (n_parts,) int64, ascending
     part_starts: np.ndarray  # part p has the corners part_starts[p]:part_starts[p + 1], (n_parts + 1,) int64
@@ -35,6 +38,14 @@ class ModelArrays(NamedTuple):
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
     aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
+    # In space alone; in the plane they are empty, for there faces and axes follow from the corners:
+    part_faces: np.ndarray = NONE  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
+    face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
+    face_corners: np.ndarray = NONE  # corners around each face seen from outside, counter-clockwise, int64
+    principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
+
+
+SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
 
 
 class Model(ModelArrays):
@@ -48,6 +59,11 @@ class Model(ModelArrays):
     def n_blocks(self) -> int:
         """Number of blocks."""
         return len(self.block_ids)
+
+    @property
+    def rotations(self) -> slice:
+        """Columns of generalised vectors that are rotations; what is behind them deforms the block."""
+        return slice(self.dimension, self.dimension + self.inertias.shape[1])
 
     @property
     def n_parts(self) -> int:
@@ -68,32 +84,37 @@ class Model(ModelArrays):
     @cached_property
     def topology(self) -> Topology:
         """Faces of the parts, and their corners."""
+        if len(self.face_starts):
+            return Topology(self.part_faces, self.face_starts, self.face_corners)
         return topology_of_polygons(self.part_starts)
 
     @cached_property
     def inner_faces(self) -> np.ndarray:
         """Faces inside a block of several parts, that nothing else can touch, (n_faces,) bool."""
-        return inner_edges(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
+        return shapes_of(self.vertices).inner_faces(self.vertices, self.topology, self.part_blocks, self.parts.sizes)
 
     @cached_property
     def parts(self) -> PartMeasures:
         """Volumes and sizes of the parts."""
-        return part_measures(self.vertices, self.part_starts)
+        return part_measures(self.vertices, self.part_starts, self.topology)
 
     @cached_property
     def shapes(self) -> BlockMeasures:
         """Volumes, widths, shortest edges and radii of the blocks."""
-        return block_measures(self.vertices, self.topology, self.part_blocks, self.vertex_blocks, self.parts)
+        return block_measures(self.vertices, self.part_starts, self.topology, self.part_blocks, self.parts)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""
-        parts = [np.flatnonzero(self.part_blocks == block) for block in blocks]
-        corners = [
-            np.concatenate([np.arange(self.part_starts[p], self.part_starts[p + 1]) for p in of_block])
-            for of_block in parts
-        ]
-        sizes = np.diff(self.part_starts)[np.concatenate(parts)]
-        pick = np.array(blocks)
+        of_blocks = [np.flatnonzero(self.part_blocks == block) for block in blocks]
+        pick, parts = np.array(blocks), np.concatenate(of_blocks)
+        part_starts, corners = _rows(self.part_starts, parts)
+        part_faces, face_starts, face_corners = self.part_faces, self.face_starts, self.face_corners
+        if len(face_starts):
+            part_faces, faces = _rows(self.part_faces, parts)
+            face_starts, places = _rows(self.face_starts, faces)
+            renumbered = np.full(len(self.vertices), -1)
+            renumbered[corners] = np.arange(len(corners))
+            face_corners = renumbered[self.face_corners[places]]
         return self._replace(
             block_ids=tuple(self.block_ids[i] for i in blocks),
             block_material=self.block_material[pick],
@@ -102,13 +123,24 @@ class Model(ModelArrays):
             masses=self.masses[pick],
             inertias=self.inertias[pick],
             centroids=self.centroids[pick],
-            part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in parts]),
-            part_starts=np.concatenate([[0], np.cumsum(sizes)]),
-            vertices=self.vertices[np.concatenate(corners)],
+            part_blocks=np.repeat(np.arange(len(blocks)), [len(p) for p in of_blocks]),
+            part_starts=part_starts,
+            vertices=self.vertices[corners],
             dead_loads=self.dead_loads[pick],
             live_loads=self.live_loads[pick],
+            part_faces=part_faces,
+            face_starts=face_starts,
+            face_corners=face_corners,
+            principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
         )
 
     def parts_alone(self) -> Model:
         """Every part a block of its own that can move; for detection, masses and loads are not divided."""
         return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool))
+
+
+def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Some rows of compressed sparse rows: their new starts, and the places of their entries, row by row."""
+    counts = np.diff(starts)[rows]
+    upto = np.concatenate([[0], np.cumsum(counts)])
+    return upto, np.arange(upto[-1]) + np.repeat(starts[rows] - upto[:-1], counts)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.geometry.rotation import cross
+from dem_cli.geometry.parts import shapes_of
 from dem_cli.model.model import Model
 
 
@@ -15,11 +15,9 @@ def undeformed(model: Model) -> np.ndarray:
 
 def block_at(model: Model, point: np.ndarray) -> int | None:
     """Number of the block that contains a point of the undeformed structure (edges count), or None."""
-    vertices = undeformed(model)
-    first, after = model.topology.ends.T
-    edges, to_point = vertices[after] - vertices[first], point - vertices[first]
-    left = cross(edges, to_point)
-    size = np.hypot(*edges.T)
-    inside = np.minimum.reduceat(left / size, model.topology.part_faces[:-1]) >= -1e-9 * size.max()
+    vertices, topology = undeformed(model), model.topology
+    normals = shapes_of(vertices).normals(vertices, topology)
+    depths = ((vertices[topology.face_corners[topology.face_starts[:-1]]] - point) * normals).sum(axis=1)
+    inside = np.minimum.reduceat(depths, topology.part_faces[:-1]) >= -1e-9 * model.parts.sizes.max()
     found = np.flatnonzero(inside)
     return int(model.part_blocks[found[0]]) if len(found) else None

@@ -51,7 +51,8 @@ def stiffness_scale(model: Model) -> float:
     if not free.any():
         return 1.0
     weight = mean_weight(model.dead_loads[free], model.live_loads[free], model.dimension)
-    joint = float(np.sqrt(model.shapes.volumes[free]).mean() * model.thickness[free].mean())
+    sides = model.shapes.volumes[free] ** ((model.dimension - 1.0) / model.dimension)  # in space already the area
+    joint = float(sides.mean() * model.thickness[free].mean())
     return weight / (joint * smallest_edge(model))
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dem_cli.case.base import Pair
+from dem_cli.case.base import Vector
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.motion import pulses
 from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
@@ -104,9 +104,9 @@ def shifted(shape: Accelerogram, start: float) -> str:
     return f"begins at {shape.first:g} s in the file, and here at {start:g} s{keeps}"
 
 
-def _unit(direction: Pair) -> Pair:
+def _unit(direction: Vector) -> Vector:
     length = math.hypot(*direction)
-    return direction[0] / length, direction[1] / length
+    return tuple(x / length for x in direction)
 
 
 def _pulse(table: PulseTable) -> Waveform:

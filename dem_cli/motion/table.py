@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Vector
 from dem_cli.motion.units import SI_FACTORS
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
@@ -21,7 +21,7 @@ EC8_KEYS = ("soil", "ag")
 class MotionTable(CaseModel):
     """What every kind of motion accepts."""
 
-    direction: Pair = Field(default=(1.0, 0.0), description="of positive values; its length does not matter [-]")
+    direction: Vector = Field(default=(1.0, 0.0), description="of positive values; its length does not matter [-]")
     blocks: tuple[str, ...] = Field(
         default=(), description="ids of the fixed blocks that move; default: all of them", examples=[["ground"]]
     )
@@ -29,7 +29,7 @@ class MotionTable(CaseModel):
 
     @model_validator(mode="after")
     def _has_direction(self) -> MotionTable:
-        if self.direction == (0.0, 0.0):
+        if not any(self.direction):
             raise KeyProblem("[0, 0] is not allowed; must point somewhere", "direction")
         return self
 

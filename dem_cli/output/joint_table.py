@@ -15,7 +15,7 @@ from dem_cli.output.reader import JointHistory, Results
 from dem_cli.output.record import STATES
 
 JOINTS_TABLE = "joints.csv"
-PLACES = ("block a", "block b", "x [m]", "y [m]", "steepness [deg]", "length [m]", "area [m2]")
+PLACES = ("steepness [deg]", "length [m]", "area [m2]")
 
 
 def joints_of(results: Results) -> JointHistory:
@@ -30,18 +30,20 @@ def joints_of(results: Results) -> JointHistory:
 def steepness(joints: JointHistory) -> np.ndarray:
     """Angle of each joint to the horizontal [rad], (n,): 0 of a bed joint, π/2 of a head joint."""
     normals = np.abs(joints.places.normals)
-    return np.arctan2(normals[:, 0], normals[:, 1])
+    return np.arctan2(np.hypot.reduce(normals[:, :-1], axis=1), normals[:, -1])
 
 
 def write_joints(results: Results, frame: int, path: Path) -> Path:
     """One line per joint at a frame, by its number, with units in the first line; every digit kept. Raises DemError."""
     joints = joints_of(results)
     places, states = joints.places, joints.at(frame)
-    middle = places.ends.mean(axis=1)
-    numbers = [middle[:, 0], middle[:, 1], np.degrees(steepness(joints)), places.length, places.area]
+    middle = places.middles().T
+    numbers = [*middle, np.degrees(steepness(joints)), places.length, places.area]
     measured = {name: said.units for name, said in JOINT_STATES.items() if name != "state"}
     numbers += [getattr(states, name) for name in measured]
-    head = [*PLACES, *(f"{name.replace('_', ' ')} [{unit}]" for name, unit in measured.items()), "state"]
+    coordinates = [f"{axis} [m]" for axis in "xyz"[: len(middle)]]
+    named = [f"{name.replace('_', ' ')} [{unit}]" for name, unit in measured.items()]
+    head = ["block a", "block b", *coordinates, *PLACES, *named, "state"]
     names = results.model.block_ids
     with whole(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")

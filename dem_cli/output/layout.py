@@ -12,8 +12,7 @@ from typing import NamedTuple
 import h5py
 
 PURE, WORDS = "1", ""  # units of pure numbers, counts and numbers of things; of text
-_XY = ("x", "y")
-PER_SECOND, PER_STEP = ("m/s", "m/s", "rad/s"), ("m/step", "m/step", "rad/step")
+PER_SECOND, PER_STEP = ("m/s", "rad/s"), ("m/step", "rad/step")  # of velocities: of centroids, of spins
 TEXT = h5py.string_dtype()
 
 
@@ -24,6 +23,12 @@ class Described(NamedTuple):
     units: str | tuple[str, ...] = PURE  # several: of each column
     axes: tuple[str, ...] = ()  # what each of its dimensions counts
     columns: tuple[str, ...] = ()  # names along the last axis
+    in_space: Described | None = None  # what it holds in 3D, where that is something else
+    spatial: bool = False  # whether it is there in 3D alone
+
+    def of(self, dimension: int) -> Described:
+        """What it holds in so many dimensions."""
+        return self.in_space if dimension == 3 and self.in_space is not None else self
 
 
 class Group(NamedTuple):
@@ -46,40 +51,83 @@ def describe(dataset: h5py.Dataset, said: Described) -> None:
 
 
 _BLOCK, _JOINT, _POINT = ("block",), ("joint",), ("contact point",)
-_MOVED = ("x", "y", "rotation")
+_XYZ, _QUATERNION = ("x", "y", "z"), ("w", "x", "y", "z")
+_MOVED, _MOVED_IN_SPACE = ("x", "y", "rotation"), (*_XYZ, "rotation x", "rotation y", "rotation z")
+
+
+def _vector(meaning: str, units: str, axes: tuple[str, ...]) -> Described:
+    """Two components in the plane, three in space."""
+    return Described(meaning, units, axes, _XYZ[:2], Described(meaning, units, axes, _XYZ))
+
+
+def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...]) -> Described:
+    """What has a component for each way in which a block can move."""
+    space = Described(meaning, (linear,) * 3 + (angular,) * 3, axes, _MOVED_IN_SPACE)
+    return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
+
+
+_COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
+_INERTIA, _AXIS = "moment of inertia about the centroid", ("block", "axis")
 MODEL = {
     "block_ids": Described("name of each block", WORDS, _BLOCK),
     "material_names": Described("name of each material", WORDS, ("material",)),
     "block_material": Described("material of each block, by its number", PURE, _BLOCK),
     "fixed": Described("whether the block cannot move", PURE, _BLOCK),
-    "thickness": Described("depth out of plane", "m", _BLOCK),
+    "thickness": Described(
+        "depth out of plane", "m", _BLOCK, (), Described("1: the corners say how deep a block is", PURE, _BLOCK)
+    ),
     "masses": Described("mass", "kg", _BLOCK),
-    "inertias": Described("moment of inertia about the centroid", "kg m2", ("block", "axis"), ("z",)),
-    "centroids": Described("centroid where the structure was drawn", "m", ("block", "coordinate"), _XY),
+    "inertias": Described(
+        _INERTIA, "kg m2", _AXIS, ("z",), Described(f"principal {_INERTIA}", "kg m2", _AXIS, ("1", "2", "3"))
+    ),
+    "centroids": _vector("centroid where the structure was drawn", "m", _COORDINATE),
     "part_blocks": Described("block that each convex part belongs to, by its number", PURE, ("part",)),
     "part_starts": Described(
         "first corner of each convex part; they are counter-clockwise, and the last number is their count",
         PURE,
         ("part + 1",),
+        (),
+        Described("first corner of each convex part; the last number is their count", PURE, ("part + 1",)),
     ),
-    "vertices": Described("corner from the centroid of its block, undeformed", "m", ("corner", "coordinate"), _XY),
-    "dead_loads": Described(
-        "weight and dead point loads about the centroid", ("N", "N", "N m"), ("block", "component"), _MOVED
+    "vertices": _vector("corner from the centroid of its block, undeformed", "m", ("corner", "coordinate")),
+    "dead_loads": _generalised("weight and dead point loads about the centroid", "N", "N m", _COMPONENT),
+    "live_loads": _generalised("loads that the multiplier acts on, about the centroid", "N", "N m", _COMPONENT),
+    "part_faces": Described(
+        "first face of each convex part; the last number is their count", PURE, ("part + 1",), spatial=True
     ),
-    "live_loads": Described(
-        "loads that the multiplier acts on, about the centroid", ("N", "N", "N m"), ("block", "component"), _MOVED
+    "face_starts": Described(
+        "where the corners of each face begin in face_corners; the last number is their count",
+        PURE,
+        ("face + 1",),
+        spatial=True,
+    ),
+    "face_corners": Described(
+        "corners around each face, by their numbers; counter-clockwise seen from outside",
+        PURE,
+        ("corner of a face",),
+        spatial=True,
+    ),
+    "principal_axes": Described(
+        "unit quaternion, scalar first, that turns vectors from the principal axes of a block to those of the world",
+        PURE,
+        _COMPONENT,
+        _QUATERNION,
+        spatial=True,
     ),
 }
+_TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
-    "positions": Described("centroid", "m", ("frame", "block", "coordinate"), _XY),
+    "positions": _vector("centroid", "m", ("frame", "block", "coordinate")),
     "orientations": Described(
-        "angle that the block has turned by, counter-clockwise", "rad", ("frame", "block", "axis"), ("z",)
+        _TURNED, "rad", ("frame", "block", "axis"), ("z",),
+        Described(
+            "unit quaternion, scalar first, of how the block has turned since it was drawn",
+            PURE, ("frame", "block", "component"), _QUATERNION,
+        ),
     ),
-    "velocities": Described(
-        "velocity and spin: per second in a time history, else per solver step",
-        PER_SECOND,
+    "velocities": _generalised(
+        "velocity and spin: per second in a time history, else per solver step", *PER_SECOND,
         ("frame", "block", "component"),
-        _MOVED,
     ),
     "step": Described("solver steps so far", PURE, ("frame",)),
     "load": Described("load multiplier λ", PURE, ("frame",)),
@@ -89,41 +137,75 @@ FRAMES = {
     "n_contacts": Described(
         "how many rows of /dem/contacts are of this frame; they follow each other", PURE, ("frame",)
     ),
+}  # fmt: skip
+PER_STEP_FRAMES = FRAMES | {
+    "velocities": _generalised(FRAMES["velocities"].meaning, *PER_STEP, FRAMES["velocities"].axes)
 }
+_PLACE, _SHEAR = ("contact point", "coordinate"), ("contact point", "tangent")
 CONTACTS = {
     "joint": Described("joint that owns the point; numbered anew whenever joints are found anew", PURE, _POINT),
     "blocks": Described("the two blocks, by their numbers", PURE, ("contact point", "side"), ("a", "b")),
-    "points": Described("where the force acts", "m", ("contact point", "coordinate"), _XY),
-    "normals": Described("unit vector from block a to block b", PURE, ("contact point", "coordinate"), _XY),
+    "points": _vector("where the force acts", "m", _PLACE),
+    "normals": _vector("unit vector from block a to block b", PURE, _PLACE),
     "normal_force": Described("normal force, compression positive", "N", _POINT),
     "shear_force": Described(
-        "shear force on block b along the tangent, the normal turned by +90°", "N", ("contact point", "tangent"), ("t",)
+        "shear force on block b along the tangent, the normal turned by +90°", "N", _SHEAR, ("t",),
+        Described("shear force on block b along `tangents` and normal × tangent", "N", _SHEAR, ("t1", "t2")),
     ),
     "gap": Described("distance of the faces, positive open", "m", _POINT),
     "slip": Described("length of the path of slip so far", "m", _POINT),
     "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _POINT),
-}
+    "tangents": Described(
+        "unit vector of the first tangent, square to the normal; the second one is normal × tangent",
+        PURE, _PLACE, _XYZ, spatial=True,
+    ),
+}  # fmt: skip
+_END = ("joint", "end", "coordinate")
 JOINT_PLACES = {
     "blocks": Described("the two blocks, by their numbers", PURE, ("joint", "side"), ("a", "b")),
-    "ends": Described("where the joint begins and ends on block a, as drawn", "m", ("joint", "end", "coordinate"), _XY),
-    "normals": Described("unit vector from block a to block b, as drawn", PURE, ("joint", "coordinate"), _XY),
-    "length": Described("length of the joint as drawn", "m", _JOINT),
-    "area": Described("length times the smaller thickness of both blocks", "m2", _JOINT),
-}
+    "ends": Described(
+        "where the joint begins and ends on block a, as drawn", "m", _END, _XYZ[:2],
+        Described("the two corners of the joint on block a that are furthest apart, as drawn", "m", _END, _XYZ),
+    ),
+    "normals": _vector("unit vector from block a to block b, as drawn", PURE, ("joint", "coordinate")),
+    "length": Described("length of the joint as drawn", "m", _JOINT, (), Described("between `ends`", "m", _JOINT)),
+    "area": Described(
+        "length times the smaller thickness of both blocks", "m2", _JOINT, (),
+        Described("area of the overlap as drawn; of lone edges and corners what they stand for", "m2", _JOINT),
+    ),
+    "starts": Described(
+        "first corner of each joint; the last number is their count", PURE, ("joint + 1",), spatial=True
+    ),
+    "corners": Described(
+        "corners around each joint on block a, as drawn, counter-clockwise seen from block b; two of an edge, one of a "
+        "corner", "m", ("corner of a joint", "coordinate"), _XYZ, spatial=True,
+    ),
+}  # fmt: skip
 _STATE = ("frame", "joint")
 JOINT_STATES = {
-    "opening": Described("mean distance of its two ends across the joint, positive open", "m", _STATE),
-    "crack_width": Described("distance of its wider end across the joint; 0 where none is open", "m", _STATE),
+    "opening": Described(
+        "mean distance of its two ends across the joint, positive open", "m", _STATE, (),
+        Described("mean distance across the joint, positive open", "m", _STATE),
+    ),
+    "crack_width": Described(
+        "distance of its wider end across the joint; 0 where none is open", "m", _STATE, (),
+        Described("distance of its widest corner across the joint; 0 where none is open", "m", _STATE),
+    ),
     "slip": Described(
-        "how far the middle of b has slid on a along the tangent, the normal turned by +90°", "m", _STATE
+        "how far the middle of b has slid on a along the tangent, the normal turned by +90°", "m", _STATE, (),
+        Described("how far the middle of b has slid on a", "m", _STATE),
     ),
     "normal_stress": Described("normal force over area, compression positive", "Pa", _STATE),
-    "shear_stress": Described("shear force on b along the tangent over area", "Pa", _STATE),
+    "shear_stress": Described(
+        "shear force on b along the tangent over area", "Pa", _STATE, (),
+        Described("shear force over area", "Pa", _STATE),
+    ),
     "eccentricity": Described(
-        "how far the normal force acts from the middle, along the tangent; 0 without a force", "m", _STATE
+        "how far the normal force acts from the middle, along the tangent; 0 without a force", "m", _STATE, (),
+        Described("how far the normal force acts from the middle; 0 without a force", "m", _STATE),
     ),
     "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _STATE),
-}
+}  # fmt: skip
 _ROW = ("row",)
 HISTORY = {
     "step": Described("solver steps so far", PURE, _ROW),
@@ -151,9 +233,9 @@ ENERGY = {
 }
 _SAMPLE = ("sample", "coordinate")
 SERIES = {
-    "base_acceleration": Described("acceleration of the base", "m/s2", _SAMPLE, _XY),
-    "base_velocity": Described("velocity of the base", "m/s", _SAMPLE, _XY),
-    "base_displacement": Described("displacement of the base", "m", _SAMPLE, _XY),
+    "base_acceleration": _vector("acceleration of the base", "m/s2", _SAMPLE),
+    "base_velocity": _vector("velocity of the base", "m/s", _SAMPLE),
+    "base_displacement": _vector("displacement of the base", "m", _SAMPLE),
     "monitors": Described(
         "value of each [[monitor]]; `columns` names them, `units` has one for each", (), ("sample", "monitor")
     ),
@@ -182,7 +264,11 @@ GROUPS = {  # of results.h5
             "*": "version of each package that computed: numpy, numba, ...",
         },
     ),
-    "/dem/model": Group("the structure as it was drawn", MODEL, {"dimension": "2: x to the right, y upwards"}),
+    "/dem/model": Group(
+        "the structure as it was drawn",
+        MODEL,
+        {"dimension": "2: x to the right, y upwards; 3: x and y horizontal, z upwards"},
+    ),
     "/dem/frames": Group(
         "snapshots: as many as `output.frames` asks for, or as the motion of a time history needs", FRAMES
     ),
@@ -208,7 +294,9 @@ BLOCK_FIELDS = {
     "CellData/block_id": Described("number of the block"),
     "CellData/material": Described("number of its material"),
     "CellData/fixed": Described("1: the block cannot move"),
-    "CellData/rotation": Described("angle that the block has turned by, counter-clockwise", "rad"),
+    "CellData/rotation": Described(
+        _TURNED, "rad", in_space=Described("angle that the block has turned by, from 0 to π", "rad")
+    ),
 }
 CONTACT_FIELDS = {
     "PointData/joint": CONTACTS["joint"],
@@ -217,7 +305,9 @@ CONTACT_FIELDS = {
     "PointData/normal": CONTACTS["normals"],
     "PointData/force": Described("force on block b", "N"),
     "PointData/normal_force": CONTACTS["normal_force"],
-    "PointData/shear_force": CONTACTS["shear_force"],
+    "PointData/shear_force": CONTACTS["shear_force"]._replace(
+        in_space=Described("size of the shear force", "N", _POINT)
+    ),
     "PointData/gap": CONTACTS["gap"],
     "PointData/slip": CONTACTS["slip"],
     "PointData/state": Described("0 open, 1 sticking, 2 sliding"),
@@ -244,7 +334,12 @@ VTK_FILES = {  # what each shows, and its fields
 }
 
 
-def units_of(declared: dict[str, Described]) -> dict[str, str]:
+def declared(table: Mapping[str, Described], dimension: int) -> dict[str, Described]:
+    """What the datasets of a group hold in so many dimensions."""
+    return {name: said.of(dimension) for name, said in table.items() if dimension == 3 or not said.spatial}
+
+
+def units_of(table: Mapping[str, Described]) -> dict[str, str]:
     """Units of what has one, by name."""
-    units = {name: said.units for name, said in declared.items()}
+    units = {name: said.units for name, said in table.items()}
     return {name: unit for name, unit in units.items() if isinstance(unit, str) and unit not in (PURE, WORDS)}

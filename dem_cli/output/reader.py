@@ -15,7 +15,7 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.layout import FRAMES, units_of
+from dem_cli.output.layout import FRAMES, declared, units_of
 from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
@@ -56,14 +56,18 @@ class JointHistory(NamedTuple):
 class Frames(Sequence[Frame]):
     """All frames of a run, handed out one by one; their arrays are in memory, or datasets of a file that is open."""
 
-    units = units_of(FRAMES)
-
     def __init__(self, columns: dict[str, Stored], contacts: dict[str, Stored]):
         self._columns, self._contacts = columns, contacts
         self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
 
     def __len__(self) -> int:
         return len(self._starts) - 1
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the fields of a frame that have one."""
+        d = self._columns["positions"].shape[-1] if len(self) else 2
+        return units_of(declared(FRAMES, d))
 
     @overload
     def __getitem__(self, index: int) -> Frame: ...
@@ -74,7 +78,7 @@ class Frames(Sequence[Frame]):
             return [self[i] for i in range(len(self))[index]]
         i = range(len(self))[index]
         rows = slice(self._starts[i], self._starts[i + 1])
-        contacts = ContactRecord(**{name: self._contacts[name][rows] for name in ContactRecord._fields})
+        contacts = ContactRecord(**{name: values[rows] for name, values in self._contacts.items()})
         columns = self._columns
         return Frame(
             stage=STAGES[columns["stage"][i]],
@@ -141,9 +145,10 @@ def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
         str(name): history["monitor_values"][:n_rows, i] if n_rows else np.zeros(0)
         for i, name in enumerate(history.attrs["monitors"])
     }
+    model = _read_model(dem["model"])
     return Results(
         summary=summary,
-        model=_read_model(dem["model"]),
+        model=model,
         frames=_read_frames(dem, lazy),
         history=columns,
         energy=energy,
@@ -152,7 +157,7 @@ def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
         provenance={name: str(value) for name, value in dem["provenance"].attrs.items()},
         status=str(dem.attrs["status"]),
         kind=str(dem.attrs["kind"]),
-        series=read_series(dem["series"]) if "series" in dem else None,
+        series=read_series(dem["series"], model.dimension) if "series" in dem else None,
         joints=_read_joints(dem["joints"], lazy) if "joints" in dem else None,
     )
 
@@ -167,12 +172,12 @@ def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
     columns = {name: data if lazy and name in FRAME_ARRAYS else data[:n_frames] for name, data in held.items()}
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
     contacts = dem["contacts"]
-    return Frames(columns, {name: contacts[name] if lazy else contacts[name][:] for name in ContactRecord._fields})
+    return Frames(columns, {name: data if lazy else data[:] for name, data in contacts.items()})
 
 
 def _read_joints(group: h5py.Group, lazy: bool) -> JointHistory:
     states = [group[name] for name in JointStates._fields]
-    places = JointPlaces(*(group[name][:] for name in JointPlaces._fields))
+    places = JointPlaces(**{name: group[name][:] for name in JointPlaces._fields if name in group})
     return JointHistory(places, JointStates(*(states if lazy else [data[:] for data in states])))
 
 

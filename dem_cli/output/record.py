@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.rotation import tangents_of
+
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
+NO_TANGENTS = np.zeros((0, 0))
+NO_OUTLINES, NO_CORNERS, OUTLINE = np.zeros(0, np.int64), np.zeros((0, 3)), ("starts", "corners")
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
 STAGES = (
     "gravity",
@@ -36,31 +40,59 @@ class ContactRecord(NamedTuple):
     points: np.ndarray  # where it acts [m], (n, d)
     normals: np.ndarray  # unit, from a to b, (n, d)
     normal_force: np.ndarray  # compression positive [N], (n,)
-    shear_force: np.ndarray  # on b along the tangents [N], (n, d - 1); 2D: normal turned by +90°
+    shear_force: np.ndarray  # on b along the tangents [N], (n, d − 1)
     gap: np.ndarray  # positive open [m], (n,)
     slip: np.ndarray  # accumulated slip path [m], (n,)
     state: np.ndarray  # index into STATES, (n,) int8
+    # In space alone, (n, 3): the first tangent, unit; the second is normal × tangent. In the plane the tangent is the
+    # normal turned by +90°, and this is empty.
+    tangents: np.ndarray = NO_TANGENTS
+
+    def stored(self) -> dict[str, np.ndarray]:
+        """Fields by name, without what is empty in the plane."""
+        return {name: values for name, values in self._asdict().items() if 0 not in values.shape[1:]}
+
+    def forces(self) -> np.ndarray:
+        """Force of each point on its second block [N], (n, d)."""
+        total = self.normal_force[:, np.newaxis] * self.normals
+        for along, shear in zip(tangents_of(self.normals, self.tangents), self.shear_force.T, strict=True):
+            total = total + shear[:, np.newaxis] * along
+        return total
 
 
 class JointPlaces(NamedTuple):
-    """Joints as they were drawn: pairs of edges that face each other in the undeformed structure."""
+    """Joints as they were drawn: pairs of faces that face each other in the undeformed structure."""
 
     blocks: np.ndarray  # the two blocks a, b, (n, 2) int64
-    ends: np.ndarray  # where it begins and ends, on a [m], (n, 2, d)
+    ends: np.ndarray  # where it begins and ends, on a; in space its two corners furthest apart [m], (n, 2, d)
     normals: np.ndarray  # unit, from a to b, (n, d)
-    length: np.ndarray  # [m], (n,)
-    area: np.ndarray  # length times the smaller thickness [m²], (n,)
+    length: np.ndarray  # between its ends [m], (n,)
+    area: np.ndarray  # in the plane length times the smaller thickness [m²], (n,)
+    # In space alone: joint j has the corners starts[j]:starts[j + 1] around its normal; one of a corner, two of an edge
+    starts: np.ndarray = NO_OUTLINES  # (n + 1,) int64
+    corners: np.ndarray = NO_CORNERS  # on a [m], (n_corners, 3)
+
+    def stored(self) -> dict[str, np.ndarray]:
+        """Fields by name, without what is empty in the plane."""
+        return {name: values for name, values in self._asdict().items() if len(self.starts) or name not in OUTLINE}
+
+    def middles(self) -> np.ndarray:
+        """Middle of each joint on a: of its ends, in space the mean of its corners [m], (n, d)."""
+        if not len(self.starts):
+            return self.ends.mean(axis=1)
+        return np.add.reduceat(self.corners, self.starts[:-1], axis=0) / np.diff(self.starts)[:, np.newaxis]
 
 
 class JointStates(NamedTuple):
     """These joints at one instant, (n,) each; across and along are said by a, with which a joint turns."""
 
-    opening: np.ndarray  # mean distance of its ends across it, positive open [m]
-    crack_width: np.ndarray  # distance of its wider end; 0 where none is open [m]
-    slip: np.ndarray  # of the middle of b on a, along the normal turned by +90° [m]
+    # In the plane slip, shear stress and eccentricity are along the normal turned by +90°; in space they are lengths.
+    opening: np.ndarray  # mean distance across it, positive open [m]
+    crack_width: np.ndarray  # distance of its wider end, or its widest corner; 0 where none is open [m]
+    slip: np.ndarray  # of the middle of b on a [m]
     normal_stress: np.ndarray  # normal force over area, compression positive [Pa]
-    shear_stress: np.ndarray  # on b, along the normal turned by +90° [Pa]
-    eccentricity: np.ndarray  # of the normal force from the middle, the same way; 0 where there is none [m]
+    shear_stress: np.ndarray  # on b [Pa]
+    eccentricity: np.ndarray  # of the normal force from the middle; 0 where there is none [m]
     state: np.ndarray  # index into STATES, int8: sliding where any point slides, open where none presses
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from dem_cli.output.csv_cells import cell
 from dem_cli.output.growing_dataset import GrowingGroup
-from dem_cli.output.layout import SERIES
+from dem_cli.output.layout import SERIES, declared
 from dem_cli.output.record import Samples
 
 MONITOR_UNITS = {
@@ -53,13 +53,14 @@ class HistorySeries(NamedTuple):
 class SeriesWriter:
     """Writer of time histories: keeps what comes in memory until `flush`; remembers the peaks."""
 
-    def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str]):
+    def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str], dimension: int):
         self.names, self.quantities = tuple(names), tuple(quantities)
         group.attrs.create("monitors", list(self.names), dtype=_TEXT)
         group.attrs.create("quantities", list(self.quantities), dtype=_TEXT)
         units = tuple(MONITOR_UNITS[quantity] for quantity in self.quantities)
         watched = SERIES["monitors"]._replace(columns=self.names, units=units)
-        self._group, self._columns = group, GrowingGroup(group, SERIES | {"monitors": watched})
+        said = declared(SERIES, dimension) | {"monitors": watched}
+        self._group, self._columns, self.dimension = group, GrowingGroup(group, said), dimension
         self._waiting: list[Samples] = []
         self.n_waiting = 0
         self._peaks: list[Peak] = []
@@ -105,7 +106,7 @@ class SeriesWriter:
 
     def write_csv(self, path: Path) -> None:
         """All of it as text, one line per sample."""
-        series = read_series(self._group)
+        series = read_series(self._group, self.dimension)
         with path.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerow(map(cell, headers(series)))
             if len(series.time):
@@ -124,13 +125,13 @@ def table(series: HistorySeries) -> np.ndarray:
     return np.column_stack([series.time, series.base.reshape(len(series.time), -1), *series.monitors.values()])
 
 
-def read_series(group: h5py.Group) -> HistorySeries:
+def read_series(group: h5py.Group, dimension: int) -> HistorySeries:
     """What has been written so far."""
     names, quantities = (list(map(str, group.attrs[key])) for key in ("monitors", "quantities"))
     if "time" not in group:
         nothing = np.zeros(0)
         return HistorySeries(
-            nothing, np.zeros((0, len(BASE), 2)), dict.fromkeys(names, nothing), dict(zip(names, quantities))
+            nothing, np.zeros((0, len(BASE), dimension)), dict.fromkeys(names, nothing), dict(zip(names, quantities))
         )
     n = len(group["time"])
     base = np.stack([group[f"base_{name}"][:n] for name in BASE], axis=1)

@@ -13,7 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.model.model import Model
+from dem_cli.model.model import SPATIAL_MODEL, Model
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
@@ -27,8 +27,8 @@ from dem_cli.output.layout import (
     JOINT_PLACES,
     JOINT_STATES,
     MODEL,
-    PER_SECOND,
-    PER_STEP,
+    PER_STEP_FRAMES,
+    declared,
     describe,
 )  # fmt: skip
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
@@ -91,10 +91,9 @@ class ResultWriter:
         describe(dem.create_dataset("case", data=case_text, dtype=_TEXT), DEM["case"])
         dem.create_group("provenance").attrs.update(provenance)
         _store_model(dem.create_group("model"), self.model)
-        units = PER_SECOND if self.kind in IN_SECONDS else PER_STEP
-        moving = FRAMES | {"velocities": FRAMES["velocities"]._replace(units=units)}
-        self._frames = GrowingGroup(dem.create_group("frames"), moving, _FRAMES_AT_ONCE)
-        self._contacts = GrowingGroup(dem.create_group("contacts"), CONTACTS)
+        d, moving = self.model.dimension, FRAMES if self.kind in IN_SECONDS else PER_STEP_FRAMES
+        self._frames = GrowingGroup(dem.create_group("frames"), declared(moving, d), _FRAMES_AT_ONCE)
+        self._contacts = GrowingGroup(dem.create_group("contacts"), declared(CONTACTS, d))
         watched = HISTORY["monitor_values"]._replace(
             columns=self.monitors, units=tuple(MONITOR_UNITS[quantity] for quantity in self.quantities)
         )
@@ -129,7 +128,9 @@ class ResultWriter:
     def samples(self, samples: Samples) -> None:
         """Keep a stretch of a time history; it goes to disk with the next frame, or when many wait."""
         if self._series is None:
-            self._series = SeriesWriter(self.dem.create_group("series"), self.monitors, self.quantities)
+            self._series = SeriesWriter(
+                self.dem.create_group("series"), self.monitors, self.quantities, self.model.dimension
+            )
         self._series.append(samples)
         if self._series.n_waiting >= _BUFFERED_SAMPLES:
             self._guarded(self._flush)
@@ -215,15 +216,16 @@ class ResultWriter:
         if joints is not None and len(joints.places.area):
             self._joints = joints
             group = self.dem.create_group("joints")
-            for name, values in joints.places._asdict().items():
-                describe(group.create_dataset(name, data=values), JOINT_PLACES[name])
-            self._joint_states = GrowingGroup(group, JOINT_STATES, _FRAMES_AT_ONCE)
+            said, states = (declared(table, self.model.dimension) for table in (JOINT_PLACES, JOINT_STATES))
+            for name, values in joints.places.stored().items():
+                describe(group.create_dataset(name, data=values), said[name])
+            self._joint_states = GrowingGroup(group, states, _FRAMES_AT_ONCE)
         self._vtk = ParaViewFiles(self.model, self._joints, self._open)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
     def _store_frame(self, frame: Frame) -> None:
         frames, contacts = self._frames, self._contacts
-        for name, values in frame.contacts._asdict().items():
+        for name, values in frame.contacts.stored().items():
             contacts.append(name, values)
         for name in FRAME_ARRAYS:
             frames.append(name, getattr(frame, name)[np.newaxis])
@@ -235,15 +237,16 @@ class ResultWriter:
 
 
 def _store_model(group: h5py.Group, model: Model) -> None:
+    said = declared(MODEL, model.dimension)
     for name, value in model._asdict().items():
-        if name in _UNSAID:
+        if name in _UNSAID or (name in SPATIAL_MODEL and not len(value)):
             continue
         if isinstance(value, int):
             group.attrs[name] = value
         elif isinstance(value, tuple):
-            describe(group.create_dataset(name, data=list(value), dtype=_TEXT), MODEL[name])
+            describe(group.create_dataset(name, data=list(value), dtype=_TEXT), said[name])
         else:
-            describe(group.create_dataset(name, data=value), MODEL[name])
+            describe(group.create_dataset(name, data=value), said[name])
 
 
 def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:

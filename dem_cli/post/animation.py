@@ -16,15 +16,14 @@ from dem_cli.output.series import HistorySeries
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style, view_box
 from dem_cli.post.playback import milliseconds, playback
+from dem_cli.post.scene.drawing import drawing_of
 
 _LAST_MS = 1200  # the last one stays longer
 _DPI = 100
 _WHITE = "#ffffff"
 _SHADES = 7  # of each pair of colours that meet at a smooth edge
-_EDGES = (
-    (_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE),
-    (style.STONE, style.STONE_EDGE), (style.GROUND, style.STONE_EDGE),
-)  # fmt: skip
+_MOST_LIT = 96  # colours of stone, and of ground
+_EDGES = ((_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE))
 
 
 def draw_animation(results: Results, path: Path) -> None:
@@ -49,7 +48,7 @@ def _pictures(results: Results, frames: Sequence[Frame]) -> list[Any]:
             raise MissingExtra("an animation needs Pillow", "plot") from None
         scene = _Scene(results, frames, make)
         palette = Image.new("P", (1, 1))
-        palette.putpalette(_palette())
+        palette.putpalette(_palette(scene.drawing.lights))
         pictures = []
         for frame in frames:
             scene.show(frame)
@@ -58,12 +57,21 @@ def _pictures(results: Results, frames: Sequence[Frame]) -> list[Any]:
     return pictures
 
 
-def _palette() -> list[int]:
-    """Red, green and blue of every colour of the pictures: flat areas and the shades of their edges."""
+def _palette(lights: Sequence[float]) -> list[int]:
+    """Red, green and blue of every colour of the pictures: flat areas and the shades of their edges.
+
+    lights: by which blocks are lighter or darker than their stone.
+    """
     from matplotlib.colors import to_rgb
 
-    steps = np.linspace(0.0, 1.0, _SHADES)[:, np.newaxis]
-    shades = [np.array(to_rgb(a)) * (1.0 - steps) + np.array(to_rgb(b)) * steps for a, b in _EDGES]
+    def between(a: np.ndarray, b: np.ndarray, count: int) -> np.ndarray:
+        return a + np.linspace(0.0, 1.0, count)[:, np.newaxis] * (b - a)
+
+    shades = [between(np.array(to_rgb(a)), np.array(to_rgb(b)), _SHADES) for a, b in _EDGES]
+    count = max(2, min(_SHADES, _MOST_LIT // len(lights)))
+    for stone in (style.STONE, style.GROUND):
+        lit = [np.clip(light * np.array(to_rgb(stone)), 0.0, 1.0) for light in lights]
+        shades += [between(colour, np.array(to_rgb(style.STONE_EDGE)), count) for colour in lit]
     return np.rint(255.0 * np.concatenate(shades)).astype(int).ravel().tolist()
 
 
@@ -74,9 +82,10 @@ class _Scene:
         model, self.results = results.model, results
         self.model = model
         self.scale = min(frame_measures.visible_scale(model, frame) for frame in frames)
+        self.drawing = drawing_of(model, max(frames, key=lambda frame: frame.displacement))
         self.carried = view_box.carried(results, self.scale)
         corners = [self._corners(frame) for frame in frames]
-        low, high = view_box.window(model, corners)
+        low, high = self.drawing.window(corners, *view_box.window(model, corners))
         series = results.series
         self.strip = series is not None and bool((series.base[:, 0] != 0.0).any())
         width, height = _size(high - low)
@@ -93,23 +102,20 @@ class _Scene:
         self.figure.set_layout_engine("none")
 
     def _corners(self, frame: Frame) -> np.ndarray:
-        """Corners as drawn, carried along by the ground [m], (n_vertices, 2)."""
+        """Corners as drawn, carried along by the ground [m], (n_vertices, d)."""
         moved = view_box.ground(self.results.series, frame) if self.carried else 0.0
         return view_box.corners(self.model, frame, self.scale, moved)
 
     def _draw_structure(self, low: np.ndarray, high: np.ndarray) -> None:
-        from matplotlib.collections import PolyCollection
-
-        fixed = self.model.fixed[self.model.part_blocks]
-        faces = [style.GROUND if f else style.STONE for f in fixed]
-        self.blocks = PolyCollection([], facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6)
-        self.axis.add_collection(self.blocks)
+        self.place = self.drawing.draw_blocks(self.axis, low, high)
         self.axis.set_aspect("equal")
         self.axis.set_xlim(low[0], high[0])
         self.axis.set_ylim(low[1], high[1])
         self.axis.axis("off")
+        self.drawing.finish(self.axis)
         if self.carried:  # a place in space that stays, so that one sees the ground move
-            self.axis.plot(rest_vertices(self.model)[:, 0].mean(), low[1], "^", ms=9, color=style.INK, clip_on=False)
+            middle = self.drawing.flat(rest_vertices(self.model))[:, 0].mean()
+            self.axis.plot(middle, low[1], "^", ms=9, color=style.INK, clip_on=False)
 
     def _draw_strip(self, axis: Any, series: HistorySeries) -> None:
         axis.plot(series.time, series.base[:, 0], lw=0.8, color=style.GREY)
@@ -120,8 +126,7 @@ class _Scene:
 
     def show(self, frame: Frame) -> None:
         """Put the blocks where they are in a frame."""
-        corners, starts = self._corners(frame), self.model.part_starts
-        self.blocks.set_verts([corners[a:b] for a, b in zip(starts, starts[1:])])
+        self.place(self._corners(frame))
         timed = self.results.kind in IN_SECONDS
         text = f"{frame.time:.2f} s" if timed else f"{frame.stage}: λ = {frame.load:.3f}"
         drawn = "" if self.scale == 1.0 else f", displacements × {self.scale:,.0f}"

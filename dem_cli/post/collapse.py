@@ -13,6 +13,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style
+from dem_cli.post.scene.drawing import Drawing, drawing_of
 
 MECHANISM = "mechanism"  # of limit analysis
 _WIDEST_FORCE = 6.0  # points
@@ -23,25 +24,25 @@ _LEGEND_ROOM = 0.85  # inches
 def draw_collapse(results: Results, path: Path) -> None:
     """One panel at failure, one at the last frame; one only where they are the same."""
     model, panels = results.model, _panels(results)
-    corners = [rest_vertices(model)]
+    drawing = drawing_of(model, panels[-1][1])
+    corners = [drawing.flat(rest_vertices(model))]
     drawn = []
     scales = [frame_measures.visible_scale(model, frame) for _, frame in panels]
     if results.kind in IN_SECONDS:  # the same structure before and after
         scales = [min(scales)] * len(scales)
     for (name, frame), scale in zip(panels, scales, strict=True):
         shown = frame_measures.scaled(model, frame, scale)
-        corners.append(placed_vertices(model, shown.positions, shown.orientations))
+        corners.append(drawing.flat(placed_vertices(model, shown.positions, shown.orientations)))
         drawn.append((name, frame, shown, scale))
     low, high = window(model, corners)
     width, height, rows, columns = _layout(high - low, len(panels))
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, (name, frame, shown, scale) in zip(axes, drawn, strict=True):
-            _draw_panel(axis, model, shown, scale, low, high)
+            _draw_panel(axis, drawing, model, shown, scale, low, high)
             axis.set_title(_panel_title(name, frame, scale, results.kind), fontsize=10, fontweight="normal")
-        _legend(
-            figure, any(len(frame_measures.chains(model, frame_measures.resultants(f.contacts))) for _, f in panels)
-        )
+        chained = any(len(frame_measures.chains(model, frame_measures.resultants(f.contacts))) for _, f in panels)
+        _legend(figure, drawing.legend, chained)
         style.headline(figure, results.summary)
 
 
@@ -112,7 +113,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
 
 
 def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """What all panels show: everything, with a margin; of the ground only what is near."""
+    """What all panels show: everything, with a margin; of the ground only what is near. corners: (n_vertices, 2)."""
     free = ~model.fixed[model.vertex_blocks]
     moving = np.concatenate([c[free] if free.any() else c for c in corners])
     everything = np.concatenate(corners)
@@ -134,70 +135,21 @@ def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
     return max(6.4, columns * panel[0]), rows * (panel[1] + 0.35) + _LEGEND_ROOM, rows, columns
 
 
-def _draw_panel(axis: Any, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray) -> None:
-    draw_blocks(axis, model, placed_vertices(model, frame.positions, frame.orientations))
-    draw_rest(axis, model)
-    _draw_joints(axis, model, frame, scale)
-    _draw_thrust(axis, model, frame)
+def _draw_panel(
+    axis: Any, drawing: Drawing, model: Model, frame: Frame, scale: float, low: np.ndarray, high: np.ndarray
+) -> None:
+    drawing.draw_blocks(axis, low, high)(placed_vertices(model, frame.positions, frame.orientations))
+    drawing.draw_rest(axis, low, high)
+    drawing.draw_joints(axis, frame, _HAIRLINE * frame_measures.largest_displacement(model, frame) / scale)
+    _draw_thrust(axis, drawing, model, frame)
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
     axis.axis("off")
+    drawing.finish(axis)
 
 
-def _polygons(model: Model, corners: np.ndarray) -> list[np.ndarray]:
-    return [corners[a:b] for a, b in zip(model.part_starts, model.part_starts[1:])]
-
-
-def draw_blocks(axis: Any, model: Model, corners: np.ndarray) -> None:
-    """The blocks, filled; fixed ones as ground. corners: (n_vertices, 2)."""
-    from matplotlib.collections import PolyCollection
-
-    fixed = model.fixed[model.part_blocks]
-    faces = [style.GROUND if f else style.STONE for f in fixed]
-    axis.add_collection(
-        PolyCollection(_polygons(model, corners), facecolors=faces, edgecolors=style.STONE_EDGE, linewidths=0.6)
-    )
-
-
-def draw_rest(axis: Any, model: Model) -> None:
-    """Outlines of the blocks where they stood at the start."""
-    from matplotlib.collections import PolyCollection
-
-    rest = _polygons(model, rest_vertices(model))
-    axis.add_collection(
-        PolyCollection(rest, facecolors="none", edgecolors="#b9b9c2", linewidths=0.7, linestyles=(0, (3, 2)))
-    )
-
-
-def _draw_joints(axis: Any, model: Model, frame: Frame, scale: float) -> None:
-    """Each contact point colours its half of the joint."""
-    from matplotlib.collections import LineCollection
-
-    contacts = frame.contacts
-    order = np.argsort(contacts.joint, kind="stable")
-    joints, points = contacts.joint[order], contacts.points[order]
-    width = float(np.clip(32.0 / np.sqrt(model.n_blocks + 1), 0.6, 3.2))
-    hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame) / scale
-    halves, colours, singles = [], [], []
-    _, starts, counts = np.unique(joints, return_index=True, return_counts=True)
-    for start, count in zip(starts, counts, strict=True):
-        group = range(start, start + count)
-        middle = points[start : start + count].mean(axis=0)
-        for i in group:
-            state = STATES[contacts.state[order[i]]]
-            faint = state == "open" and contacts.gap[order[i]] < hairline
-            colour = (style.STATE_COLOURS[state], 0.3 if faint else 1.0)
-            if count == 1:
-                singles.append((points[i], colour))
-            halves.append((points[i], middle))
-            colours.append(colour)
-    axis.add_collection(LineCollection(halves, colors=colours, linewidths=width, capstyle="butt", zorder=3))
-    for point, colour in singles:
-        axis.plot(*point, "o", ms=1.4 * width, color=colour, zorder=3)
-
-
-def _draw_thrust(axis: Any, model: Model, frame: Frame) -> None:
+def _draw_thrust(axis: Any, drawing: Drawing, model: Model, frame: Frame) -> None:
     """Thickness grows with the force: a line through arches and columns, one stroke per joint in walls."""
     from matplotlib.collections import LineCollection
 
@@ -205,28 +157,29 @@ def _draw_thrust(axis: Any, model: Model, frame: Frame) -> None:
     sizes = np.linalg.norm(found.forces, axis=1)
     if not len(sizes):
         return
-    widest = _WIDEST_FORCE if model.n_blocks < 60 else _WIDEST_FORCE * (60 / model.n_blocks) ** 0.35
+    widest = drawing.force_width * _WIDEST_FORCE * min(1.0, 60 / model.n_blocks) ** 0.35
     widths = np.maximum(0.4, widest * sizes / sizes.max())
     lines = frame_measures.chains(model, found)
     if lines:
-        strokes = [(found.points[a], found.points[b]) for chain in lines for a, b in zip(chain, chain[1:])]
+        points = drawing.flat(found.points)
+        strokes = [(points[a], points[b]) for chain in lines for a, b in zip(chain, chain[1:])]
         widths = [(widths[a] + widths[b]) / 2 for chain in lines for a, b in zip(chain, chain[1:])]
     else:
         reach = 0.4 * frame_measures.block_reach(model, found.blocks)
         arms = found.forces / sizes[:, np.newaxis] * reach[:, np.newaxis]
-        strokes = list(zip(found.points - arms, found.points + arms))
+        strokes = list(zip(drawing.flat(found.points - arms), drawing.flat(found.points + arms)))
     axis.add_collection(
         LineCollection(strokes, colors=style.THRUST, linewidths=widths, alpha=0.8, capstyle="round", zorder=4)
     )
 
 
-def _legend(figure: Any, has_line: bool) -> None:
+def _legend(figure: Any, states: tuple[str, ...], has_line: bool) -> None:
     from matplotlib.lines import Line2D
 
     columns = 5 if figure.get_figwidth() > 9.0 else 3
     labels = {name: f"{name} joint" for name in STATES} | {"open": "open joint (faint: hairline)"}
-    handles = [Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=labels[name]) for name in STATES]
+    handles = [Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=labels[name]) for name in states]
     thrust = "thrust line" if has_line else "joint force"
     handles.append(Line2D([], [], color=style.THRUST, lw=3, alpha=0.8, label=f"{thrust} (thickness: size)"))
-    handles.append(Line2D([], [], color="#b9b9c2", lw=1, ls=(0, (3, 2)), label="undeformed"))
+    handles.append(Line2D([], [], color=style.REST, lw=1, ls=(0, (3, 2)), label="undeformed"))
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=9, handlelength=1.8)

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dem_cli.geometry.rotation import turned
+from dem_cli.geometry.rotation import angles_of, matrices, quaternions, rotation_vectors
 from dem_cli.model.model import Model
-from dem_cli.output.paraview.fields import contact_forces
-from dem_cli.output.paraview.vertices import placed_vertices
+from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.record import STATES, ContactRecord, Frame
 
 _VISIBLE = 0.06  # share of the size of the structure that a drawn displacement should reach
@@ -21,8 +20,8 @@ _LARGEST_TURN = 0.35  # rad, of a drawn rotation
 class Resultants:
     """Resultant forces of a frame: one per joint that is pressed, for the thrust line."""
 
-    points: np.ndarray  # centre of pressure [m], (n, 2)
-    forces: np.ndarray  # force on the second block [N], (n, 2)
+    points: np.ndarray  # centre of pressure [m], (n, d)
+    forces: np.ndarray  # force on the second block [N], (n, d)
     blocks: np.ndarray  # the two blocks, (n, 2)
 
 
@@ -32,11 +31,11 @@ def resultants(contacts: ContactRecord) -> Resultants:
     joints, first, owner = np.unique(contacts.joint[pressed], return_index=True, return_inverse=True)
     weights = contacts.normal_force[pressed]
     totals = np.bincount(owner, weights, len(joints))
-    forces = contact_forces(contacts)[pressed]
+    forces = contacts.forces()[pressed]
 
     def gather(values: np.ndarray) -> np.ndarray:
         columns = [np.bincount(owner, column, len(joints)) for column in values.T]
-        return np.stack(columns, axis=1) if len(joints) else np.zeros((0, 2))
+        return np.stack(columns, axis=1)
 
     centres = gather(contacts.points[pressed] * weights[:, np.newaxis]) / totals[:, np.newaxis]
     return Resultants(centres, gather(forces), contacts.blocks[pressed][first])
@@ -87,7 +86,7 @@ def block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
 
 def size(model: Model) -> float:
     """Diagonal of the box around the blocks that can move [m]."""
-    corners = placed_vertices(model, model.centroids, np.zeros((model.n_blocks, 1)))
+    corners = rest_vertices(model)
     free = ~model.fixed[model.vertex_blocks]
     corners = corners[free] if free.any() else corners
     return float(np.linalg.norm(np.ptp(corners, axis=0)))
@@ -95,9 +94,8 @@ def size(model: Model) -> float:
 
 def largest_displacement(model: Model, frame: Frame) -> float:
     """Of any corner of any block [m]."""
-    rest = placed_vertices(model, model.centroids, np.zeros((model.n_blocks, 1)))
     moved = placed_vertices(model, frame.positions, frame.orientations)
-    return float(np.linalg.norm(moved - rest, axis=1).max())
+    return float(np.linalg.norm(moved - rest_vertices(model), axis=1).max())
 
 
 def visible_scale(model: Model, frame: Frame) -> float:
@@ -106,7 +104,7 @@ def visible_scale(model: Model, frame: Frame) -> float:
     whole = size(model)
     if moved >= _TRUE_FROM * whole or moved <= 0.0:
         return 1.0
-    turn = float(np.abs(frame.orientations[:, 0]).max())
+    turn = float(np.abs(angles_of(frame.orientations)).max())
     factor = min(_VISIBLE * whole / moved, _LARGEST_TURN / turn if turn > 0 else np.inf)
     power = 10.0 ** np.floor(np.log10(factor))
     return max(1.0, float(power * max(step for step in (1, 2, 5) if step * power <= factor * (1 + 1e-9))))
@@ -115,10 +113,10 @@ def visible_scale(model: Model, frame: Frame) -> float:
 def scaled(model: Model, frame: Frame, scale: float) -> Frame:
     """The frame with displacements, rotations and the places of the contact points times `scale`."""
     positions = model.centroids + scale * (frame.positions - model.centroids)
-    orientations = scale * frame.orientations
+    orientations = quaternions(scale * rotation_vectors(frame.orientations))
     contacts = frame.contacts
     owner = contacts.blocks[:, 0]
-    turn_back = -frame.orientations[owner, 0]
-    arms = turned(contacts.points - frame.positions[owner], turn_back)
-    points = positions[owner] + turned(arms, orientations[owner, 0])
+    before, after = (matrices(turns)[owner] for turns in (frame.orientations, orientations))
+    arms = np.einsum("nji,nj->ni", before, contacts.points - frame.positions[owner])
+    points = positions[owner] + np.einsum("nij,nj->ni", after, arms)
     return frame._replace(positions=positions, orientations=orientations, contacts=contacts._replace(points=points))

@@ -24,7 +24,7 @@ def draw_joints(results: Results, path: Path) -> None:
     """Of the last frame: every open joint, and how many there are at each height."""
     joints = joints_of(results)
     last, states, steep = results.frames[-1], joints.at(len(results.frames) - 1), steepness(joints)
-    widths, heights = states.opening, joints.places.ends[:, :, 1].mean(axis=1)
+    widths, heights = states.opening, joints.places.middles()[:, -1]
     widest = float(widths.max(initial=0.0))
     shown = widths > SEEN * widest
     factor, unit = style.length_unit(widest)

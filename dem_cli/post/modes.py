@@ -11,7 +11,8 @@ from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.post import style
-from dem_cli.post.collapse import draw_blocks, draw_rest, window
+from dem_cli.post.collapse import window
+from dem_cli.post.scene.drawing import drawing_of
 
 MOST_MODES = 12  # modes in one picture
 STAGE = "mode"  # of their frames, whose step is the number of the mode
@@ -22,19 +23,21 @@ _WIDEST, _HIGHEST = 10.5, 2.9  # inches: of the picture, of a panel
 def draw_modes(results: Results, path: Path) -> None:
     """A panel for each mode, as large as its frame has it; dashed: undeformed."""
     model, frames = results.model, shapes(results)
+    drawing = drawing_of(model, frames[0])
     corners = [placed_vertices(model, frame.positions, frame.orientations) for frame in frames]
-    low, high = window(model, [rest_vertices(model), *corners])
+    low, high = window(model, [drawing.flat(places) for places in (rest_vertices(model), *corners)])
     width, height, rows, columns = _layout(high - low, len(frames))
     with style.figure(path, figsize=(width, height)) as figure:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis in axes:
             axis.axis("off")
         for axis, frame, moved in zip(axes, frames, corners):
-            draw_blocks(axis, model, moved)
-            draw_rest(axis, model)
+            drawing.draw_blocks(axis, low, high)(moved)
+            drawing.draw_rest(axis, low, high)
             axis.set_aspect("equal")
             axis.set_xlim(low[0], high[0])
             axis.set_ylim(low[1], high[1])
+            drawing.finish(axis)
             axis.set_title(_panel_title(results.summary, frame.step), fontsize=9, fontweight="normal")
         title = f"{results.summary.get('title', '')}: natural modes"
         size = min(12.0, 12.0 * 8.5 * width / len(title))

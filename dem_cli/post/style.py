@@ -12,7 +12,7 @@ from dem_cli.errors import MissingExtra
 from dem_cli.output.ending import ending_words
 
 INK, GREY, FAINT = "#26262b", "#7c7c86", "#d5d5da"
-STONE, STONE_EDGE, GROUND = "#efe7d8", "#6d6558", "#c9c4ba"
+STONE, STONE_EDGE, GROUND, REST = "#efe7d8", "#6d6558", "#c9c4ba", "#b9b9c2"
 STATE_COLOURS = {"open": "#c51b7d", "sticking": "#9aa3ad", "sliding": "#e08214"}
 STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8c5b", "collapse": "#c0392b"}
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"

@@ -16,11 +16,10 @@ import numpy as np
 from dem_cli.case.reader import parse_toml
 from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
-from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, units_of
-from dem_cli.output.paraview.fields import contact_forces
+from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, declared, units_of
 from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.reader import Frames, Results, read
-from dem_cli.output.record import STATES, Frame
+from dem_cli.output.record import OUTLINE, STATES, Frame
 from dem_cli.output.series import MONITOR_UNITS
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
@@ -128,8 +127,8 @@ class Result:
         Forces are those on the second block, compression positive; "force" is the vector. Raises UsageError.
         """
         record = self.frame(frame).contacts
-        columns = record._asdict() | {"state": np.array(STATES)[record.state], "force": contact_forces(record)}
-        units = units_of(CONTACTS) | {"force": "N"}
+        columns = record.stored() | {"state": np.array(STATES)[record.state], "force": record.forces()}
+        units = units_of(declared(CONTACTS, self.model.dimension)) | {"force": "N"}
         return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 
     def joints(self, frame: int = -1) -> ArrayTable:
@@ -143,8 +142,9 @@ class Result:
         if found is None:
             raise UsageError(f"{self._path}: these results have no joints; an earlier version wrote them")
         states = found.at(frame % len(self.frames))
-        columns = found.places._asdict() | states._asdict() | {"state": np.array(STATES)[states.state]}
-        units = units_of(JOINT_PLACES | JOINT_STATES)
+        places = {name: values for name, values in found.places._asdict().items() if name not in OUTLINE}
+        columns = places | states._asdict() | {"state": np.array(STATES)[states.state]}
+        units = units_of(declared(JOINT_PLACES | JOINT_STATES, self.model.dimension))
         return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 
     def corners(self, frame: int | Frame = -1) -> list[np.ndarray]:

@@ -10,6 +10,7 @@ from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.post import frame_measures
+from dem_cli.post.scene import joint_strokes
 from dem_cli.render.solids import lifted
 
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
@@ -45,13 +46,25 @@ _BOX = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 
 
 
 def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStripes:
-    """Joints of a 2D frame that is drawn `scale` times; stripes are `width` wide [m]."""
+    """Joints of a frame that is drawn `scale` times; stripes are `width` wide [m]."""
     contacts = frame.contacts
     hairline = (
         max(_HAIRLINE * frame_measures.largest_displacement(model, frame), _UNSEEN * frame_measures.size(model)) / scale
     )
+    faint = (contacts.state == STATES.index("open")) & (contacts.gap < hairline)
+    widths = np.where(faint, _THIN * width, width)
+    boxes, owners = _BOXES[model.dimension](model, contacts, width, widths)
+    n = len(boxes)
+    corners = _BOX[np.newaxis] + 8 * np.arange(n)[:, np.newaxis, np.newaxis]
+    faces = np.concatenate((np.full((n, 6, 1), 4), corners), axis=2)
+    states = contacts.state[owners]
+    return JointStripes(boxes.reshape(-1, 3), faces.ravel(), np.repeat(states, 6), np.repeat(faint[owners], 6))
+
+
+def _through(model: Model, contacts: ContactRecord, width: float, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """In the plane: half of the joint, through the thickness; corners of boxes (n, 8, 3), point of each (n,)."""
     ends = contacts.points
-    centres = middles(contacts)
+    centres = joint_strokes.middles(contacts)
     along = centres - ends
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     single = lengths[:, 0] < 0.25 * width  # one point, or points that are one: a short stripe
@@ -59,29 +72,32 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStri
     along = np.where(single[:, np.newaxis], tangents, along / np.where(lengths > 0.0, lengths, 1.0))
     starts = np.where(single[:, np.newaxis], ends - width * along, ends)
     stops = np.where(single[:, np.newaxis], ends + width * along, centres)
-    faint = (contacts.state == STATES.index("open")) & (contacts.gap < hairline)
-    widths = np.where(faint, _THIN * width, width)[:, np.newaxis]
-    aside = 0.5 * widths * across(along)
+    aside = 0.5 * widths[:, np.newaxis] * across(along)
     outline = np.stack((starts - aside, stops - aside, stops + aside, starts + aside), axis=1)
     depth = 0.5 * model.thickness[contacts.blocks].max(axis=1) + 0.5 * width
     n = len(ends)
     points = np.zeros((n, 8, 3))
     points[:, :4, :2] = points[:, 4:, :2] = outline
     points[:, :4, 2], points[:, 4:, 2] = -depth[:, np.newaxis], depth[:, np.newaxis]
-    corners = _BOX[np.newaxis] + 8 * np.arange(n)[:, np.newaxis, np.newaxis]
-    faces = np.concatenate((np.full((n, 6, 1), 4), corners), axis=2)
-    return JointStripes(points.reshape(-1, 3), faces.ravel(), np.repeat(contacts.state, 6), np.repeat(faint, 6))
+    return points, np.arange(n)
 
 
-def middles(contacts: ContactRecord) -> np.ndarray:
-    """Middle of all points of its joint, for each point [m], (n, 2)."""
-    _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
-    sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]
-    return (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
+def _around(model: Model, contacts: ContactRecord, width: float, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """In space: bars around the face that two blocks share; corners of boxes (n, 8, 3), point of each (n,)."""
+    found = joint_strokes.strokes(contacts)
+    normals, along = contacts.normals[found.points], found.ends - found.starts
+    outwards = np.cross(along, normals)
+    outwards /= np.maximum(np.linalg.norm(outwards, axis=1, keepdims=True), np.finfo(float).tiny)
+    half = 0.5 * widths[found.points, np.newaxis]
+    square = [sign * half * normals + side * half * outwards for sign, side in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return np.stack([end + corner for end in (found.starts, found.ends) for corner in square], axis=1), found.points
+
+
+_BOXES = {2: _through, 3: _around}
 
 
 def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes | None:
-    """Resultant force of each joint in front of the blocks; None where nothing is pressed.
+    """Resultant force of each joint, in the plane in front of the blocks; None where nothing is pressed.
 
     look     "bars": along the force, as thick as it is large; where every block has at most two pressed joints the
              bars join to the thrust line. "arrows": on the lower of two blocks, as long as the force is large
@@ -107,7 +123,7 @@ def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes 
     lengths = _LONGEST_BAR * frame_measures.block_reach(model, found.blocks)
     radii = np.minimum(radii, _STOUTEST * np.median(lengths) * np.maximum(share, _FINEST))
     arms = (lengths / sizes)[:, np.newaxis] * found.forces
-    ends = np.stack((found.points - arms, found.points + arms), axis=1).reshape(-1, 2)
+    ends = np.stack((found.points - arms, found.points + arms), axis=1).reshape(-1, found.points.shape[1])
     n = len(sizes)
     return ForceStrokes(lifted(ends, np.repeat(heights, 2)), np.repeat(radii, 2), _lines([2] * n), float(sizes.max()))
 
@@ -116,7 +132,7 @@ def _arrows(
     found: frame_measures.Resultants, share: np.ndarray, front: np.ndarray, reach: float, largest: float
 ) -> ForceStrokes:
     """Tip at the joint, pointing downwards: what lies above pushes."""
-    downwards = np.where(found.forces[:, 1] > 0.0, -1.0, 1.0)[:, np.newaxis]
+    downwards = np.where(found.forces[:, -1] > 0.0, -1.0, 1.0)[:, np.newaxis]
     units = downwards * found.forces / np.linalg.norm(found.forces, axis=1, keepdims=True)
     lengths = reach * share
     radius = 0.022 * reach
@@ -127,7 +143,8 @@ def _arrows(
     points = tips[:, np.newaxis] - (lengths[:, np.newaxis] * at)[:, :, np.newaxis] * units[:, np.newaxis]
     radii = np.tile((radius, radius, _HEAD * radius, 0.02 * radius), len(lengths))
     heights = np.repeat(front + _HEAD * radius, 4)
-    return ForceStrokes(lifted(points.reshape(-1, 2), heights), radii, _lines([4] * len(lengths)), largest)
+    corners = points.reshape(-1, points.shape[2])
+    return ForceStrokes(lifted(corners, heights), radii, _lines([4] * len(lengths)), largest)
 
 
 def _lines(counts: list[int]) -> np.ndarray:

@@ -27,6 +27,7 @@ from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.post.playback import SHORTEST, Playback, playback
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
+from dem_cli.render.view import AS_BEST, Standpoint, view_of
 
 STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
 _AROUND = 0.015  # of the size of what is seen: empty space on all sides
@@ -38,7 +39,7 @@ class RenderOptions:
     """Options of a rendered picture: what is drawn, and how."""
 
     frame: str = "last"  # of a still: "last", "failure", a number, or a time such as "2.5s"
-    view: str = "front"
+    standpoint: Standpoint = AS_BEST
     scale: float | None = None  # of displacements; None: as they are where they can be seen
     colour: str = "stone"
     joints: bool = True  # coloured by state
@@ -133,15 +134,17 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
     from dem_cli.render.sheet import Sheet, layout
 
     model = results.model
+    view = view_of(model, frames, look.standpoint)
     scale = look.scale or min(frame_measures.visible_scale(model, frame) for frame in frames)
     moves = [_moved(results, frame, scale) for frame in frames]
-    eye = camera(look.view, _seen(model, [view_box.corners(model, f, scale, m) for f, m in zip(frames, moves)]))
+    corners = [view_box.corners(model, f, scale, m) for f, m in zip(frames, moves)]
+    eye = camera(view.axes, _seen(model, corners), view.before)
     colours, bar = block_colours.colours(results, frames, look.colour)
     handles = block_colours.legend(results, frames, look.joints, look.forces)
     plan = layout(look.size or (width, None), eye.height / eye.width, len(handles), bar is not None)
     with style.canvas() as make:
         sheet = Sheet(make, plan, results.summary, handles, bar)
-        scene = Scene(model, eye, plan.width, plan.picture, plan.points, deep=look.view != "front")
+        scene = Scene(model, eye, plan.width, plan.picture, plan.points, deep=view.deep)
         try:
             pages = []
             for i, (frame, moved) in enumerate(zip(frames, moves)):

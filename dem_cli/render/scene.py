@@ -9,14 +9,15 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
+from dem_cli.post.scene.axonometry import Axonometry
 from dem_cli.render import marks, solids
 
 _STONES = ("#e6dac3", "#c3bfba", "#d9bfa3", "#cdd2cc", "#e8e2d6")  # by material
 _TINT = 0.045  # by which stones differ
 _EDGE, _EDGE_WIDTH, _THINNEST_EDGE = "#57503f", 0.55, 0.75  # colour; points; pixels
 _FINER = 2  # pixels are means of so many by so many
-_DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # from the structure to the eye
-_LIGHT = (-5.0, 8.0, 9.0)  # where it comes from
+_LIGHT = (-5.0, 8.0, 9.0)  # where it comes from: right, up and towards the reader who stands before the structure
+_FRONT = {2: 0.0, 3: 2.0}  # of the picture: by so much forces are nearer; in 2D marks say where the front is
 _AROUND = 1.02  # of the window is in the picture
 _WIDEST_STRIPE, _THINNEST_STRIPE = 3.4, 1.1  # points
 _REACH = 0.16  # of the picture's smaller side: the longest arrow
@@ -30,19 +31,16 @@ class Camera(NamedTuple):
     up: np.ndarray  # unit, upwards in the picture, (3,)
     width: float  # of what is to be seen [m]
     height: float
+    light: np.ndarray  # direction that it comes from, (3,)
 
 
-def camera(view: str, points: np.ndarray) -> Camera:
-    """Looks at points in space [m], (n, 3)."""
-    direction = np.array(_DIRECTIONS[view])
-    direction /= np.linalg.norm(direction)
-    right = np.cross((0.0, 1.0, 0.0), direction)
-    right /= np.linalg.norm(right)
-    up = np.cross(direction, right)
-    axes = np.stack((right, up, direction))
+def camera(view: Axonometry, points: np.ndarray, before: Axonometry) -> Camera:
+    """Looks at points in space [m], (n, 3). before: the view of a reader who stands before the structure: the light."""
+    axes = np.stack(view)
     seen = points @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)
-    return Camera(0.5 * (low + high) @ axes, direction, up, *(high - low)[:2].tolist())
+    width, height = (high - low)[:2].tolist()
+    return Camera(0.5 * (low + high) @ axes, view.eye, view.up, width, height, np.array(_LIGHT) @ np.stack(before))
 
 
 class Scene:
@@ -59,6 +57,7 @@ class Scene:
         self.metres = _AROUND * max(eye.height / height, eye.width / width)  # of a pixel
         self.points = points
         self.nearer = self.metres * eye.direction  # edges are drawn before faces
+        self.front = _FRONT[model.dimension] * max(eye.width, eye.height) * eye.direction
         self.edge = _FINER * max(_EDGE_WIDTH * points, _THINNEST_EDGE)
         self.reach = _REACH * self.metres * min(width, height)
         self._set_up(eye, height, deep)
@@ -68,12 +67,12 @@ class Scene:
         plotter = self.plotter
         plotter.set_background("white")
         plotter.render_window.SetMultiSamples(0)  # several pixels make one
-        sun = self.pyvista.Light(position=_LIGHT, focal_point=(0, 0, 0), light_type="scene light", intensity=1.0)
+        sun = self.pyvista.Light(position=eye.light, focal_point=(0, 0, 0), light_type="scene light", intensity=1.0)
         sun.positional = False
         plotter.add_light(sun)
         plotter.add_light(self.pyvista.Light(light_type="headlight", intensity=0.25))
         plotter.enable_parallel_projection()
-        far = 2.0 * max(eye.width, eye.height)
+        far = 6.0 * max(eye.width, eye.height)
         plotter.camera.focal_point, plotter.camera.up = eye.centre, eye.up
         plotter.camera.position = eye.centre + far * eye.direction
         plotter.camera.parallel_scale = 0.5 * height * self.metres
@@ -145,7 +144,7 @@ class Scene:
         if found is None:
             self.plotter.remove_actor("forces", render=False)
             return
-        mesh = self.pyvista.PolyData(found.points + offset, lines=found.lines)
+        mesh = self.pyvista.PolyData(found.points + offset + self.front, lines=found.lines)
         mesh.point_data["radius"] = found.radii
         tubes = mesh.tube(scalars="radius", absolute=True, n_sides=16, capping=True)
         self.plotter.add_mesh(

@@ -1,7 +1,7 @@
 """Surfaces of the blocks in space: faces whose corners are fixed to a block, and where the blocks are in a frame.
 
 2D blocks are extruded by their thickness, half of it to either side of the plane, and get a narrow chamfer, as
-dressed stones have: light makes the joints visible. Polyhedra need another `surface`, and nothing else.
+dressed stones have: light makes the joints visible. Polyhedra have theirs from render/chamfered.py.
 """
 
 from __future__ import annotations
@@ -13,21 +13,12 @@ import numpy as np
 from dem_cli.geometry.rotation import across, cross, matrices
 from dem_cli.model.model import Model
 from dem_cli.post import frame_measures
+from dem_cli.render.chamfered import Surface, chamfered
 
 _CHAMFER = 0.05  # of the narrowest side of an ordinary block
 _LARGEST_CHAMFER = 0.006  # of the size of the structure
 _WIDEST_CHAMFER = 0.16  # of the narrowest side of the block itself
 _SAME_PLACE = 1e-6  # of the size of a part: edges so close are one
-
-
-class Surface(NamedTuple):
-    """Faces of all blocks."""
-
-    points: np.ndarray  # from the centroid of their block [m], (n, 3)
-    owners: np.ndarray  # block of each point, (n,)
-    faces: np.ndarray  # as VTK has them: number of corners, then the corners, face after face
-    face_owners: np.ndarray  # block of each face, (n_faces,)
-    edges: np.ndarray  # sharp edges, between two points each, (n_edges, 2)
 
 
 class Pose(NamedTuple):
@@ -60,6 +51,11 @@ def placed(surface: Surface, where: Pose) -> np.ndarray:
 
 
 def surface(model: Model) -> Surface:
+    """The faces of all blocks."""
+    return SURFACES[model.dimension](model)
+
+
+def prisms(model: Model) -> Surface:
     """The faces of all blocks of a 2D model."""
     widths = [narrowest(part_corners(model, p)) for p in range(model.n_parts)]
     usual = min(_CHAMFER * float(np.median(widths)), _LARGEST_CHAMFER * frame_measures.size(model))
@@ -142,3 +138,6 @@ def _inward(corners: np.ndarray) -> np.ndarray:
     along = np.roll(corners, -1, axis=0) - corners
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     return across(along) / np.where(lengths > 0.0, lengths, 1.0)
+
+
+SURFACES = {2: prisms, 3: chamfered}

@@ -18,7 +18,7 @@ from dem_cli.output.scalars import plain
 
 ASSETS = Path(__file__).parent / "assets"
 TEMPLATE, STYLE_SHEET, THREE = "page.html", "page.css", "three.min.js"
-SCRIPTS = ("chart.js", "scene.js", "marks.js", "eye.js", "player.js", "table.js", "main.js")
+SCRIPTS = ("chart.js", "scene.js", "section.js", "marks.js", "eye.js", "player.js", "table.js", "main.js")
 
 
 def render(data: Mapping[str, Any], **shown: Any) -> str:

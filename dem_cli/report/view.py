@@ -6,7 +6,7 @@ without new numbers, and 3D needs no other view.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,10 @@ from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures
 from dem_cli.post import view_box as stage
-from dem_cli.render import marks
-from dem_cli.render.solids import surface
+from dem_cli.post.scene import joint_strokes
+from dem_cli.post.scene.axonometry import axonometry, wide_side
+from dem_cli.render.chamfered import Surface, sharp
+from dem_cli.render.solids import prisms
 from dem_cli.report.packed_arrays import pack
 
 MOST_BYTES = 8_000_000  # of all frames; where there is more, frames are left out
@@ -36,12 +38,13 @@ def view(results: Results) -> dict[str, Any]:
     """The scene as plain JSON; where the run kept no frames, the structure as it was built."""
     model = results.model
     frames = _shown(results.frames) or [_as_built(model)]
-    skin, series = surface(model), results.series
+    skin, series = SKINS[model.dimension](model), results.series
     kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
     chosen = [frames[i] for i in kept]
     scales = [1.0 if frame.stage == MODE else frame_measures.visible_scale(model, frame) for frame in chosen]
     return {
         "dimension": model.dimension,
+        **STANDPOINTS[model.dimension](model, chosen, skin),
         "size": frame_measures.size(model),
         "ids": list(model.block_ids),
         "materials": [model.material_names[i] for i in model.block_material],
@@ -91,13 +94,15 @@ def _as_built(model: Model) -> Frame:
     d, n = model.dimension, model.n_blocks
     none, vectors = np.zeros(0), np.zeros((0, d))
     pairs, states = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int8)
-    contacts = ContactRecord(pairs[:, 0], pairs, vectors, vectors, none, np.zeros((0, d - 1)), none, none, states)
+    contacts = ContactRecord(
+        pairs[:, 0], pairs, vectors, vectors, none, np.zeros((0, d - 1)), none, none, states, np.zeros((0, 3))
+    )
     still = np.zeros((n, model.inertias.shape[1] + d))
     return Frame(AS_BUILT, 0, 0.0, 0.0, model.centroids, unturned(model.n_blocks, model.dimension), still, contacts)
 
 
 def _bytes(model: Model, frame: Frame) -> int:
-    return 24 * model.n_blocks + 50 * len(frame.contacts.joint)
+    return 24 * model.n_blocks + 50 * len(joint_strokes.visible_strokes(frame.contacts).points)
 
 
 def _always(frames: Sequence[Frame], summary: Mapping[str, Any]) -> set[int]:
@@ -159,22 +164,23 @@ def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:
 
 
 def _joints(model: Model, frame: Frame) -> dict[str, Any]:
-    """A stroke from each contact point to the middle of its joint, with the state that colours it."""
+    """Strokes along the joints, each with the state of its contact point, which colours it."""
     contacts = frame.contacts
+    starts, ends, points = joint_strokes.visible_strokes(contacts)
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
-    middles, ends, alone = marks.middles(contacts), contacts.points, counts[owner] == 1
+    alone = (counts[owner] == 1)[points]
     if alone.any():
         along = _SINGLE * np.cbrt(model.masses[contacts.blocks[:, 0]] / model.masses.max()) * frame_measures.size(model)
-        tangents = beside(contacts.normals) * np.where(alone, along, 0.0)[:, np.newaxis]
-        ends, middles = ends - tangents, middles + tangents
-    first = contacts.blocks[:, 0]
+        tangents = beside(contacts.normals[points]) * np.where(alone, along[points], 0.0)[:, np.newaxis]
+        starts, ends = starts - tangents, ends + tangents
+    first = contacts.blocks[points, 0]
     hairline = _HAIRLINE * frame_measures.largest_displacement(model, frame)
     states = np.where((contacts.state == STATES.index("open")) & (contacts.gap < hairline), _FAINT, contacts.state)
-    strokes = np.stack((_arms(frame, ends, first), _arms(frame, middles, first)), axis=1)
+    strokes = np.stack((_arms(frame, starts, first), _arms(frame, ends, first)), axis=1)
     return {
-        "stroke_blocks": pack(contacts.blocks),
+        "stroke_blocks": pack(contacts.blocks[points]),
         "strokes": pack(strokes.reshape(-1, 6)),
-        "states": pack(states, "u1"),
+        "states": pack(states[points], "u1"),
     }
 
 
@@ -186,3 +192,20 @@ def _forces(frame: Frame) -> dict[str, Any]:
         "force_arms": pack(_arms(frame, found.points, found.blocks[:, 0])),
         "forces": pack(in_space(found.forces)),
     }
+
+
+def _in_space(model: Model, frames: Sequence[Frame], skin: Surface) -> dict[str, Any]:
+    """From where the reader looks first, what the light takes for the wide side, and the edges of the blocks."""
+    farthest = max(frames, key=lambda frame: frame.displacement)
+    return {
+        "eye": axonometry(model, farthest).eye.tolist(),
+        "along": wide_side(model).tolist(),
+        "edges": pack(skin.edges),
+    }
+
+
+SKINS: dict[int, Callable[[Model], Surface]] = {2: prisms, 3: sharp}  # chamfers show joints where no edges are drawn
+STANDPOINTS: dict[int, Callable[[Model, Sequence[Frame], Surface], dict[str, Any]]] = {
+    2: lambda model, frames, skin: {},
+    3: _in_space,
+}

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
+from dem_cli.structures.bases import base_block
 
 
 class Pier(CaseModel):
@@ -34,7 +35,7 @@ SHAPE_KEYS = {
 
 class Arch(StructureBase):
     """Voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
-    level of the springings (where the inner face starts).
+    level of the springings (where the inner face starts). In 3D half of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" for voussoirs from left to right, from 1; "<id>-left-<number>" and
     "<id>-right-<number>" for piers from below; "<id>-base-left", "<id>-base-right" for what is fixed.
@@ -80,7 +81,10 @@ class Arch(StructureBase):
         examples=[{"width": 0.8, "height": 1.0, "courses": 4}],
     )
     base_extension: NonNegative = Field(
-        0.0, description="how far the fixed ground goes beyond each side of a column or buttress [m]", examples=[1.5]
+        0.0,
+        description="how far the fixed ground goes beyond each side of a column or buttress, in 3D also beyond its "
+        "faces [m]",
+        examples=[1.5],
     )
 
     @property
@@ -226,7 +230,7 @@ def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
             back = np.array([along[1], -along[0]]) * sign
             corners = [inner, outer, outer + back, inner + back]
             shape = np.array(corners[::-1] if side == "right" else corners)
-        blocks.append(Block(f"base-{side}", (shape,), "", arch.thickness, fixed=True))
+        blocks.append(base_block(f"base-{side}", shape, arch.thickness, arch.base_extension if arch.piers else 0.0))
     return blocks
 
 

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
+from dem_cli.structures.bases import base_block
 
 
 class Drum(CaseModel):
@@ -31,7 +32,8 @@ class Cap(CaseModel):
 
 
 class Column(StructureBase):
-    """Blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base.
+    """Blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base; in 3D half
+    of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" from below, from 1; "<id>-base"; "<id>-cap".
     Shape: `block` and `courses` (tapered with `top_width`), or `drums` one by one.
@@ -60,7 +62,9 @@ class Column(StructureBase):
     base_height: Positive | None = Field(
         None, description="height of the base [m]; default: as lowest block", examples=[0.3]
     )
-    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each side [m]", examples=[0.5])
+    base_extension: NonNegative = Field(
+        0.0, description="how far the base goes beyond each side, in 3D also beyond each face [m]", examples=[0.5]
+    )
 
     @model_validator(mode="after")
     def _one_shape(self) -> Column:
@@ -95,7 +99,7 @@ def build(column: Column) -> list[Block]:
         half = drums[0].width / 2.0 + column.base_extension
         height = column.base_height or drums[0].height
         shape = rectangle(-half, -height, 2.0 * half, height)
-        blocks.append(Block("base", (shape,), "", column.thickness, fixed=True))
+        blocks.append(base_block("base", shape, column.thickness, column.base_extension))
     for k, drum in enumerate(drums):
         foot, head = drum.width / 2.0, (drum.top_width or drum.width) / 2.0
         low, high = levels[k : k + 2]

@@ -1,15 +1,19 @@
-"""Placement of generated blocks: from local ones to their final place, with full names; aliases for these."""
+"""Placement of generated blocks: from local ones to their final place, with full names; aliases for these.
+
+Generators draw in a plane, x along the structure and y upwards. In 2D that is the plane of the case. In 3D it stands
+upright on the ground: blocks become prisms, half their thickness to either side of it, turned in plan about the origin.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from dem_cli.case.base import StructureBase
 from dem_cli.errors import KeyPath
-from dem_cli.geometry import polygon
+from dem_cli.geometry import polygon, polyhedron
 from dem_cli.model.blocks import Block
 
 CORNERS = {  # alias: where it is in the box around the free blocks, as fractions of width and height
@@ -26,22 +30,45 @@ def full_id(prefix: str, local: str) -> str:
     return f"{prefix}-{local}"
 
 
-def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath) -> list[Block]:
+def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dimension: int = 2) -> list[Block]:
     """Turns, then shifts the blocks of a generator; completes their ids and materials; notes their `path`."""
-    vertices = [part for block in blocks for part in block.parts]
-    ends = np.cumsum([len(part) for part in vertices])[:-1]
-    placed = polygon.moved(np.concatenate(vertices), parameters.rotation, parameters.origin)
-    parts = iter(np.split(placed, ends))
     return [
         replace(
             block,
             id=full_id(parameters.id, block.id),
-            parts=tuple(next(parts) for _ in block.parts),
             material=block.material or parameters.material,
             path=path,
         )
-        for block in blocks
+        for block in PLACES[dimension](blocks, parameters)
     ]
+
+
+def in_the_plane(blocks: Sequence[Block], parameters: StructureBase) -> list[Block]:
+    """Blocks turned and shifted as drawn."""
+    vertices = [part for block in blocks for part in block.parts]
+    ends = np.cumsum([len(part) for part in vertices])[:-1]
+    placed = polygon.moved(np.concatenate(vertices), parameters.rotation, parameters.origin)
+    parts = iter(np.split(placed, ends))
+    return [replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks]
+
+
+def in_space(blocks: Sequence[Block], parameters: StructureBase) -> list[Block]:
+    """Prisms of the blocks, turned in plan and shifted."""
+    drawn = [(part, *depth(block)) for block in blocks for part in block.parts]
+    polygons, low, high = zip(*drawn, strict=True)
+    prisms = polyhedron.prisms(polygons, np.array(low), np.array(high))
+    parts = iter(polyhedron.all_moved(prisms, parameters.rotation, parameters.origin))
+    return [
+        replace(block, parts=tuple(next(parts) for _ in block.parts), thickness=1.0, across=None) for block in blocks
+    ]
+
+
+def depth(block: Block) -> tuple[float, float]:
+    """From where to where a generated block goes, square to the plane that it is drawn in [m]."""
+    return block.across or (-block.thickness / 2.0, block.thickness / 2.0)
+
+
+PLACES: dict[int, Callable[[Sequence[Block], StructureBase], list[Block]]] = {2: in_the_plane, 3: in_space}
 
 
 def aliases(structures: Mapping[str, Sequence[Block]]) -> dict[str, str]:

@@ -10,6 +10,8 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
+from dem_cli.structures.bases import base_block
+from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
 MOST_BLOCKS = 1_000_000
 NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or height are not made
@@ -38,8 +40,10 @@ class Opening(CaseModel):
 class Wall(StructureBase):
     """Blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
 
+    In 3D half of the thickness lies to either side of the origin.
+
     Block names: "<id>-<course>-<number>", both from 1, numbers from left to right; "<id>-base";
-    "<id>-lintel-<number of the opening>".
+    "<id>-lintel-<number of the opening>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on.
     """
 
     kind: Literal["wall"] = "wall"
@@ -82,12 +86,24 @@ class Wall(StructureBase):
     base_height: Positive | None = Field(
         None, description="height of the base [m]; default: that of a block", examples=[0.3]
     )
-    base_extension: NonNegative = Field(0.0, description="how far the base goes beyond each end [m]", examples=[0.5])
+    base_extension: NonNegative = Field(
+        0.0, description="how far the base goes beyond each end, in 3D also beyond each face [m]", examples=[0.5]
+    )
+    sides: tuple[Side, ...] = Field(
+        (),
+        description="fixed supports behind faces of the wall",
+        examples=[[{"face": "-y", "strip": 0.8}]],
+    )
 
     @property
     def length(self) -> float:
         """Length of a full course [m]."""
         return self.block[0] * self.blocks_per_course
+
+    @property
+    def base_depth(self) -> float:
+        """Height of the base [m]."""
+        return self.base_height or self.block[1]
 
     @property
     def levels(self) -> np.ndarray:
@@ -122,9 +138,23 @@ class Wall(StructureBase):
             if length > self.length * (1 + NARROWEST_PIECE):
                 message = f"{length:g} is not allowed; must be at most {self.length:g}, the length of the wall"
                 raise KeyProblem(message, "course_lengths", i)
+        for i, side in enumerate(self.sides):
+            _check_side(self, side, i)
         for i, opening in enumerate(self.openings):
             _check_opening(opening, i, self.length, float(self.levels[-1]))
         return self
+
+
+def _check_side(wall: Wall, side: Side, i: int) -> None:
+    """Raises KeyProblem where a side does not fit the wall."""
+    widest = side.widest(wall.length)
+    if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
+        of = f"{'half ' if side.ends == 'both' else ''}the length of the wall"
+        raise KeyProblem(f"{side.strip:g} is not allowed; must be at most {widest:g}, {of}", "sides", i, "strip")
+    if wall.ends == "toothed" and not side.long:
+        raise KeyProblem(
+            f"'{side.face}' is not allowed with ends = 'toothed': the ends are not plane", "sides", i, "face"
+        )
 
 
 def _check_opening(opening: Opening, i: int, length: float, height: float) -> None:
@@ -159,9 +189,10 @@ def build(wall: Wall) -> list[Block]:
     if wall.base:
         left = min(box[0, 0] for box in boxes) - wall.base_extension
         right = max(box[-1, 2] for box in boxes) + wall.base_extension
-        height = wall.base_height or wall.block[1]
-        shape = rectangle(left, -height, right - left, height)
-        blocks.append(Block("base", (shape,), "", wall.thickness, fixed=True))
+        shape = rectangle(left, -wall.base_depth, right - left, wall.base_depth)
+        blocks.append(base_block("base", shape, wall.thickness, wall.base_extension))
+    foot = -wall.base_depth if wall.base and not wall.base_extension else 0.0
+    blocks += side_blocks(wall.sides, SupportedWall(wall.length, float(wall.levels[-1]), wall.thickness, foot))
     small = NARROWEST_PIECE * min(wall.block[0], wall.block[1])
     for k, box in enumerate(boxes):
         pieces = box

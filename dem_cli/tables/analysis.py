@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Vector
 
 Share = Annotated[float, Field(ge=0.0, le=0.2)]
 
@@ -45,8 +45,10 @@ class GravityAnalysis(AnalysisBase):
 class LiveAnalysis(AnalysisBase):
     """What analyses with a live load accept: what the multiplier acts on."""
 
-    direction: tuple[float, float] = Field(
-        default=(1.0, 0.0), description="direction of the horizontal load; its length does not matter [-]"
+    direction: Vector = Field(
+        default=(1.0, 0.0),
+        description="direction of the horizontal load, of a table the one towards which it tilts; its length does not "
+        "matter [-]",
     )
     pattern: Literal["mass", "live", "tilt"] = Field(
         default="mass", description="mass: λ × weight of each block; live: λ × live loads; tilt: table turned by atan λ"

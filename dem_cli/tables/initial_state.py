@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, Pair
+from dem_cli.case.base import CaseModel, Twist, Vector
 
 
 class InitialState(CaseModel):
@@ -25,8 +25,8 @@ class InitialState(CaseModel):
         description="turn about the corner on which they then stand, counter-clockwise [rad]",
         examples=[0.1],
     )
-    displacement: Pair = Field(default=(0.0, 0.0), description="how far they are moved [m]", examples=[[0.01, 0.0]])
-    velocity: tuple[float, float, float] = Field(
+    displacement: Vector = Field(default=(0.0, 0.0), description="how far they are moved [m]", examples=[[0.01, 0.0]])
+    velocity: Twist = Field(
         default=(0.0, 0.0, 0.0),
         description="of each centroid [m/s], and of the turn, counter-clockwise [rad/s]",
         examples=[[0.1, 0.0, 0.0]],

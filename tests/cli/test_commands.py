@@ -44,6 +44,7 @@ def test_there_is_a_template_for_every_generator():
         "block",
         "colonnade",
         "facade",
+        "out-of-plane",
         "retaining",
         "shaken",
         "safety",
@@ -51,14 +52,19 @@ def test_there_is_a_template_for_every_generator():
     }
 
 
-def test_a_template_that_is_uncommented_is_valid_too(tmp_path):
-    text = dem("new", "wall").stdout
-    start = text.index("# [[structure.openings]]")
+@pytest.mark.parametrize(
+    ("kind", "first"),
+    [("wall", "# [[structure.openings]]"), ("out-of-plane", "# [[structure]]"), ("out-of-plane", "# [[block]]")],
+)
+def test_a_template_that_is_uncommented_is_valid_too(kind, first, tmp_path):
+    text = dem("new", kind).stdout
+    start = text.index(first)
     end = text.index("\n\n", start)
     opened = text[:start] + text[start:end].replace("# ", "") + text[end:]
     path = tmp_path / "case.toml"
     path.write_text(opened, encoding="utf-8")
-    assert dem("check", str(path)).exit_code == 0
+    checked = dem("check", str(path))
+    assert (checked.exit_code, checked.stderr) == (0, "")
 
 
 def test_new_writes_a_file_once(tmp_path):

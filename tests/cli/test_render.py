@@ -14,6 +14,10 @@ import pytest
 from click.testing import CliRunner
 from synthetic import HEIGHT, LENGTH, history_rows, wall_frames, wall_model, wall_summary
 from synthetic.shaking import write_shaking
+from synthetic.solid_runs import DEPTH as WALL_DEPTH
+from synthetic.solid_runs import HEIGHT as WALL_HEIGHT
+from synthetic.solid_runs import LENGTH as WALL_LENGTH
+from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 from dem_cli.cli.main import main
 from dem_cli.errors import OutputError, UsageError
@@ -28,6 +32,7 @@ from dem_cli.post import style
 from dem_cli.render import block_colours, movie, opengl, render
 from dem_cli.render.render import RenderOptions
 from dem_cli.render.sheet import Sheet, layout
+from dem_cli.render.view import Standpoint, view_of
 
 ROOT = Path(__file__).resolve().parents[2]
 ASK = "from dem_cli.render.opengl import choose_window; choose_window()"
@@ -53,6 +58,12 @@ def folder(tmp_path_factory):
         writer.frame(frame)
     writer.close(wall_summary())
     return target
+
+
+@pytest.fixture(scope="module")
+def solid_folder(tmp_path_factory):
+    model = solid_wall(3, 2)
+    return write_solid_run(tmp_path_factory.mktemp("space"), model, solid_frames(model, 4))
 
 
 def dem(*arguments):
@@ -96,11 +107,46 @@ def test_joints_are_coloured_by_state(graphics, folder, monkeypatch):
 
 
 def test_forces_and_colours_in_an_oblique_view(graphics, folder, monkeypatch):
-    plain = drawn(folder, monkeypatch, view="3d", frame="2")
-    forces = drawn(folder, monkeypatch, view="3d", frame="2", forces="arrows", colour="rotation")
+    plain = drawn(folder, monkeypatch, standpoint=Standpoint("3d"), frame="2")
+    forces = drawn(folder, monkeypatch, standpoint=Standpoint("3d"), frame="2", forces="arrows", colour="rotation")
     blue = (forces[..., 2].astype(int) - forces[..., 0] > 60)[70:-60]
     assert blue.sum() > 200
     assert not (plain[..., 2].astype(int) - plain[..., 0] > 60)[70:-60].any()
+
+
+def test_a_wall_in_space_from_any_side(graphics, solid_folder, monkeypatch):
+    """Straight on at true scale the wall has its area, from its end it is as wide as it is deep."""
+    sides = {90.0: 2.0 * WALL_LENGTH, 0.0: WALL_DEPTH}
+    for azimuth, width in sides.items():
+        asked = Standpoint(azimuth=azimuth, elevation=0.0)
+        page = drawn(solid_folder, monkeypatch, frame="0", standpoint=asked, scale=1.0, joints=False)
+        wide = (page[44:] < 250).any(axis=-1).sum(axis=1)
+        top = int(np.flatnonzero(wide)[0])
+        below = top + int(np.flatnonzero(wide[top + 20 :] > 1.1 * wide[top + 20])[0]) + 20  # the base is wider
+        assert wide[top + 20] / (below - top) == pytest.approx(width / (3 * WALL_HEIGHT), rel=0.02)
+
+
+def test_forces_in_space_stand_before_the_stones(graphics, solid_folder, monkeypatch):
+    page = drawn(solid_folder, monkeypatch, frame="last", forces="bars")
+    body = page[70:-40]
+    assert (body[..., 2].astype(int) - body[..., 0] > 60).sum() > 200
+    assert near(body, style.STATE_COLOURS["open"]).sum() > 20
+
+
+def test_in_the_plane_nobody_walks_around(folder):
+    code, output = dem("render", folder, "--azimuth", "30")
+    assert code == 2
+    assert "--azimuth and --elevation are for structures in space" in output
+
+
+def test_standpoints(folder, solid_folder):
+    plane, space = read(folder), read(solid_folder)
+    front = view_of(plane.model, plane.frames, Standpoint())
+    assert (front.axes.eye == (0.0, 0.0, 1.0)).all()
+    assert not front.deep
+    eye = view_of(space.model, space.frames, Standpoint("front")).axes.eye
+    assert eye == pytest.approx([0.0, 1.0, 0.0])  # it falls towards +y
+    assert view_of(space.model, space.frames, Standpoint()).axes.eye[2] > 0.3
 
 
 def test_a_still_of_its_size(graphics, folder, tmp_path):

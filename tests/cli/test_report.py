@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import sys
@@ -15,8 +16,10 @@ from click.testing import CliRunner
 from synthetic import wall_model
 from synthetic.pages import evil, sweep, wall
 from synthetic.shaking import write_shaking
+from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 from dem_cli.cli.main import main
+from dem_cli.output.record import STATES
 from dem_cli.output.store import ResultWriter
 from dem_cli.report import facts
 from dem_cli.report.page import ASSETS, SCRIPTS, STYLE_SHEET, TEMPLATE, THREE, policy, script_json
@@ -59,6 +62,11 @@ class Page(HTMLParser):
 
     def named(self, tag):
         return [attributes for name, attributes in self.tags if name == tag]
+
+
+def unpacked(array):
+    """What `pack` packed."""
+    return np.frombuffer(base64.b64decode(array["data"]), f"<{array['type']}")
 
 
 def dem(*arguments):
@@ -233,6 +241,33 @@ def test_a_long_run_is_thinned_and_keeps_what_matters(tmp_path, monkeypatch):
     assert few["start"] == len(steps) - 1
 
 
+def test_the_view_of_a_structure_in_space(tmp_path):
+    """Faces as they are, closed joints left out, strokes on the block that carries them."""
+    from dem_cli.output.reader import read
+
+    model = solid_wall()
+    frames = solid_frames(model)
+    scene = view(read(write_solid_run(tmp_path, model, frames)))
+    assert scene["dimension"] == 3
+    assert scene["eye"][1] > 0.7  # it falls towards +y
+    assert scene["along"] == [1.0, 0.0]
+    assert len(unpacked(scene["corners"])) == 3 * 8 * model.n_blocks
+    assert len(unpacked(scene["edges"])) == 2 * 12 * model.n_blocks
+    last = scene["frames"][-1]
+    np.testing.assert_allclose(unpacked(last["turns"]).reshape(-1, 3), turns(frames[-1].orientations), atol=1e-7)
+    open_or_sliding = frames[-1].contacts.state != STATES.index("sticking")
+    assert len(unpacked(last["states"])) == 2 * open_or_sliding.sum()  # two halves of edges meet in a corner
+    assert STATES.index("sticking") not in unpacked(last["states"])
+
+
+def test_a_structure_in_space_without_frames(tmp_path):
+    folder = tmp_path / "still"
+    folder.mkdir()
+    summary = {"title": "t", "kind": "fragility", "status": "ok"}
+    ResultWriter(folder, solid_wall(), "", {}, (), "fragility").close(summary)
+    assert [frame["stage"] for frame in report(folder).data()["view"]["frames"]] == ["as built"]
+
+
 def test_a_run_without_frames_shows_what_was_built(tmp_path):
     folder = tmp_path / "still"
     folder.mkdir()
@@ -300,7 +335,7 @@ def test_colours_of_stages_and_lines_are_in_the_style_sheet():
 
     style = (ASSETS / "page.css").read_text(encoding="utf-8")
     names = [f"line-{name}" for name in (*STAGES, *map(str, range(charts._PALETTE)), "ink", "failure", "limit")]
-    for name in (*names, *STATES, "hairline", "stone", "ground", "ghost", "force", "accent"):
+    for name in (*names, *STATES, "hairline", "stone", "ground", "ghost", "force", "accent", "section"):
         assert len(re.findall(rf"--{name}:", style)) >= 2, f"--{name}, light and dark"
 
 

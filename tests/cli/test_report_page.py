@@ -17,15 +17,20 @@ from shown.browser import chromium
 from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.pages import HOSTILE, evil, sweep, wall
 from synthetic.shaking import write_shaking
+from synthetic.solid_runs import DEPTH, HEIGHT, solid_frames, solid_wall, write_solid_run
 
 from dem_cli.cli.main import main
 from dem_cli.output.scalars import scalars
 from dem_cli.post.frame_measures import scaled
+from dem_cli.post.scene.axonometry import axonometry
+from dem_cli.render.chamfered import sharp
 from dem_cli.render.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
 JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}
 SKY, DARK_SKY = (0xE9, 0xEE, 0xF3), (0x1E, 0x20, 0x23)
+SOLID = solid_wall(3, 2)
+SECTION = tuple(0.82 * value for value in STONE)  # of assets/section.js
 TOP_RIGHT, FOOT = 21, 1  # blocks: one that moves, one that does not
 
 
@@ -49,6 +54,7 @@ def pages(tmp_path_factory):
         "evil": evil(root / "evil"),
         "sweep": sweep(root / "sweep"),
         "shaken": write_shaking(root / "shaken"),
+        "solid": write_solid_run(root / "solid", SOLID, solid_frames(SOLID)),
     }
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)  # still pictures are not the point here
@@ -378,7 +384,7 @@ def test_small_screens_and_the_dark(opened, browser):
     try:
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", dark)
-        for name in ("sweep", "wall"):
+        for name in ("sweep", "solid", "wall"):
             page = opened(name)
             assert page.run("return document.documentElement.scrollWidth") == 390
         corner = page.box("canvas")[:2] + np.array((6, 60))
@@ -388,6 +394,73 @@ def test_small_screens_and_the_dark(opened, browser):
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_solids_are_where_the_results_have_them(opened):
+    frames = solid_frames(SOLID)
+    page, skin = opened("solid"), sharp(SOLID)
+    for at, scale in ((7, 1.0), (3, 100.0)):
+        page.run("dem.player.scene.set(arguments[0], arguments[1])", at, scale)
+        shown = scaled(SOLID, frames[at], scale)
+        expected = placed(skin, pose(shown.positions, shown.orientations))
+        drawn = np.array(page.run("return Array.from(dem.player.scene.places)")).reshape(-1, 3)
+        np.testing.assert_allclose(drawn, expected[page.run("return dem.player.scene.vertexCorners")], atol=1e-6)
+        ends = np.array(page.run("return Array.from(dem.player.scene.edges.geometry.attributes.position.array)"))
+        np.testing.assert_allclose(ends.reshape(-1, 3), expected[skin.edges.ravel()], atol=1e-6)
+    assert not page.complaints()
+
+
+def test_one_walks_around_a_structure_in_space(opened):
+    """It falls towards +y: there the reader stands, x to the left; dragging and keys turn it, z stays upwards."""
+    from selenium.webdriver import ActionChains
+
+    page = opened("solid")
+    eye = """const {camera, controls} = dem.player.scene.eye;
+        return camera.position.clone().sub(controls.target).normalize().toArray()"""
+    start = np.array(page.run(eye))
+    np.testing.assert_allclose(start, axonometry(SOLID, solid_frames(SOLID)[-1]).eye, atol=1e-6)
+    canvas = page.part("canvas")
+    page.keys(canvas, "d")
+    turned = np.array(page.run(eye))
+    assert np.degrees(np.arctan2(*turned[1::-1]) - np.arctan2(*start[1::-1])) == pytest.approx(15.0)
+    assert turned[2] == pytest.approx(start[2])
+    mouse = ActionChains(page.browser).move_to_element_with_offset(canvas, 40, 0)
+    mouse.click_and_hold().move_by_offset(60, 0).release().perform()
+    dragged = np.array(page.run(eye))
+    assert np.arctan2(*dragged[1::-1]) < np.arctan2(*turned[1::-1]) - 0.1
+    assert dragged[2] == pytest.approx(start[2])
+    page.run("dem.player.scene.draw()")
+    arrows = """const lines = document.querySelectorAll('[data-part="compass"] line');
+        return Array.from(lines, ({x2, y2}) => [x2.baseVal.value, y2.baseVal.value])"""
+    z = np.array(page.run(arrows))[2]
+    assert z[0] == pytest.approx(0.0, abs=1e-4)
+    assert z[1] < -5.0  # upwards
+
+
+def test_a_cut_shows_sections_and_takes_what_is_beyond(opened):
+    page = opened("solid")
+    page.keys(page.part("slider"), "\ue011")  # home: nothing has moved
+    choose = """const part = document.querySelector(`[data-part="${arguments[0]}"]`);
+        part[arguments[2]] = arguments[1]; part.dispatchEvent(new Event(part.type === "range" ? "input" : "change"))"""
+    assert not page.part("cut-place").is_enabled()
+    page.run(choose, "cut", "y", "value")
+    assert page.part("cut-says").text == f"y = {DEPTH / 2:.3g} m"
+    place = page.place(1)  # the middle of the first block lies in the plane of the cut
+    assert near(page.colour(place + 3), SECTION)
+    ends = np.array(page.run("return Array.from(dem.player.scene.section.outline.geometry.attributes.position.array)"))
+    ends = ends.reshape(-1, 2, 3)
+    np.testing.assert_allclose(ends[:, :, 1], DEPTH / 2, atol=0.02)  # it stands out a little
+    lengths = np.abs(ends[:, 1] - ends[:, 0]).sum(axis=1)
+    free = np.prod(np.ptp(SOLID.vertices.reshape(-1, 8, 3), axis=1)[1:, ::2], axis=1)
+    assert free.sum() == pytest.approx(2.0 * 3 * HEIGHT)
+    around = 2.0 * np.ptp(SOLID.vertices.reshape(-1, 8, 3), axis=1)[:, ::2].sum()
+    assert lengths.sum() == pytest.approx(around, rel=1e-5)  # each block with its own outline
+    page.run(choose, "cut-place", 0, "value")
+    assert page.run("return dem.player.scene.eye.under(arguments[0], arguments[1])", *place) == -1  # all is gone
+    page.run(choose, "cut-side", True, "checked")
+    assert page.run("return dem.player.scene.eye.under(arguments[0], arguments[1])", *place) == 1
+    page.run(choose, "cut", "", "value")
+    assert near(page.colour(place + 3), STONE, 45)
 
 
 def test_without_webgl_the_rest_of_the_page_works(opened, browser):

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 from casefiles import CASES
 from click.testing import CliRunner
+from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 import dem_cli
 from dem_cli.cli.main import main
+from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.output.layout import GROUPS, STEP_FIELDS, VTK_FILES
 from dem_cli.output.record import STATES
 
@@ -108,8 +110,10 @@ def test_every_attribute_of_groups_is_declared_and_there(folders):
     assert {path for path, _ in groups} == set(GROUPS)
 
 
-def test_all_that_is_declared_is_in_some_file(folders):
-    seen = {path for folder in folders.values() for path in objects(folder / "results.h5")}
+def test_all_that_is_declared_is_in_some_file(folders, tmp_path):
+    model = solid_wall()
+    in_space = write_solid_run(tmp_path, model, solid_frames(model, 2), DrawnJoints)
+    seen = {path for folder in (*folders.values(), in_space) for path in objects(folder / "results.h5")}
     assert set(declared()) <= seen
 
 

@@ -38,7 +38,7 @@ def test_each_loop_has_a_name_of_its_own():
     laws = [*LAWS.values(), FRICTION_SOFTENING]
     laws += [mixed((one, other)) for one, other in product(laws[:3], laws[:3]) if one is not other]
     laws.append(mixed(tuple(laws[:3])))
-    loops = [make_contact_forces(law.function, opening, law.bonded) for law in laws for opening in (False, True)]
+    loops = [make_contact_forces(law.function, law.bonded) for law in laws]
     loops += [make_planar_forces(law.function, law.bonded) for law in laws]
     loops += [make_profiled_forces(law.function, law.bonded, places) for law in laws for places in (False, True)]
     assert len({loop.__qualname__ for loop in loops}) == len(loops)

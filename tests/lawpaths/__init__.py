@@ -12,7 +12,7 @@ from dem_cli.case.base import CaseModel
 from dem_cli.contact.joints import empty_contacts
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import FixedJoints
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
@@ -56,6 +56,13 @@ def ramp(*targets: Sequence[float], n: int = 64, start: Sequence[float] | None =
     return np.concatenate([a + (b - a) * shares for a, b in zip(corners, corners[1:])])
 
 
+class Blocks(NamedTuple):
+    """What the loop takes of `Bodies`."""
+
+    velocities: np.ndarray  # (n_blocks, n_dof)
+    forces: np.ndarray  # (n_blocks, n_dof)
+
+
 class Looped(NamedTuple):
     """What came out of the loop, one row a step."""
 
@@ -71,7 +78,7 @@ class Looped(NamedTuple):
 @cache
 def contact_loop(laws: tuple[Law, ...], compiled: bool):
     law = mixed(laws)
-    plain = make_contact_forces(law.function, integrates_gap=True, bonded=law.bonded)
+    plain = make_contact_forces(law.function, law.bonded)
     return kernel(plain) if compiled else plain
 
 
@@ -82,10 +89,10 @@ def through_loop(
     path, laws = np.asarray(path, float), tuple({j.law.name: j.law for j in joints}.values())
     n, d = len(joints), path.shape[1]
     like, like_rotation = LIKE[d]
-    arrays = Joints(
+    arrays = FixedJoints(
         blocks=np.array([[0, 1 + i] for i in range(n)]), starts=np.arange(n + 1),
-        frames=np.tile(np.eye(d).reshape(1, -1), (n, 1)), levers=np.zeros((n, 2 * d * len(like_rotation))),
-        points=np.zeros((n, d)),
+        axes=np.tile(np.eye(d).reshape(1, -1), (n, 1)), anchors=np.zeros((n, d)), arms=np.zeros((n, 2 * d)),
+        places=np.zeros((n, d - 1)),
         kn=np.array([j.kn * j.area for j in joints]), ks=np.array([j.ks * j.area for j in joints]),
         law=np.stack([row(laws, j.law, j.columns, max(len(i.columns) for i in joints)) for j in joints]),
     )  # fmt: skip
@@ -98,7 +105,7 @@ def through_loop(
     for place in path:
         velocities, forces = np.zeros((1 + n, d + len(like_rotation))), np.zeros((1 + n, d + len(like_rotation)))
         velocities[1:, :d] = (place - old) / dt
-        lost += loop(arrays, contacts, velocities, forces, dt, like, like_rotation)
+        lost += loop(arrays, None, contacts, Blocks(velocities, forces), dt, like, like_rotation)
         external -= 0.5 * ((before + forces[1:, :d]) @ (place - old)).sum()
         before, old = forces[1:, :d].copy(), place
         elastic = 0.5 * (contacts.normal**2 / arrays.kn + (contacts.shear**2).sum(axis=1) / arrays.ks).sum()

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.geometry.rotation import frames
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import Joints, MovingJoints
 from dem_cli.model.block_measures import BlockMeasures
 from dem_cli.model.model import Model
 
@@ -183,7 +183,7 @@ def _joints(
     arms = points[:, None] - model.centroids[np.repeat(blocks, counts, axis=0)]  # (n_points, 2 blocks, 3)
     levers = np.cross(arms[:, :, None], directions[:, None])
     n = len(points)
-    return Joints(
+    return MovingJoints(
         blocks, np.concatenate([[0], np.cumsum(counts)]), directions.reshape(n, 9), levers.reshape(n, 18), points,
         stiffness[0], stiffness[1], law,
     )  # fmt: skip

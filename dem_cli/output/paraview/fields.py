@@ -4,20 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
-
-
-def contact_forces(contacts: ContactRecord) -> np.ndarray:
-    """Force of each contact point on its second block [N], (n, d)."""
-    normals = contacts.normals
-    forces = contacts.normal_force[:, np.newaxis] * normals
-    if normals.shape[1] == 2:
-        tangents = across(normals)
-        forces = forces + contacts.shear_force * tangents
-    return forces
 
 
 def block_fields(model: Model) -> dict[str, np.ndarray]:
@@ -38,7 +27,7 @@ def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
         "block_a": contacts.blocks[:, 0].astype(np.int32),
         "block_b": contacts.blocks[:, 1].astype(np.int32),
         "normal": in_space(contacts.normals),
-        "force": in_space(contact_forces(contacts)),
+        "force": in_space(contacts.forces()),
         "normal_force": contacts.normal_force.astype(np.float32),
         "shear_force": (shear[:, 0] if shear.shape[1] == 1 else np.linalg.norm(shear, axis=1)).astype(np.float32),
         "gap": contacts.gap.astype(np.float32),

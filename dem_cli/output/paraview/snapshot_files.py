@@ -10,14 +10,14 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
-from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES
+from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES, declared
+from dem_cli.output.paraview.cells import cells_of, outlines_of_joints
 from dem_cli.output.paraview.fields import block_fields, contact_fields, joint_fields, joint_places, step_fields
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
 from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates
 
 BLOCKS, CONTACTS, JOINTS = VTK_FILES
-_VTK_LINE, _VTK_POLYGON = 3, 7
 
 
 class JointsNow(Protocol):
@@ -29,11 +29,11 @@ class JointsNow(Protocol):
 
     @property
     def gaps(self) -> np.ndarray:
-        """Distance at both ends [m], (n, 2)."""
+        """Distance at both ends [m], (n, 2); in space at the corners, (n_corners,)."""
 
     @property
     def ends(self) -> np.ndarray:
-        """Where these are [m], (n, 2, d)."""
+        """Where these are [m], (n, 2, 2); in space (n_corners, 3)."""
 
 
 class FollowedJoints(Protocol):
@@ -51,15 +51,14 @@ class ParaViewFiles:
     """The files of a run. opened: makes one by its name; joints: None where there are none."""
 
     def __init__(self, model: Model, joints: FollowedJoints | None, opened: Callable[[str], h5py.File]):
-        self.model, self._rest = model, rest_vertices(model)
-        self.blocks = GridSeries(
-            opened(BLOCKS), model.part_starts, _VTK_POLYGON, block_fields(model), BLOCK_FIELDS | STEP_FIELDS
-        )
-        self.points = PointSeries(opened(CONTACTS), CONTACT_FIELDS | STEP_FIELDS)
+        self.model, self._rest, d = model, rest_vertices(model), model.dimension
+        said = declared(BLOCK_FIELDS | STEP_FIELDS, d)
+        self.blocks = GridSeries(opened(BLOCKS), cells_of(model), block_fields(model), said)
+        self.points = PointSeries(opened(CONTACTS), declared(CONTACT_FIELDS | STEP_FIELDS, d))
         self.joints: GridSeries | None = None
         if joints is not None:
-            starts, places = np.arange(0, 2 * len(joints.places.area) + 1, 2), joint_places(joints.places)
-            self.joints = GridSeries(opened(JOINTS), starts, _VTK_LINE, places, JOINT_FIELDS | STEP_FIELDS)
+            cells, said = outlines_of_joints(joints.places), declared(JOINT_FIELDS | STEP_FIELDS, d)
+            self.joints = GridSeries(opened(JOINTS), cells, joint_places(joints.places), said)
 
     def add(self, value: float, frame: Frame, joints: JointsNow | None) -> None:
         """Append a frame; value: what ParaView counts it by."""
@@ -71,6 +70,6 @@ class ParaViewFiles:
         self.blocks.add(value, in_space(vertices), moving, turned, steps)
         self.points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), steps)
         if self.joints is not None and joints is not None:
-            ends = in_space(joints.ends.reshape(-1, joints.ends.shape[2]))
+            ends = in_space(joints.ends.reshape(-1, model.dimension))
             gaps = {"gap": joints.gaps.ravel().astype(np.float32)}
             self.joints.add(value, ends, gaps, joint_fields(joints.states), steps)

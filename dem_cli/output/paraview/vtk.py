@@ -13,6 +13,7 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.atomic_file import write_text
 from dem_cli.output.folder import write_error
+from dem_cli.output.paraview.cells import cells_of, outlines
 from dem_cli.output.paraview.fields import block_fields, contact_fields
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.reader import Results
@@ -20,7 +21,7 @@ from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
 
 Fields = Mapping[str, np.ndarray]
-_POLYGON = 7
+_OF_TRIANGLES = (".stl",)  # formats that know no other faces
 _TYPES = {
     np.dtype(np.float32): "Float32",
     np.dtype(np.float64): "Float64",
@@ -70,7 +71,13 @@ def export_pvd(results: Results, folder: Path) -> list[Path]:
 def _write_foreign(path: Path, model: Model, vertices: np.ndarray) -> None:
     import meshio
 
-    cells = [("polygon", np.arange(a, b)[np.newaxis]) for a, b in zip(model.part_starts, model.part_starts[1:])]
+    starts, corners = outlines(model)
+    loops = [corners[a:b] for a, b in zip(starts, starts[1:])]
+    if path.suffix.lower() in _OF_TRIANGLES:
+        fans = [np.column_stack([np.full(len(loop) - 2, loop[0]), loop[1:-1], loop[2:]]) for loop in loops]
+        cells = [("triangle", np.concatenate(fans))]
+    else:
+        cells = [("polygon", loop[np.newaxis]) for loop in loops]
     try:
         meshio.Mesh(vertices, cells).write(path)
     except (meshio.ReadError, meshio.WriteError, KeyError, SystemExit) as error:
@@ -96,11 +103,8 @@ def _step_fields(frame: Frame) -> Fields:
 
 
 def _grid(model: Model, vertices: np.ndarray, points: Fields, cells: Fields, steps: Fields) -> str:
-    topology: Fields = {
-        "connectivity": np.arange(len(vertices), dtype=np.int64),
-        "offsets": model.part_starts[1:].astype(np.int64),
-        "types": np.full(model.n_parts, _POLYGON, dtype=np.uint8),
-    }
+    found = cells_of(model)
+    topology: Fields = {"connectivity": found.corners, "offsets": found.starts[1:], "types": found.types}
     piece = f'NumberOfPoints="{len(vertices)}" NumberOfCells="{model.n_parts}"'
     sections = (
         ("PointData", points),

@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.layout import Described, describe
+from dem_cli.output.paraview.cells import Cells
 
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _PARTS = "Steps/PartOffsets"
@@ -62,17 +63,16 @@ class _Series:
 class GridSeries(_Series):
     """Blocks as cells whose corners move and whose topology stays (UnstructuredGrid)."""
 
-    def __init__(self, file: h5py.File, starts: np.ndarray, cell_type: int, cells: Fields, declared: Declared):
+    def __init__(self, file: h5py.File, cells: Cells, fields: Fields, declared: Declared):
+        """fields: of the cells, the same in all steps."""
         super().__init__(file, "UnstructuredGrid", declared)
         root = self.root
-        self.static = tuple(cells)
-        n_points, n_cells = int(starts[-1]), len(starts) - 1
+        self.static = tuple(fields)
+        n_points, n_cells = int(cells.starts[-1]), len(cells.types)
         for name, count in (("Points", n_points), ("Cells", n_cells), ("ConnectivityIds", n_points)):
             root[f"NumberOf{name}"] = np.array([count], dtype=np.int64)
-        root["Connectivity"] = np.arange(n_points, dtype=np.int64)
-        root["Offsets"] = np.asarray(starts, dtype=np.int64)
-        root["Types"] = np.full(n_cells, cell_type, dtype=np.uint8)
-        for name, values in cells.items():
+        root["Connectivity"], root["Offsets"], root["Types"] = cells.corners, cells.starts, cells.types
+        for name, values in fields.items():
             root[f"CellData/{name}"] = values
             describe(root[f"CellData/{name}"], declared[f"CellData/{name}"])
 

@@ -9,6 +9,7 @@ class Eye {
     this.canvas = scene.canvas;
     this.flat = scene.data.dimension === 2;
     this.camera = new THREE.OrthographicCamera();
+    this.camera.up.set(0, this.flat ? 1 : 0, this.flat ? 0 : 1); // the controls ask once, when they are made
     // the page scrolls over a view that nobody has clicked; this must hear the wheel before the controls do
     this.canvas.addEventListener("wheel", (event) => {
       if (document.activeElement !== this.canvas && !event.ctrlKey && !event.metaKey) event.stopImmediatePropagation();
@@ -17,6 +18,10 @@ class Eye {
     this.canvas.style.touchAction = "pan-y"; // a finger that moves up or down scrolls the page
     this.controls.addEventListener("change", () => scene.request());
     this.turnable(!this.flat);
+    const arrows = this.canvas.parentNode.querySelectorAll('[data-part="compass"] g');
+    this.arrows = Array.from(arrows, (group, k) => ({
+      direction: new THREE.Vector3().setComponent(k, 1), line: group.querySelector("line"), name: group.querySelector("text"),
+    }));
   }
 
   /** What dragging does: turn, or move along. The other button or Shift does the other. */
@@ -29,15 +34,39 @@ class Eye {
   /** Turn to the front and show all free blocks, where they were and where they are now, but no corner that fell far. */
   fit() {
     const { low, high } = this.bounds(), size = high.map((value, k) => value - low[k]);
-    const far = 4 * Math.hypot(...size), [x, y, z] = this.flat ? [0, 0, 1] : [0.5, -0.75, 0.4];
-    const wide = Math.hypot(...size);
-    this.extent = this.flat ? [ROOMY * size[0], ROOMY * size[1]] : [wide, wide];
+    const far = 4 * Math.hypot(...size), [x, y, z] = this.flat ? [0, 0, 1] : this.scene.data.eye;
+    this.extent = this.seen(size, [x, y, z]).map((value) => ROOMY * value);
     this.controls.target.set(...low.map((value, k) => (value + high[k]) / 2));
-    this.camera.up.set(0, this.flat ? 1 : 0, this.flat ? 0 : 1);
     this.camera.position.copy(this.controls.target).add(new THREE.Vector3(x * far, y * far, z * far));
     Object.assign(this.camera, { near: -2 * far, far: 4 * far, zoom: 1 });
     this.controls.update();
     this.resize();
+  }
+
+  /** Width and height of a box of a size, seen from a direction. */
+  seen(size, [x, y, z]) {
+    if (this.flat) return size.slice(0, 2);
+    const flat = Math.hypot(x, y), right = [-y / flat, x / flat, 0], up = [(-z * x) / flat, (-z * y) / flat, flat];
+    return [right, up].map((axis) => size.reduce((sum, value, k) => sum + Math.abs(axis[k] * value), 0));
+  }
+
+  /** Turn around the structure by an angle. */
+  orbit(angle) {
+    const arm = this.camera.position.clone().sub(this.controls.target).applyAxisAngle(this.camera.up, angle);
+    this.camera.position.copy(this.controls.target).add(arm);
+    this.controls.update();
+    this.scene.request();
+  }
+
+  /** Where x, y and z point, in a corner of the picture. */
+  compass() {
+    for (const axis of this.arrows || []) {
+      const { x, y } = axis.direction.clone().transformDirection(this.camera.matrixWorldInverse);
+      axis.line.setAttribute("x2", 20 * x);
+      axis.line.setAttribute("y2", -20 * y);
+      axis.name.setAttribute("x", 28 * x);
+      axis.name.setAttribute("y", -28 * y);
+    }
   }
 
   bounds() {
@@ -75,7 +104,7 @@ class Eye {
     const view = this.canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
     const x = ((clientX - view.left) / view.width) * 2 - 1, y = 1 - ((clientY - view.top) / view.height) * 2;
     ray.setFromCamera(new THREE.Vector2(x, y), this.camera);
-    const [hit] = ray.intersectObject(this.scene.mesh);
+    const hit = ray.intersectObject(this.scene.mesh).find(({ point }) => !this.scene.section.takes(point));
     return hit ? this.scene.owners[hit.face.a] : -1;
   }
 

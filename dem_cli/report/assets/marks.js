@@ -1,5 +1,5 @@
-// What is drawn on the blocks of a scene: joints by their state, forces, and the outline of the start. All of it stands
-// before the blocks, whatever the direction of the look.
+// What is drawn on the blocks of a scene: joints by their state, forces, and the outline of the start. In the plane all of
+// it stands before the blocks, whatever the direction of the look; in space blocks hide joints, but not forces.
 
 const WIDEST_FORCE = 0.16; // of the smaller side of an ordinary block
 const LONGEST_FORCE = 0.42; // of the smaller side of the smaller block, to either side of the joint
@@ -7,13 +7,14 @@ const THINNEST_FORCE = 0.06; // of the widest
 
 class Marks {
   constructor(scene) {
-    const over = { depthTest: false, transparent: true };
+    const over = { depthTest: false, transparent: true }, among = { depthTest: scene.data.dimension === 3, transparent: true };
     this.scene = scene;
-    this.jointLook = new THREE.LineMaterial({ ...over, vertexColors: true, linewidth: Math.min(3.2, Math.max(1.1, 32 / Math.sqrt(scene.n))) });
+    this.jointLook = new THREE.LineMaterial({ ...among, vertexColors: true, linewidth: Math.min(3.2, Math.max(1.1, 32 / Math.sqrt(scene.n))) });
     this.joints = new THREE.LineSegments2(new THREE.LineSegmentsGeometry(), this.jointLook);
     this.forceLook = new THREE.MeshBasicMaterial({ ...over, opacity: 0.85 });
     this.bar = new THREE.BoxGeometry(1, 1, 1);
     this.ghostLook = new THREE.LineBasicMaterial({ ...over, opacity: 0.65 });
+    this.looks = [this.jointLook, this.forceLook, this.ghostLook];
     this.ghost = new THREE.LineSegments(this.outline(), this.ghostLook);
     [this.ghost, this.joints].forEach((thing, i) => {
       thing.renderOrder = i + 1;
@@ -33,12 +34,17 @@ class Marks {
     this.ghost.visible = this.scene.show.ghost;
   }
 
-  /** Edges of the faces at the start; in 2D those that look at the reader. */
+  /** Edges of the blocks at the start; in 2D of the faces that look at the reader. */
   outline() {
     const { faces, face_blocks: owners, fixed, centroids, data } = this.scene, ends = [];
-    for (let at = 0, face = 0; at < faces.length; at += faces[at] + 1, face++) {
+    if (data.dimension === 3) {
+      for (const end of this.scene.edgeEnds) {
+        const block = this.scene.corner_blocks[end];
+        if (!fixed[block]) this.scene.corner(end).forEach((value, axis) => ends.push(value + centroids[3 * block + axis]));
+      }
+    } else for (let at = 0, face = 0; at < faces.length; at += faces[at] + 1, face++) {
       const ring = faces.subarray(at + 1, at + 1 + faces[at]), block = owners[face];
-      if (fixed[block] || (data.dimension === 2 && this.scene.normal(ring).z < 0.999)) continue;
+      if (fixed[block] || this.scene.normal(ring).z < 0.999) continue;
       ring.forEach((corner, k) => {
         for (const end of [corner, ring[(k + 1) % ring.length]])
           this.scene.corner(end).forEach((value, axis) => ends.push(value + centroids[3 * block + axis]));

@@ -68,7 +68,23 @@ class Player {
     for (const name of ["joints", "forces", "ghost", "carried"]) if (this.part(name)) this.scene.show[name] = this.part(name).checked;
     if (this.part("turn")) this.part("turn").setAttribute("aria-pressed", String(this.data.dimension === 3));
     if (frames.length === 1) for (const name of ["play", "slider", "speed"]) this.part(name).disabled = true;
+    this.cutting(on);
     this.stages();
+  }
+
+  /** A plane across an axis that takes away what is beyond it; between the ends of the structure as it was built. */
+  cutting(on) {
+    if (!this.part("cut")) return;
+    const { low, high } = this.scene.extent(), place = this.part("cut-place");
+    const cut = () => {
+      const name = this.part("cut").value, axis = name ? "xyz".indexOf(name) : null;
+      const at = name ? low[axis] + (Number(place.value) / Number(place.max)) * (high[axis] - low[axis]) : 0;
+      this.scene.section.cut(axis, at, this.part("cut-side").checked);
+      this.part("cut-place").disabled = this.part("cut-side").disabled = !name;
+      this.part("cut-says").textContent = name ? `${name} = ${number(at, 3)} m` : "";
+    };
+    for (const name of ["cut", "cut-place", "cut-side"]) on(name, name === "cut-place" ? "input" : "change", cut);
+    cut();
   }
 
   /** A strip below the slider: which stretch of frames belongs to which stage. */
@@ -210,6 +226,7 @@ class Player {
       "+": () => this.scene.eye.zoom(1.25), "-": () => this.scene.eye.zoom(0.8), 0: () => this.scene.eye.fit(),
       n: () => this.select((this.scene.picked + 1) % this.scene.n), Escape: () => this.select(-1),
     };
+    if (this.data.dimension === 3) Object.assign(does, { a: () => this.scene.eye.orbit(-Math.PI / 12), d: () => this.scene.eye.orbit(Math.PI / 12) });
     this.canvas.addEventListener("keydown", (event) => {
       if (!does[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();

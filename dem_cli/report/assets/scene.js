@@ -1,7 +1,12 @@
 // The structure in WebGL: blocks as polyhedra that are placed anew for each frame. Knows nothing of the page around it;
 // three.js does the drawing.
 
-const LIGHT = { x: -0.08, y: 0.18, z: 0.22, ambient: 0.78 }; // a face that looks at the reader has its own colour
+// How a normal changes the colour of a face: in the plane one that looks at the reader has its own; in space tops are
+// light and the narrow sides dark, from wherever one looks.
+const LIGHT = {
+  2: (normal) => 0.78 - 0.08 * normal.x + 0.18 * normal.y + 0.22 * normal.z,
+  3: (normal, [x, y]) => 0.88 + 0.14 * normal.z - 0.12 * Math.abs(x * normal.x + y * normal.y),
+};
 const RAMP = ["#f4cf8e", "#e8953a", "#bf4a24", "#6d0f23"]; // after the stone that stays: to what moves most
 const STATES = ["open", "sticking", "sliding", "hairline"]; // as dem_cli/report/view.py counts them
 
@@ -36,6 +41,7 @@ class Scene {
     this.colouring = "stone";
     this.picked = this.hovered = -1;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.localClippingEnabled = true;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.world = new THREE.Scene();
     this.blocks();
@@ -64,10 +70,22 @@ class Scene {
     this.shape.setAttribute("position", new THREE.BufferAttribute(this.places, 3));
     this.shape.setAttribute("color", new THREE.BufferAttribute(this.colours, 3));
     this.shape.setIndex(triangles);
-    this.mesh = new THREE.Mesh(this.shape, new THREE.MeshBasicMaterial({ vertexColors: true }));
+    const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }; // of the lines on them
+    this.mesh = new THREE.Mesh(this.shape, new THREE.MeshBasicMaterial({ vertexColors: true, ...(this.data.edges && behind) }));
     this.mesh.frustumCulled = false;
     this.world.add(this.mesh);
+    this.section = new Section(this);
+    this.edgeEnds = this.data.edges ? unpack(this.data.edges) : [];
+    const edges = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * this.edgeEnds.length), 3));
+    this.edges = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ transparent: true, opacity: 0.5 }));
+    this.edges.frustumCulled = false;
+    this.world.add(this.edges);
     this.sides = this.smallest();
+  }
+
+  /** The box around everything as it was built. */
+  extent() {
+    return box(Array.from(this.corner_blocks, (block, i) => Array.from(this.corner(i), (value, k) => value + this.centroids[3 * block + k])));
   }
 
   corner(i) {
@@ -81,8 +99,7 @@ class Scene {
   }
 
   shade(ring) {
-    const normal = this.normal(ring);
-    return LIGHT.ambient + LIGHT.x * normal.x + LIGHT.y * normal.y + LIGHT.z * normal.z;
+    return LIGHT[this.data.dimension](this.normal(ring), this.data.along);
   }
 
   /** The smallest side of the box around each block. */
@@ -96,8 +113,9 @@ class Scene {
   themed() {
     const style = getComputedStyle(this.canvas);
     const named = (name) => rgb(style.getPropertyValue(name).trim());
-    this.paint = Object.fromEntries(["stone", "ground", "accent", "force", "ghost", ...STATES].map((name) => [name, named(`--${name}`)]));
+    this.paint = Object.fromEntries(["stone", "ground", "accent", "force", "ghost", "section", ...STATES].map((name) => [name, named(`--${name}`)]));
     this.ramp = [this.paint.stone, ...RAMP.map(rgb)];
+    this.edges.material.color.setRGB(...this.paint.section);
     this.marks.themed();
     if (this.frame) this.set(this.at, this.scale);
   }
@@ -115,8 +133,12 @@ class Scene {
     for (let v = 0; v < this.owners.length; v++)
       this.places.set(this.placed(this.owners[v], this.corner(this.vertexCorners[v])), 3 * v);
     this.shape.attributes.position.needsUpdate = true;
+    const ends = this.edges.geometry.attributes.position;
+    this.edgeEnds.forEach((corner, e) => ends.array.set(this.placed(this.corner_blocks[corner], this.corner(corner)), 3 * e));
+    ends.needsUpdate = true;
     this.shape.computeBoundingSphere();
     this.tint();
+    this.section.draw();
     this.marks.draw();
     this.request();
   }
@@ -166,7 +188,7 @@ class Scene {
       if (states) return this.paint[STATES[states[block]]];
       return scale && scale.most > 0 ? this.along(scale.measure(block) / scale.most) : this.paint.stone;
     };
-    const colours = Array.from({ length: this.n }, (_, block) => {
+    const colours = this.blockColours = Array.from({ length: this.n }, (_, block) => {
       const mixed = block === this.picked ? 0.75 : block === this.hovered ? 0.4 : 0;
       return own(block).map((value, k) => value + mixed * (this.paint.accent[k] - value));
     });
@@ -174,6 +196,7 @@ class Scene {
       for (let k = 0; k < 3; k++) this.colours[3 * v + k] = Math.min(1, this.shades[v] * colours[block][k]);
     });
     this.shape.attributes.color.needsUpdate = true;
+    this.section.tint();
     this.request();
   }
 
@@ -190,6 +213,7 @@ class Scene {
   draw() {
     this.waiting = 0;
     this.renderer.render(this.world, this.eye.camera);
+    this.eye.compass();
   }
 }
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from dem_cli.api import make_case_model
 from dem_cli.case.explain import CaseEntry
-from dem_cli.case.keys import CaseKey, CaseTable, tables
+from dem_cli.case.keys import CaseKey, CaseTable, only_in, tables
 from studies.places import DOCS
 from studies.template import table as markdown
 
@@ -24,6 +24,9 @@ Schema for editors.
 In headings, `NAME` is a name of your choice, `[table]` stands once and `[[table]]` as often as needed; a table inside
 another may also be written on one line, as in `cap = { width = 0.6, height = 0.15 }`. An example has what its table
 needs and no more. The [guide](guide/model.md) says how to go about it.
+
+Cases are in 2D, or in 3D with `dimension = 3`. What one of them alone may have is marked (2D only) or (3D only). A
+vector that is left out has a third component of 0 in 3D.
 
 Made from the program's own declarations by `scripts/docs --write`; do not edit.
 """
@@ -45,7 +48,13 @@ def overview(found: Sequence[CaseTable]) -> str:
         table = next(one for one in found if one.path[0] == name)
         alike = [one for one in found if one.path == table.path and one.tag]
         kinds = [f"[{one.kinds[0]}](#{anchor(one)})" for one in alike]
-        rows.append((f"[`{table.heading}`](#{slug(table.heading)})", safe(table.said), ", ".join(kinds)))
+        rows.append(
+            (
+                f"[`{table.heading}`](#{slug(table.heading)})",
+                safe(table.said + only_in(table.dimension)),
+                ", ".join(kinds),
+            )
+        )
     return markdown(("table", "holds", "kinds"), rows)
 
 

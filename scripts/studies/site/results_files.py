@@ -14,7 +14,8 @@ for those who read them with other programs; from Python, [`dem_cli.open`](pytho
 
 Every dataset of `results.h5` (HDF5) explains itself by attributes: `meaning`, `units` (SI; `1` for pure numbers and
 numbers of things), `columns`, the names along its last axis, and `DIMENSION_LABELS`, what each axis counts. Blocks,
-joints, parts and materials are numbered from 0. x points to the right, y upwards, angles are counter-clockwise.
+joints, parts and materials are numbered from 0. In 2D x points to the right, y upwards, and angles are
+counter-clockwise; in 3D x and y are horizontal, z points upwards, and what is another thing there stands behind “3D:”.
 
 ```python
 import h5py
@@ -32,6 +33,8 @@ PARAVIEW = """## For ParaView and pyvista
 Three files in the VTKHDF format, which ParaView 5.12 and newer and pyvista open by name, one step per frame: seconds
 in a time history, else the number of the frame. Values are float32 or whole numbers; `meaning` and `units` stand at
 each field. `/VTKHDF` of `results.h5` is a link to that of `blocks.vtkhdf`. For older ParaView `dem export DIR --pvd`.
+In 3D blocks are solid cells, which a clip cuts and filters measure: hexahedra, wedges, tetrahedra, pyramids and prisms
+of five and six sides as such, other shapes as convex point sets, whose faces ParaView shows in triangles.
 
 ```python
 import pyvista
@@ -62,7 +65,18 @@ def text() -> str:
 
 def row(name: str, said: Described) -> tuple[str, ...]:
     """A line of the table of a group."""
-    return (f"`{name}`", " × ".join(said.axes), ", ".join(said.columns), units(said), said.meaning.replace("|", "\\|"))
+    plane, space = _cells(said), _cells(said.of(3))
+    axes, columns, unit, meaning = (_both(*pair) for pair in zip(plane, space, strict=True))
+    return (f"`{name}`", axes, columns, unit, f"3D: {meaning}" if said.spatial else meaning)
+
+
+def _cells(said: Described) -> tuple[str, ...]:
+    return (" × ".join(said.axes), ", ".join(said.columns), units(said), said.meaning.replace("|", "\\|"))
+
+
+def _both(plane: str, space: str) -> str:
+    """What differs in space stands behind what holds in the plane."""
+    return plane if plane == space else f"{plane}; 3D: {space}"
 
 
 def units(said: Described) -> str:
@@ -73,4 +87,10 @@ def units(said: Described) -> str:
 
 
 def _fields(fields: Mapping[str, Described]) -> str:
-    return markdown(FIELD_HEAD, [(f"`{name}`", units(said), said.meaning) for name, said in fields.items()])
+    return markdown(
+        FIELD_HEAD,
+        [
+            (f"`{name}`", _both(units(said), units(said.of(3))), _both(said.meaning, said.of(3).meaning))
+            for name, said in fields.items()
+        ],
+    )

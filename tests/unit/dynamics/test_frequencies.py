@@ -17,7 +17,7 @@ from dem_cli.dynamics.frequencies import highest_frequency, limiting, modes, sys
 from dem_cli.dynamics.time_step import time_step
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import CaseError
-from dem_cli.kernels.contact_forces import make_contact_forces, of_bodies
+from dem_cli.kernels.contact_forces import make_contact_forces
 
 BOOK = Path(__file__).resolve().parents[2] / "reference" / "classical_benchmarks.toml"
 
@@ -125,7 +125,7 @@ def pressed(sim):
 def test_stiffness_is_that_of_the_contact_loop():
     """Forces of the loop with fixed geometry, after a small motion of every degree of freedom."""
     sim = pressed(simulation(tables(*running_wall(3, 3), joints=joint(3e8, 2e8))))
-    loop = of_bodies(make_contact_forces(sim.law.function, integrates_gap=True))
+    loop = make_contact_forces(sim.law.function)
     stiffness = system(sim).stiffness.toarray()
     free = np.flatnonzero(np.repeat(~sim.model.fixed, 3))
     kept, small = sim.save(), 1e-9

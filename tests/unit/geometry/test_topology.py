@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from dem_cli.geometry import polygon
-from dem_cli.geometry.compounds import inner_edges
-from dem_cli.geometry.topology import topology_of_polygons
+from dem_cli.geometry import parts, polygon, spatial_parts
+from dem_cli.geometry.compounds import covered_faces, inner_edges
+from dem_cli.geometry.polyhedron import box, prism
+from dem_cli.geometry.solids import face_areas
+from dem_cli.geometry.topology import topology_of_polygons, topology_of_polyhedra
 
 STARTS = np.array([0, 3, 7, 12])
 
@@ -39,3 +42,38 @@ def test_edges_between_parts_of_a_block_are_inner():
     assert not apart.any()
     together = inner_edges(vertices, topology, np.array([0, 0, 1]), sizes)
     assert np.flatnonzero(together).tolist() == [2, 4]  # the top of the first part, the foot of the second
+
+
+def test_faces_between_parts_of_a_block_in_space_are_inner():
+    """The lower part is covered by two, of which one is of the same block as well; the third only touches."""
+    solids = [
+        box([0, 0, 0], [2, 1, 1]),
+        box([0, 0, 1], [1, 1, 2]),
+        box([1, 0, 1], [2, 1, 2]),
+        box([0, 0, 2], [2, 1, 3]),
+    ]
+    vertices, topology = np.concatenate([s.vertices for s in solids]), topology_of_polyhedra(solids)
+    starts = np.array([0, 8, 16, 24, 32])
+    sizes = parts.sizes(vertices, starts)
+    inner = covered_faces(vertices, topology, face_areas(vertices, topology), np.array([0, 0, 0, 1]), sizes)
+    heights = [
+        vertices[topology.face_corners[topology.face_starts[f] : topology.face_starts[f + 1]]] for f in range(24)
+    ]
+    found = {(int(topology.face_parts[f]), *heights[f].mean(axis=0).tolist()) for f in np.flatnonzero(inner)}
+    assert found == {(0, 1.0, 0.5, 1.0), (1, 0.5, 0.5, 1.0), (1, 1.0, 0.5, 1.5), (2, 1.5, 0.5, 1.0), (2, 1.0, 0.5, 1.5)}
+
+
+def test_edges_of_a_box_once():
+    solid = box([0, 0, 0], [1, 2, 3])
+    ends, part = spatial_parts.edges(topology_of_polyhedra([solid, solid]))
+    lengths = np.linalg.norm(np.diff(np.tile(solid.vertices, (2, 1))[ends], axis=1)[:, 0], axis=1)
+    assert sorted(lengths.tolist()) == [1.0] * 8 + [2.0] * 8 + [3.0] * 8
+    assert part.tolist() == [0] * 12 + [1] * 12
+
+
+def test_narrowest_extents_in_space():
+    drum = prism(np.array([[np.cos(a), np.sin(a)] for a in np.arange(8) * np.pi / 4]), 0.0, 5.0)
+    solids = [box([0, 0, 0], [3, 0.2, 2]), box([0, 0, 0], [0.3, 0.3, 9]), drum]
+    vertices, starts = np.concatenate([s.vertices for s in solids]), np.array([0, 8, 16, 32])
+    widths = spatial_parts.widths(vertices, starts, topology_of_polyhedra(solids))
+    assert widths == pytest.approx([0.2, 0.3, 2.0 * np.cos(np.pi / 8)])

@@ -1,76 +1,22 @@
-"""The contact loop: planar data in its spatial form, action and reaction."""
+"""The contact loop: planar data in its spatial form, against point-by-point sums, action and reaction."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
+from synthetic.twins import LIKE, LIKE_ROTATION, PLANAR, in_space, twin
 
+from dem_cli.contact.joints import empty_contacts
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.contact_forces import make_contact_forces
+from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.records import Bodies, Contacts, Joints, Loads
 from dem_cli.laws.registry import LAWS
 
-LIKE = {2: (0.0,) * 2, 3: (0.0,) * 3}
-LIKE_ROTATION = {2: (0.0,), 3: (0.0,) * 3}
-PLANAR = [0, 1, 5]  # where x, y and the angle stand in space
-
-
-class Twin(NamedTuple):
-    """The arrays of a planar scene as a scene in space."""
-
-    bodies: Bodies
-    joints: Joints
-    contacts: Contacts
-    loads: Loads
-
-
-def in_space(rows: np.ndarray) -> np.ndarray:
-    """(n, 3) planar degrees of freedom as (n, 6)."""
-    wide = np.zeros((len(rows), 6))
-    wide[:, PLANAR] = rows
-    return wide
-
-
-def twin(sim: Simulation) -> Twin:
-    """Frames with ez as second tangent, levers about all three axes."""
-    joints, contacts, n = sim.joints, sim.contacts, len(sim.joints.kn)
-    normals = joints.frames[:, :2]
-    frames, levers = np.zeros((n, 9)), np.zeros((n, 2, 3, 3))
-    frames[:, :2] = normals
-    frames[:, 3], frames[:, 4], frames[:, 8] = -normals[:, 1], normals[:, 0], 1.0
-    owners = joints.blocks.repeat(2, axis=0)
-    for side in (0, 1):
-        arms = joints.points - sim.bodies.positions[owners[:, side]]
-        levers[:, side, 0, 2] = joints.levers[:, 2 * side]
-        levers[:, side, 1, 2] = joints.levers[:, 2 * side + 1]
-        levers[:, side, 2, :2] = np.column_stack([arms[:, 1], -arms[:, 0]])
-    bodies = Bodies(
-        positions=np.column_stack([sim.bodies.positions, np.zeros(len(sim.bodies.positions))]),
-        orientations=sim.bodies.orientations.copy(),
-        velocities=in_space(sim.bodies.velocities),
-        forces=in_space(sim.bodies.forces),
-        unbalanced=in_space(sim.bodies.unbalanced),
-        corners=sim.bodies.corners.copy(),
-        turns=sim.bodies.turns.copy(),
-        means=np.zeros(6 * len(sim.bodies.positions)),
-        drags=np.zeros(6 * len(sim.bodies.positions)),
-        pulled=np.zeros(6 * len(sim.bodies.positions)),
-        travel=sim.bodies.travel.copy(),
-    )
-    loads = Loads(*(in_space(field) for field in sim.loads))
-    free = ~sim.model.fixed
-    loads.inverse_masses[np.ix_(free, [2, 3, 4])] = 1.0
-    loads.force_scales[:, 2:5] = 1.0
-    shear = np.column_stack([contacts.shear, np.zeros(n)])
-    same = {name: getattr(contacts, name).copy() for name in ("gaps", "normal", "slip")}
-    copied = contacts._replace(shear=shear, **same)
-    return Twin(bodies, joints._replace(frames=frames, levers=levers.reshape(n, 18)), copied, loads)
+DEPTH = 0.08  # of prisms [m]
 
 
 def pushed_wall(n_steps: int, kinematics: str = "fixed") -> Simulation:
@@ -81,26 +27,25 @@ def pushed_wall(n_steps: int, kinematics: str = "fixed") -> Simulation:
     return sim
 
 
-@pytest.mark.parametrize("kinematics", ["fixed", "large"])
-def test_planar_twin_of_the_loop(kinematics):
+def coulomb_loop():
+    return kernel(make_contact_forces(LAWS["coulomb"].function))
+
+
+def test_planar_twin_of_the_loop():
     """Planar data in space: bit by bit the same forces, gaps, shear, slip and friction work."""
-    sim = pushed_wall(1500, kinematics)
+    sim = pushed_wall(1500)
     other = twin(sim)
     states = sim.contacts.normal > 0
     assert states.any()
     assert not states.all()
-    loop = kernel(make_contact_forces(LAWS["coulomb"].function, kinematics == "fixed"))
-    rng, work = np.random.default_rng(3), []
+    loop, rng, work = coulomb_loop(), np.random.default_rng(3), []
     for _ in range(5):
         kick = rng.normal(size=sim.bodies.velocities.shape) * 1e-6
         sim.bodies.velocities[:] += kick
         other.bodies.velocities[:] = in_space(sim.bodies.velocities)
         sim.bodies.forces[:], other.bodies.forces[:] = 0.0, 0.0
-        moving, lifted = sim.bodies, other.bodies
-        flat = loop(sim.joints, sim.contacts, moving.velocities, moving.forces, 1.0, LIKE[2], LIKE_ROTATION[2])
-        high = loop(
-            other.joints, other.contacts, lifted.velocities, lifted.forces, 1.0, LIKE[3], LIKE_ROTATION[3]
-        )  # fmt: skip
+        flat = loop(sim.joints, sim.geometry, sim.contacts, sim.bodies, 1.0, LIKE[2], LIKE_ROTATION[2])
+        high = loop(other.joints, sim.geometry, other.contacts, other.bodies, 1.0, LIKE[3], LIKE_ROTATION[3])
         assert flat == high
         work.append(flat)
         assert np.array_equal(other.bodies.forces[:, PLANAR], sim.bodies.forces)
@@ -112,21 +57,92 @@ def test_planar_twin_of_the_loop(kinematics):
     assert any(work)
 
 
+def test_layers_share_what_a_planar_point_carries():
+    """Prisms with points at both ends of their depth move as in the plane, to round-off, and stay in it."""
+    sim = pushed_wall(300)
+    other, control, ledger = twin(sim, (-0.5 * DEPTH, 0.5 * DEPTH)), sim.control.copy(), sim.ledger.copy()
+    run(200, slot.HOLD_LOAD, other, sim, control, ledger)
+    start = sim.bodies.positions.copy()
+    sim.advance(200, slot.HOLD_LOAD)
+    moved = np.abs(sim.bodies.positions - start).max()
+    assert moved > 0.0
+    assert np.abs(other.bodies.positions[:, :2] - sim.bodies.positions).max() < 1e-9 * moved
+    assert np.abs(other.bodies.velocities[:, [2, 3, 4]]).max() < 1e-9 * np.abs(sim.bodies.velocities).max()
+    assert ledger == pytest.approx(sim.ledger, rel=1e-9)
+    assert other.contacts.normal.reshape(-1, 2).sum(axis=1) == pytest.approx(sim.contacts.normal, rel=1e-9, abs=1e-12)
+    assert other.bodies.orientations[:, 2] == pytest.approx(sim.bodies.orientations[:, 0], rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_forces_are_those_of_the_points_one_by_one(d):
+    """Random joints against each point's own velocity and the moment of its force, in numpy."""
+    rng, r, n_blocks, n = np.random.default_rng(d), d * (d - 1) // 2, 5, 12
+    starts = np.concatenate([[0], np.cumsum(rng.integers(1, 6, n))])
+    directions = np.linalg.qr(rng.normal(size=(n, d, d)))[0]
+    directions[:, -1] *= np.linalg.det(directions)[:, None]
+    centroids = rng.normal(size=(n_blocks, d))
+    anchors, blocks = rng.normal(size=(n, d)), np.array([rng.choice(n_blocks, 2, replace=False) for _ in range(n)])
+    joints = FixedJoints(
+        blocks=blocks, starts=starts,
+        axes=np.ascontiguousarray(directions.reshape(n, -1)[:, : 2 if d == 2 else 9]), anchors=anchors,
+        arms=np.ascontiguousarray((anchors[:, None] - centroids[blocks]).reshape(n, -1)),
+        places=rng.normal(size=(starts[-1], d - 1)), kn=rng.uniform(1.0, 2.0, starts[-1]),
+        ks=rng.uniform(0.5, 1.0, starts[-1]), law=np.full((n, 1), 0.4),
+    )  # fmt: skip
+    contacts = empty_contacts(n, int(starts[-1]), d, 0)
+    contacts.gaps[:] = rng.uniform(-1.0, 0.2, starts[-1])
+    gaps, owners, dt = contacts.gaps.copy(), joints.owners, 0.1
+    sim = simulation(tables(block("base", rectangle(0, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1))))
+    velocities, forces = rng.normal(size=(n_blocks, d + r)), np.zeros((n_blocks, d + r))
+    bodies = sim.bodies._replace(velocities=velocities, forces=forces)
+    lost = coulomb_loop()(joints, sim.geometry, contacts, bodies, dt, LIKE[d], LIKE_ROTATION[d])
+
+    expected, work = np.zeros_like(forces), 0.0
+    for p, j in enumerate(owners):
+        frame, point = directions[j], anchors[j] + joints.places[p] @ directions[j, 1:]
+        moved = dt * np.diff([velocity(point - centroids[i], velocities[i]) for i in blocks[j]], axis=0)[0]
+        gap = gaps[p] + frame[0] @ moved
+        assert contacts.gaps[p] == pytest.approx(gap, abs=1e-14)
+        normal, trial = joints.kn[p] * max(-gap, 0.0), -joints.ks[p] * frame[1:] @ moved
+        shear = trial * min(1.0, 0.4 * normal / np.linalg.norm(trial))
+        if gap < 0.0:
+            work -= 0.5 * shear @ (frame[1:] @ moved + shear / joints.ks[p])
+        force = normal * frame[0] + shear @ frame[1:]
+        for i, sign in zip(blocks[j], (-1.0, 1.0)):
+            expected[i] += sign * np.append(force, moment(point - centroids[i], force))
+        assert np.append(contacts.normal[p], contacts.shear[p]) == pytest.approx(np.append(normal, shear), abs=1e-13)
+    assert 0 < (contacts.slip > 0).sum() < (contacts.normal > 0).sum() < len(owners)
+    assert forces == pytest.approx(expected, abs=1e-12)
+    assert lost == pytest.approx(work, rel=1e-12)
+
+
+def velocity(arm: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Of a point of a block, from the motion of its centroid."""
+    if len(arm) == 2:
+        return motion[:2] + motion[2] * np.array([-arm[1], arm[0]])
+    return motion[:3] + np.cross(motion[3:], arm)
+
+
+def moment(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
+    return np.cross(arm, force) if len(arm) == 3 else np.array([arm[0] * force[1] - arm[1] * force[0]])
+
+
+def run(n_steps: int, mode: int, other, sim: Simulation, control: np.ndarray, ledger: np.ndarray) -> None:
+    """Steps of a twin in space."""
+    compiled_advance("fixed", sim.law)(
+        n_steps, mode, 1.0, other.bodies, sim.shape, other.joints, sim.geometry, other.contacts, other.loads,
+        control, ledger, LIKE[3], LIKE_ROTATION[3],
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("mode", [slot.HOLD_LOAD, slot.CREEP, slot.FIRE], ids=["load", "creep", "fire"])
 def test_planar_twin_of_a_run(mode):
     """A thousand steps of load, creep or FIRE in space: the same positions, ledger and control."""
     sim = pushed_wall(300)
     sim.control[slot.RATE] = 1e-6
     other, control, ledger = twin(sim), sim.control.copy(), sim.ledger.copy()
-    run = compiled_advance("fixed", sim.law)
-    run(
-        1000, mode, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
-        sim.control, sim.ledger, LIKE[2], LIKE_ROTATION[2],
-    )  # fmt: skip
-    run(
-        1000, mode, 1.0, other.bodies, sim.shape, other.joints, sim.geometry, other.contacts, other.loads,
-        control, ledger, LIKE[3], LIKE_ROTATION[3],
-    )  # fmt: skip
+    run(1000, mode, other, sim, control, ledger)
+    sim.advance(1000, mode)
     assert np.array_equal(other.bodies.velocities[:, PLANAR], sim.bodies.velocities)
     assert np.array_equal(other.bodies.positions[:, :2], sim.bodies.positions)
     assert np.array_equal(ledger, sim.ledger)

@@ -8,7 +8,6 @@ from engine import block, rectangle, running_wall, tables
 from engine.limits import on_a_base, solved
 
 from dem_cli.limit.snapshot import SHOWN_MOTION, Collapse, frame
-from dem_cli.output.paraview.fields import contact_forces
 from dem_cli.output.record import STATES
 
 
@@ -21,8 +20,8 @@ def snapshot(found, tilting: bool = False):
 def on_blocks(contacts, n_blocks: int) -> np.ndarray:
     """Sum of the contact forces on every block, (n_blocks, 2)."""
     total = np.zeros((n_blocks, 2))
-    np.add.at(total, contacts.blocks[:, 1], contact_forces(contacts))
-    np.add.at(total, contacts.blocks[:, 0], -contact_forces(contacts))
+    np.add.at(total, contacts.blocks[:, 1], contacts.forces())
+    np.add.at(total, contacts.blocks[:, 0], -contacts.forces())
     return total
 
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from synthetic import DEPTH, HEIGHT, LENGTH, boxes_model, no_contacts, wall_frames, wall_model
+from synthetic.solid_runs import drum, solid_frames, solid_wall
+from synthetic.spatial import spatial_model
 
+from dem_cli.geometry.polyhedron import box
 from dem_cli.output.record import STATES
 from dem_cli.post import frame_measures, view_box
+from dem_cli.post.scene import joint_strokes
 from dem_cli.render import marks, solids
 
 
@@ -41,6 +45,48 @@ def test_a_block_is_a_closed_prism_with_chamfers():
     at = (np.arange(2000) + 0.5) / 2000 * c  # a chamfer of 45° takes twice its depth from either side
     whole += 2 * float(((0.04 - 2 * at) * (0.02 - 2 * at)).mean() * c)
     assert volume(surface.points, faces) == pytest.approx(whole, rel=1e-6)
+
+
+def test_a_polyhedron_is_closed_with_chamfers():
+    """A cube of side 1 with edges cut by c at 45°: c²/2 is lost along each edge between corners, 5 c³/6 at a corner."""
+    model = spatial_model([box((0, 0, 0), (1, 1, 1))], fixed=())
+    surface = solids.surface(model)
+    faces = faces_of(surface)
+    assert sorted(len(face) for face in faces) == [3] * 8 + [4] * 18
+    edges = [(a, b) for face in faces for a, b in zip(face, np.roll(face, -1).tolist())]
+    assert sorted(edges) == sorted((b, a) for a, b in edges)
+    c = 0.006 * np.sqrt(3.0)
+    lost = 12 * 0.5 * c**2 * (1.0 - 2.0 * c) + 8 * 5.0 / 6.0 * c**3
+    assert volume(surface.points, faces) == pytest.approx(1.0 - lost, rel=1e-12)
+    assert len(surface.edges) == 12
+
+
+def test_pieces_of_one_block_in_space_show_no_joint():
+    """Two cubes side by side are one block with the surface of the whole; as two blocks they have a groove."""
+    halves = [box((0, 0, 0), (1, 1, 1)), box((1, 0, 0), (2, 1, 1))]
+    whole = spatial_model([box((0, 0, 0), (2, 1, 1))], fixed=())
+    one, two = spatial_model([halves], fixed=()), spatial_model(halves, fixed=())
+    volumes = [volume(surface.points, faces_of(surface)) for surface in map(solids.surface, (whole, one))]
+    assert len(solids.surface(two).edges) == 24
+    assert len(solids.surface(one).edges) == 16  # 12 of the whole, four of them in two pieces
+    assert volumes[1] == pytest.approx(volumes[0], rel=1e-3)  # faces at the seam are open by the chamfer's profile
+
+
+def test_solids_of_any_kind_are_closed():
+    surface = solids.surface(drum(7))
+    faces = faces_of(surface)
+    edges = [(a, b) for face in faces for a, b in zip(face, np.roll(face, -1).tolist())]
+    assert sorted(edges) == sorted((b, a) for a, b in edges)
+
+
+def test_joints_in_space_run_around_their_face():
+    model = solid_wall(2, 2)
+    frame = solid_frames(model, 4)[3]
+    found = marks.stripes(model, frame, 1.0, 1e-3)
+    boxes = found.points.reshape(-1, 8, 3)
+    strokes = joint_strokes.strokes(frame.contacts)
+    assert boxes.mean(axis=1) == pytest.approx(0.5 * (strokes.starts + strokes.ends))
+    assert len(found.states) == 6 * len(boxes)
 
 
 def test_every_block_turns_about_its_own_centroid():
@@ -85,7 +131,7 @@ def test_joints_lie_on_their_contact_points():
     found = marks.stripes(model, frame, 1.0, 1e-3)
     boxes = found.points.reshape(-1, 8, 3)
     assert len(boxes) == len(frame.contacts.joint)
-    middles = marks.middles(frame.contacts)
+    middles = joint_strokes.middles(frame.contacts)
     assert boxes.mean(axis=1)[:, :2] == pytest.approx(0.5 * (frame.contacts.points + middles))
     assert np.abs(boxes[..., 2]).min() > DEPTH / 2  # stands out of the stones
     assert (found.states[::6] == frame.contacts.state).all()

@@ -1,0 +1,140 @@
+"""Dimensions of a case: which tables, keys and values are known in the plane alone or in space alone; one table.
+
+What reads a case refuses what is not known in its dimension; `dem explain`, `dem schema` and docs/case.md say it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple, TypeVar
+
+from dem_cli.case.base import CaseModel
+from dem_cli.case.vector import VectorLength
+from dem_cli.case.wording import either, kind_of, show
+from dem_cli.errors import CaseProblem, KeyPath
+
+NAME = "NAME"  # stands for a name of the user's choice in a key path
+YET = "not available in 3D yet"
+Table = TypeVar("Table", bound=CaseModel)
+
+
+class Scope(NamedTuple):
+    """A key that is known in one dimension only."""
+
+    key: str  # path as `dem explain` has it, numbers of tables left out
+    dimension: int
+    why: str  # what is said where it is given in the other one
+    values: tuple[Any, ...] = ()  # of these values alone; (): whatever it is
+    left: tuple[str, ...] = ()  # values that are known in both, named beside `why`
+    none: Any = None  # a value that says no more than leaving it out
+    beside: tuple[str, Any] | None = None  # only beside this key of the same table with this value
+
+    def holds(self, value: Any, table: Any) -> bool:
+        """Whether it is about this value in its table."""
+        if self.beside is not None and (not isinstance(table, dict) or table.get(self.beside[0]) != self.beside[1]):
+            return False
+        return not self.values or any(type(value) is type(one) and value == one for one in self.values)
+
+    def message(self, value: Any) -> str:
+        """What is wrong with it in the other dimension."""
+        if not self.values:
+            return self.why
+        found = show(value) + (" is " if self.why.startswith("not") else " is not allowed; ")
+        return found + self.why + (f"; must be {either(self.left)}" if self.left else "")
+
+
+STATIC = ("gravity", "pushover", "safety")
+SCOPES = (
+    Scope("analysis.kind", 2, YET, ("cycle", "settlement", "time-history", "fragility", "modes"), STATIC),
+    Scope("analysis.kinematics", 2, f"{YET}: geometry is that of the start", ("large",), ("auto", "fixed")),
+    Scope("analysis.follow", 2, f"{YET}: geometry is that of the start; must be 0", none=0),
+    Scope("settlement", 2, YET),
+    Scope("motion", 2, YET),
+    Scope("damping", 2, YET),
+    Scope("initial", 2, YET),
+    Scope("calibration", 2, YET),
+    Scope("joints.NAME.profile", 2, YET),
+    Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
+    Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
+    Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
+    Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
+    Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
+    Scope("block.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
+    Scope("block.parts.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
+    Scope("block.polygon", 3, "a polygon with y is a prism in 3D: give dimension = 3, or vertices"),
+    Scope("block.y", 3, "a polygon with y is a prism in 3D: give dimension = 3, or thickness"),
+    Scope("structure.sides", 3, "a structure has sides in 3D: give dimension = 3"),
+)
+
+
+def dimension_of(data: dict[str, Any]) -> int:
+    """Dimension of a case that is not validated yet."""
+    return 3 if data.get("dimension") == 3 and data["dimension"] is not True else 2
+
+
+def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """What a case, as read, says that its dimension does not know."""
+    others = [scope for scope in SCOPES if scope.dimension != dimension_of(data)]
+    for scope in others:
+        for path, value, table in _found(data, scope.key.split("."), ()):
+            if _unset(scope, value) or not scope.holds(value, table):
+                continue
+            yield CaseProblem(path, scope.message(value), at_key=not scope.values)
+
+
+def _unset(scope: Scope, value: Any) -> bool:
+    """Whether a value says no more than leaving the key out: no tables, or no collapse to follow."""
+    return value in ([], {}, scope.none)
+
+
+def _found(value: Any, steps: Sequence[str], path: KeyPath, table: Any = None) -> Iterator[tuple[KeyPath, Any, Any]]:
+    """Every place of a key path in plain data: path, value, the table around."""
+    if not steps:
+        yield path, value, table
+    elif isinstance(value, (list, tuple)):
+        for i, item in enumerate(value):
+            yield from _found(item, steps, (*path, i), table)
+    elif isinstance(value, dict):
+        names = list(value) if steps[0] == NAME else [steps[0]] if steps[0] in value else []
+        for name in names:
+            yield from _found(value[name], steps[1:], (*path, name), value)
+
+
+def leave_out(data: dict[str, Any]) -> None:
+    """Takes defaults out of a whole case, in place, that its dimension does not know."""
+    for scope in SCOPES:
+        if scope.dimension != dimension_of(data) and not scope.values:
+            for path, _, table in list(_found(data, scope.key.split("."), ())):
+                del table[path[-1]]
+
+
+def known_in(path: Sequence[str], value: Any = None) -> int | None:
+    """The only dimension that a key path is known in (with a value: that value of it); None: both."""
+    key = ".".join(path)
+    for scope in SCOPES:
+        whole = not scope.values and scope.beside is None
+        if scope.key == key and (whole or (value is not None and value in scope.values)):
+            return scope.dimension
+    return None
+
+
+def in_space(table: Table) -> Table:
+    """A table of a case in space: vectors that were left out have as many components as those that are given."""
+    changes = {}
+    for name, field in type(table).model_fields.items():
+        value = getattr(table, name)
+        if isinstance(value, tuple) and value and name not in table.model_fields_set:
+            kind = kind_of(field.annotation, field.metadata)
+            length = next((limit for limit in kind.limits if isinstance(limit, VectorLength)), None)
+            padded: Any = length.padded(value) if length is not None and len(value) == length.planar else value
+        elif isinstance(value, tuple):
+            padded = tuple(in_space(item) if isinstance(item, CaseModel) else item for item in value)
+        elif isinstance(value, dict):
+            padded = {key: in_space(item) if isinstance(item, CaseModel) else item for key, item in value.items()}
+        else:
+            padded = in_space(value) if isinstance(value, CaseModel) else value
+        if padded is not value and padded != value:
+            changes[name] = padded
+    if not changes:
+        return table
+    return type(table).model_construct(_fields_set=set(table.model_fields_set), **{**dict(table), **changes})

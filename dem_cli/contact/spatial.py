@@ -1,0 +1,181 @@
+"""Narrow phase in space: faces, edges and corners of convex polyhedra that meet, and contact points between them.
+
+Geometry of the start: points stay where they were found. One of the modules of contact/geometry.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.meetings import Meetings, meetings, polyhedra
+from dem_cli.contact.near_boxes import near_boxes
+from dem_cli.errors import UsageError
+from dem_cli.geometry.outlines import furthest
+from dem_cli.geometry.parts import shapes_of
+from dem_cli.geometry.rotation import matrices
+from dem_cli.geometry.solids import face_areas
+from dem_cli.kernels.records import (
+    FACES,
+    BlockShapes,
+    Bodies,
+    Contacts,
+    Joints,
+    MovingJoints,
+    SpatialGeometry,
+)
+from dem_cli.kernels.separation import separations
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR
+from dem_cli.model.model import Model
+
+LONE = 0.25  # of the median face: the area of a point outside of face joints
+
+
+def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
+    """All pairs of parts of different blocks that are closer than `reach` [m], by the faces that look at each other.
+
+    Two fixed blocks have no joint. Pairs are ordered by parts, whatever finds them.
+    """
+    solids = polyhedra(model, corners)
+    pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
+    faces, separation = np.empty((len(pairs), 2), np.int64), np.empty(len(pairs))
+    separations(solids, pairs, reach, separation, faces)
+    near = separation <= reach
+    # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
+    near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
+    return Faces(pairs[near], faces[near], separation[near])
+
+
+def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
+    """Those that share an area, a corner or an edge within a face, or cross with two edges. reach: [m].
+
+    Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
+    """
+    return faces.where(meetings(model, faces, corners).measures[:, MARGIN] > reach)
+
+
+def points(
+    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
+) -> tuple[MovingJoints, SpatialGeometry]:
+    """Joints with contact points at the corners of their overlap, and stiffness by the area of each; not yet placed.
+
+    Where the layout of a joint asks for more than its ends, there is one at its centre as well (`_with_centres`).
+    """
+    found = meetings(model, faces, corners)
+    lone, areas, shares = found.kinds != FACES, _areas(model, found), _shares(found)
+    outline = np.diff(found.starts)
+    if properties.profiled:
+        named = properties.between(model, model.part_blocks[faces.parts])
+        centred = ~lone & np.array([layout is not None for layout in properties.layouts])[named]
+        found, shares = _with_centres(found, shares, centred)
+    joints = joints_of(model, faces, properties, found.starts, areas, shares)
+    geometry = SpatialGeometry(
+        faces=faces.faces,
+        features=found.features,
+        kinds=found.kinds,
+        corners=outline,
+        axes=found.frames,
+        places=found.places,
+        gaps=found.gaps,
+        areas=areas,
+    )
+    return joints, geometry
+
+
+def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> tuple[Meetings, np.ndarray]:
+    """A point at the centroid of some joints, (n,) bool: area, first and polar moment of each are exact.
+
+    Corners keep the share β of their areas and the centre gets the rest, β = polar moment / Σ w r².
+    """
+    owners = found.owners
+    middles = found.measures[:, CENTRE : CENTRE + 3]
+    arms = found.places - middles[owners]
+    lumped = np.bincount(owners, found.weights * (arms**2).sum(axis=1), len(centred))
+    keep = np.ones(len(centred))
+    keep[centred] = found.measures[centred, POLAR] / lumped[centred]
+    at = found.starts[1:][centred]
+    return found._replace(
+        starts=found.starts + np.concatenate([[0], np.cumsum(centred)]),
+        places=np.insert(found.places, at, middles[centred], axis=0),
+        weights=np.insert(found.weights * keep[owners], at, (1.0 - keep[centred]) * found.measures[centred, AREA]),
+        gaps=np.insert(found.gaps, at, found.measures[centred, GAP]),
+        features=np.insert(found.features, at, np.iinfo(np.int32).max),
+    ), np.insert(shares * keep[owners], at, 1.0 - keep[centred])
+
+
+def _areas(model: Model, found: Meetings) -> np.ndarray:
+    """Of overlaps their own; of lone contacts LONE of the median face for each point [m²], (n,)."""
+    lone = LONE * _median_face(model) * np.diff(found.starts)
+    return np.where(found.kinds != FACES, lone, found.measures[:, AREA])
+
+
+def _shares(found: Meetings) -> np.ndarray:
+    """Share of its joint that belongs to each point, (n_points,)."""
+    return found.weights / np.bincount(found.owners, found.weights, len(found.kinds))[found.owners]
+
+
+def _median_face(model: Model) -> float:
+    """Median area of all faces that can be touched [m²]."""
+    areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
+    return float(np.median(areas[~model.inner_faces])) if len(areas) else 0.0
+
+
+def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies: Bodies) -> None:
+    """Gaps, frames, levers and points as they were found; blocks are where they were then."""
+    owners = joints.owners
+    frames = geometry.axes[owners]
+    joints.frames[:], joints.points[:], contacts.gaps[:] = frames, geometry.places, geometry.gaps
+    along = frames.reshape(-1, 3, 3)
+    for side in (0, 1):
+        arms = geometry.places - bodies.positions[joints.blocks[owners, side]]
+        joints.levers[:, 9 * side : 9 * side + 9] = np.cross(arms[:, None], along).reshape(-1, 9)
+
+
+def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+    """Corners of all parts in place [m], (n_vertices, 3)."""
+    turns = matrices(orientations)[shape.corner_blocks]
+    return positions[shape.corner_blocks] + (turns * shape.corner_arms[:, None, :]).sum(axis=2)
+
+
+def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
+    """Faces that look at each other, nearly parallel, over a width of more than `least` [m], (n,) bool."""
+    found, (a, b) = meetings(model, faces, corners), shapes_of(corners).normals(corners, model.topology)[faces.faces.T]
+    return (found.kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= sine) & (found.widths > least)
+
+
+def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
+    """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
+    found = meetings(model, faces, corners)
+    kept = found.widths > least
+    points, normals = kept[found.owners], found.frames[:, :3]
+    across = 0.5 * found.gaps[points, None] * normals[found.owners[points]]
+    starts = np.concatenate([[0], np.cumsum(np.diff(found.starts)[kept])])
+    places, shares = found.places[points], _shares(found)[points]
+    ends = places[furthest(places, starts)]
+    longest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return DrawnFaces(
+        model.part_blocks[faces.parts[kept]], normals[kept], starts, places - across, places + across, shares,
+        longest, _areas(model, found)[kept],
+    )  # fmt: skip
+
+
+def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:
+    """Nothing comes back: joints in space have no profile."""
+
+
+def take_over(old: SpatialGeometry, new: SpatialGeometry, match: np.ndarray) -> None:
+    """Nothing: what a joint is follows from where its parts are."""
+
+
+def sink(geometry: SpatialGeometry, joint: int, depth: float) -> None:
+    """Nothing: only profiles have a recess."""
+
+
+def microrotations(joints: Joints, geometry: SpatialGeometry) -> np.ndarray:
+    """None: joints in space have no profile, (n_joints,)."""
+    return np.zeros(len(joints.blocks))
+
+
+def corner_shares(joints: Joints, geometry: SpatialGeometry, corners: np.ndarray) -> np.ndarray:
+    """Not known. Raises UsageError: it says how normals turn with the blocks, and here they do not."""
+    raise UsageError("blocks in space keep the geometry of the start: how their contact normals turn is not known")

@@ -1,0 +1,57 @@
+"""Convex bodies in any dimension: how far a point is from one, and what two of them have in common."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+ROUND_OFF = 1e-12  # of the distance to the furthest corner
+
+
+class CommonBody(NamedTuple):
+    """What two convex bodies have in common."""
+
+    volume: float  # in the plane the area [m^d]
+    centroid: np.ndarray  # [m], (d,)
+
+
+def distance(corners: np.ndarray, point: np.ndarray) -> float:
+    """How far a point is from a convex body with these corners (n, d) [m]; 0 inside.
+
+    The nearest point is a mean of the corners with weights w >= 0: those of the least |sum w (corner - point)|^2 +
+    (1 - sum w)^2, which points the same way whatever the sum is (non-negative least squares, Lawson and Hanson).
+    """
+    from scipy.optimize import nnls
+
+    arms = np.asarray(corners, float) - point
+    scale = float(np.abs(arms).max()) or 1.0
+    weights, _ = nnls(np.vstack([arms.T / scale, np.ones(len(arms))]), np.append(np.zeros(arms.shape[1]), 1.0))
+    away = float(np.linalg.norm(weights @ arms) / weights.sum())
+    return away if away > ROUND_OFF * scale else 0.0
+
+
+def common(normals: np.ndarray, offsets: np.ndarray) -> CommonBody | None:
+    """The body within half-spaces normal · x <= offset: unit normals (n, d), offsets [m] (n,); None: there is none.
+
+    Its corners are those of the dual hull about a point inside, which a linear program finds.
+    """
+    from scipy.optimize import linprog
+    from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+    d = normals.shape[1]
+    rows = np.column_stack([normals, np.ones(len(normals))])
+    found = linprog(np.append(np.zeros(d), -1.0), rows, offsets, bounds=[*[(None, None)] * d, (0.0, None)])
+    if found.status != 0 or found.x[d] <= 0.0:
+        return None
+    inside = found.x[:d]
+    try:
+        rows = np.column_stack([normals, normals @ inside - offsets])
+        corners = HalfspaceIntersection(rows, np.zeros(d)).intersections
+        facets = corners[ConvexHull(corners).simplices]
+    except QhullError:
+        return None
+    volumes = np.abs(np.linalg.det(facets)) / math.factorial(d)  # of the simplices between the facets and that point
+    centroids = facets.sum(axis=1) / (d + 1)
+    return CommonBody(float(volumes.sum()), inside + volumes @ centroids / volumes.sum())

@@ -1,0 +1,125 @@
+"""Tuple algebra of a joint plane: rotations and moments in its frame, motion and moments of places in it; 2D and 3D.
+
+A frame is the unit normal n and the tangents (in 3D t₂ = n × t₁); a place is what is counted along the tangents. With
+r = x t₁ + y t₂ the velocity ω × r is ω₁ y − ω₂ x along the normal and (−ωₙ y, ωₙ x) along the tangents. Each function
+is plain Python too, as in vec.py.
+"""
+
+from __future__ import annotations
+
+from dem_cli.kernels.jit import overload
+from dem_cli.kernels.vec import axpy, compose, dot, scale
+
+
+def sweep(spin, arm):
+    """Velocity of the tip of an arm that turns: ω × arm."""
+    if len(arm) == 2:
+        return -spin[0] * arm[1], spin[0] * arm[0]
+    return (
+        spin[1] * arm[2] - spin[2] * arm[1],
+        spin[2] * arm[0] - spin[0] * arm[2],
+        spin[0] * arm[1] - spin[1] * arm[0],
+    )
+
+
+@overload(sweep)
+def _sweep(spin, arm):
+    if len(arm) == 2:
+        return lambda spin, arm: (-spin[0] * arm[1], spin[0] * arm[0])
+    return lambda spin, arm: (
+        spin[1] * arm[2] - spin[2] * arm[1],
+        spin[2] * arm[0] - spin[0] * arm[2],
+        spin[0] * arm[1] - spin[1] * arm[0],
+    )
+
+
+def moment(arm, force):
+    """Moment of a force about the origin of its arm: arm × force."""
+    if len(arm) == 2:
+        return (arm[0] * force[1] - arm[1] * force[0],)
+    return sweep(arm, force)
+
+
+@overload(moment)
+def _moment(arm, force):
+    if len(arm) == 2:
+        return lambda arm, force: (arm[0] * force[1] - arm[1] * force[0],)
+    return lambda arm, force: sweep(arm, force)
+
+
+def seen_from(frame, rotation):
+    """Components of a rotation or moment along the normal and the tangents of a frame; in 2D it has but one."""
+    if len(frame) == 2:
+        return rotation
+    return tuple(dot(axis, rotation) for axis in frame)
+
+
+@overload(seen_from)
+def _seen_from(frame, rotation):
+    if len(frame) == 2:
+        return lambda frame, rotation: rotation
+    return lambda frame, rotation: (dot(frame[0], rotation), dot(frame[1], rotation), dot(frame[2], rotation))
+
+
+def seen_outside(frame, rotation):
+    """A rotation or moment given by its components along a frame, in space; in 2D it is the same."""
+    if len(frame) == 2:
+        return rotation
+    return compose(frame, rotation[0], rotation[1:], (0.0, 0.0, 0.0))
+
+
+@overload(seen_outside)
+def _seen_outside(frame, rotation):
+    if len(frame) == 2:
+        return lambda frame, rotation: rotation
+    return lambda frame, rotation: axpy(
+        rotation[2], frame[2], axpy(rotation[1], frame[1], scale(rotation[0], frame[0]))
+    )
+
+
+def opening_at(spin, place):
+    """Motion along the normal of a place in the joint plane when the joint opens by a spin, both in its frame."""
+    return -spin[0] * place[0] if len(place) == 1 else spin[1] * place[1] - spin[2] * place[0]
+
+
+@overload(opening_at)
+def _opening_at(spin, place):
+    if len(place) == 1:
+        return lambda spin, place: -spin[0] * place[0]
+    return lambda spin, place: spin[1] * place[1] - spin[2] * place[0]
+
+
+def sliding_at(slide, spin, place):
+    """Motion along the tangents of a place in the joint plane that slides and turns about its normal."""
+    if len(place) == 1:
+        return slide
+    return slide[0] - spin[0] * place[1], slide[1] + spin[0] * place[0]
+
+
+@overload(sliding_at)
+def _sliding_at(slide, spin, place):
+    if len(place) == 1:
+        return lambda slide, spin, place: slide
+    return lambda slide, spin, place: (slide[0] - spin[0] * place[1], slide[1] + spin[0] * place[0])
+
+
+def add_moment_at(place, normal_part, tangent_parts, start):
+    """start + moment of a force at a place in the joint plane about the origin of places, all in the joint's frame."""
+    if len(place) == 1:
+        return (start[0] - place[0] * normal_part,)
+    return (
+        start[0] + (place[0] * tangent_parts[1] - place[1] * tangent_parts[0]),
+        start[1] + place[1] * normal_part,
+        start[2] - place[0] * normal_part,
+    )
+
+
+@overload(add_moment_at)
+def _add_moment_at(place, normal_part, tangent_parts, start):
+    if len(place) == 1:
+        return lambda place, normal_part, tangent_parts, start: (start[0] - place[0] * normal_part,)
+    return lambda place, normal_part, tangent_parts, start: (
+        start[0] + (place[0] * tangent_parts[1] - place[1] * tangent_parts[0]),
+        start[1] + place[1] * normal_part,
+        start[2] - place[0] * normal_part,
+    )

@@ -1,0 +1,144 @@
+"""What two convex faces have in common in a plane: the corners of the overlap, and the area that belongs to each."""
+
+from __future__ import annotations
+
+import math
+
+from dem_cli.kernels.jit import inline
+
+ROUND_OFF = 1e-13  # of the size: a corner so close to an edge is on it
+SAME = 1e-6  # of the size: corners closer to each other, or to the line between their neighbours, are none
+
+
+@inline
+def _write(work, row, at, x, y, label):
+    work[row, at, 0], work[row, at, 1], work[row, at, 2] = x, y, label
+
+
+@inline
+def clip(work, n_a, n_b, size):
+    """Corners of the overlap of two convex polygons; returns how many.
+
+    work: (5, room, 3) with rows 0: corners (x, y) of a, 1: of b, both counter-clockwise. Out, in row 2: corners of the
+    overlap and what they are: k < n_b: corner k of b; n_b + i: corner i of a; n_b + n_a + i n_b + k: where edge i of a
+    (from corner i) crosses edge k of b. Sutherland and Hodgman 1974; each corner carries the edge that leaves it.
+    """
+    count, here, there, eps = n_b, 2, 3, ROUND_OFF * size
+    for k in range(n_b):
+        _write(work, here, k, work[1, k, 0], work[1, k, 1], float(k))
+    for i in range(n_a):
+        j = i + 1 if i + 1 < n_a else 0
+        tx, ty = work[0, j, 0] - work[0, i, 0], work[0, j, 1] - work[0, i, 1]
+        length = math.sqrt(tx * tx + ty * ty)
+        nx, ny = -ty / length, tx / length
+        offset = work[0, i, 0] * nx + work[0, i, 1] * ny
+        kept = 0
+        for k in range(count):
+            m = k + 1 if k + 1 < count else 0
+            x, y, label = work[here, k, 0], work[here, k, 1], work[here, k, 2]
+            inside = x * nx + y * ny - offset
+            after = work[here, m, 0] * nx + work[here, m, 1] * ny - offset
+            if inside >= -eps:
+                _write(work, there, kept, x, y, label)
+                kept += 1
+            if (inside >= -eps) != (after >= -eps):
+                share = min(max(inside / (inside - after), 0.0), 1.0)
+                leaving = float(n_b + i) if inside >= -eps else label
+                x += share * (work[here, m, 0] - x)
+                y += share * (work[here, m, 1] - y)
+                _write(work, there, kept, x, y, leaving)
+                kept += 1
+        count = kept
+        here, there = there, here
+    for k in range(count):  # from the edges that arrive and leave to what the corner is
+        arrives, leaves = work[here, k - 1 if k else count - 1, 2], work[here, k, 2]
+        what = leaves
+        if (arrives < n_b) != (leaves < n_b):
+            what = float(n_b + n_a) + (max(arrives, leaves) - n_b) * n_b + min(arrives, leaves)
+        _write(work, 4, k, work[here, k, 0], work[here, k, 1], what)
+    for k in range(count):
+        _write(work, 2, k, work[4, k, 0], work[4, k, 1], work[4, k, 2])
+    return count
+
+
+@inline
+def area_of(work, count):
+    """Area, centroid and second moment about it of the polygon in row 2, counter-clockwise."""
+    x0, y0 = work[2, 0, 0], work[2, 0, 1]
+    area, mx, my, polar = 0.0, 0.0, 0.0, 0.0
+    for k in range(1, count - 1):
+        ax, ay = work[2, k, 0] - x0, work[2, k, 1] - y0
+        bx, by = work[2, k + 1, 0] - x0, work[2, k + 1, 1] - y0
+        half = 0.5 * (ax * by - ay * bx)
+        area += half
+        mx += half * (ax + bx)
+        my += half * (ay + by)
+        polar += half * (ax * ax + ay * ay + ax * bx + ay * by + bx * bx + by * by)
+    if area <= 0.0:
+        return 0.0, x0, y0, 0.0
+    mx /= 3.0 * area
+    my /= 3.0 * area
+    return area, x0 + mx, y0 + my, polar / 6.0 - area * (mx * mx + my * my)
+
+
+@inline
+def _drop(work, k, count):
+    for m in range(k, count - 1):
+        _write(work, 2, m, work[2, m + 1, 0], work[2, m + 1, 1], work[2, m + 1, 2])
+    return count - 1
+
+
+@inline
+def simplify(work, count, gap):
+    """Leaves out corners of row 2 that coincide (crossings first), or lie on the line between their neighbours."""
+    k = 0
+    while count > 2 and k < count:
+        m = k + 1 if k + 1 < count else 0
+        dx, dy = work[2, m, 0] - work[2, k, 0], work[2, m, 1] - work[2, k, 1]
+        if dx * dx + dy * dy < gap * gap:
+            lesser = m if work[2, m, 2] >= work[2, k, 2] else k
+            count = _drop(work, lesser, count)
+        else:
+            k += 1
+    while count > 2:
+        flattest, lowest = -1, gap
+        for k in range(count):
+            i, j = k - 1 if k else count - 1, k + 1 if k + 1 < count else 0
+            cx, cy = work[2, j, 0] - work[2, i, 0], work[2, j, 1] - work[2, i, 1]
+            px, py = work[2, k, 0] - work[2, i, 0], work[2, k, 1] - work[2, i, 1]
+            height = abs(cx * py - cy * px) / max(math.sqrt(cx * cx + cy * cy), 1e-300)
+            if height < lowest:
+                flattest, lowest = k, height
+        if flattest < 0:
+            break
+        count = _drop(work, flattest, count)
+    return count
+
+
+@inline
+def share_area(work, count, area, gx, gy, weights, first):
+    """Area that belongs to each corner of the polygon in row 2: half of both triangles with its centroid.
+
+    Their sum is `area` and their centroid (gx, gy): those of the polygon before it was simplified.
+    """
+    own, cx, cy, _ = area_of(work, count)
+    for k in range(count):
+        weights[first + k] = 0.0
+    for k in range(count):
+        m = k + 1 if k + 1 < count else 0
+        ax, ay = work[2, k, 0] - cx, work[2, k, 1] - cy
+        bx, by = work[2, m, 0] - cx, work[2, m, 1] - cy
+        quarter = 0.25 * (ax * by - ay * bx)
+        weights[first + k] += quarter
+        weights[first + m] += quarter
+    sxx, sxy, syy = 0.0, 0.0, 0.0
+    for k in range(count):
+        x, y, w = work[2, k, 0] - cx, work[2, k, 1] - cy, weights[first + k]
+        sxx += w * x * x
+        sxy += w * x * y
+        syy += w * y * y
+    rx, ry, det = area * (gx - cx), area * (gy - cy), sxx * syy - sxy * sxy
+    lx, ly = (rx * syy - ry * sxy) / det, (ry * sxx - rx * sxy) / det
+    for k in range(count):
+        x, y = work[2, k, 0] - cx, work[2, k, 1] - cy
+        weights[first + k] *= area / own + lx * x + ly * y

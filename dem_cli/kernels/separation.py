@@ -1,0 +1,154 @@
+"""How far two convex polyhedra are apart: separating axes of faces and of pairs of edges that support each other.
+
+The difference of two convex bodies has three sorts of facets: faces of the one, faces of the other, and pairs of edges
+whose arcs on the sphere of normals cross (Gregorius 2013). They are apart as far as the furthest of these facets.
+"""
+
+from __future__ import annotations
+
+import math
+
+from dem_cli.kernels.jit import inline, kernel
+
+TIE = 1e-9  # of the size: separations that are the same
+EDGE_SHARE = 0.01  # of the separation by faces, and
+EDGE_SIZE = 1e-6  # of the size: by so much an axis of two edges must beat the faces, which make steadier joints
+ALIGNED = 1e-5  # sine of the angle between edges whose cross product is round-off: of blocks of one bond, turned
+NO_EDGE = -1
+
+
+@inline
+def cross3(a, b):
+    """Cross product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@inline
+def dot3(a, b):
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inline
+def minus3(a, b):
+    """Difference."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@inline
+def unit3(a):
+    """The same direction, of length one."""
+    length = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    return (a[0] / length, a[1] / length, a[2] / length)
+
+
+@inline
+def row3(array, row):
+    """A row as a tuple."""
+    return (array[row, 0], array[row, 1], array[row, 2])
+
+
+@inline
+def height_over(solids, face, part):
+    """Least height of the corners of a part over the plane of a face, negative where one lies behind."""
+    n = row3(solids.normals, face)
+    x = row3(solids.corners, solids.face_corners[solids.face_starts[face]])
+    offset = dot3(x, n)
+    least = math.inf
+    for k in range(solids.part_starts[part], solids.part_starts[part + 1]):
+        height = solids.corners[k, 0] * n[0] + solids.corners[k, 1] * n[1] + solids.corners[k, 2] * n[2] - offset
+        least = min(least, height)
+    return least
+
+
+@inline
+def _highest_face(solids, part, other, tie):
+    """The face of a part over which the other one is highest, and how high."""
+    best, best_face = -math.inf, solids.part_faces[part]
+    for face in range(solids.part_faces[part], solids.part_faces[part + 1]):
+        height = height_over(solids, face, other)
+        if height > best + tie:
+            best, best_face = height, face
+    return best, best_face
+
+
+@inline
+def _highest_edges(solids, a, b):
+    """The two edges between which the parts are furthest apart, how far, and the axis from a to b."""
+    best, best_a, best_b, axis = -math.inf, NO_EDGE, NO_EDGE, (0.0, 0.0, 0.0)
+    for i in range(solids.part_edges[a], solids.part_edges[a + 1]):
+        n1, n2 = row3(solids.normals, solids.edges[i, 2]), row3(solids.normals, solids.edges[i, 3])
+        start = row3(solids.corners, solids.edges[i, 0])
+        along = minus3(row3(solids.corners, solids.edges[i, 1]), start)
+        turn_a = cross3(n2, n1)
+        for k in range(solids.part_edges[b], solids.part_edges[b + 1]):
+            m1, m2 = row3(solids.normals, solids.edges[k, 2]), row3(solids.normals, solids.edges[k, 3])
+            side1, side2 = -dot3(m1, turn_a), -dot3(m2, turn_a)
+            if side1 * side2 >= 0.0:
+                continue
+            turn_b = cross3(m2, m1)  # of −m2 and −m1: the same
+            side3, side4 = dot3(n1, turn_b), dot3(n2, turn_b)
+            if side3 * side4 >= 0.0 or side1 * side4 <= 0.0:
+                continue
+            there = row3(solids.corners, solids.edges[k, 0])
+            beside = minus3(row3(solids.corners, solids.edges[k, 1]), there)
+            c = cross3(along, beside)
+            length = math.sqrt(dot3(c, c))
+            if length <= ALIGNED * math.sqrt(dot3(along, along) * dot3(beside, beside)):
+                continue
+            if dot3(c, n1) + dot3(c, n2) < 0.0:
+                length = -length
+            c = (c[0] / length, c[1] / length, c[2] / length)
+            apart = dot3(minus3(there, start), c)
+            if apart > best:
+                best, best_a, best_b, axis = apart, i, k, c
+    return best, best_a, best_b, axis
+
+
+@inline
+def most_along(solids, part, axis, sign):
+    """The face of a part whose normal points most along sign × axis, and the cosine between them."""
+    best, best_face = -math.inf, solids.part_faces[part]
+    for face in range(solids.part_faces[part], solids.part_faces[part + 1]):
+        cosine = sign * dot3(row3(solids.normals, face), axis)
+        if cosine > best + TIE:
+            best, best_face = cosine, face
+    return best, best_face
+
+
+@inline
+def separate(solids, a, b, reach):
+    """Separation of parts a and b [m], the axis from a to b, and the two edges that say it, NO_EDGE: a face does.
+
+    Not sought any further where it is found to be larger than `reach`.
+    """
+    size = min(solids.sizes[a], solids.sizes[b])
+    tie = TIE * size
+    by_a, face_a = _highest_face(solids, a, b, tie)
+    axis = row3(solids.normals, face_a)
+    if by_a > reach:
+        return by_a, axis, NO_EDGE, NO_EDGE
+    by_b, face_b = _highest_face(solids, b, a, tie)
+    by_face = by_a
+    if by_b > by_a + tie:
+        by_face = by_b
+        n = row3(solids.normals, face_b)
+        axis = (-n[0], -n[1], -n[2])
+    if by_face > reach:
+        return by_face, axis, NO_EDGE, NO_EDGE
+    by_edges, edge_a, edge_b, between = _highest_edges(solids, a, b)
+    if by_edges > by_face + EDGE_SHARE * abs(by_face) + EDGE_SIZE * size:
+        return by_edges, between, edge_a, edge_b
+    return max(by_face, by_edges), axis, NO_EDGE, NO_EDGE
+
+
+@kernel
+def separations(solids, pairs, reach, separation_out, faces_out):
+    """Separation [m] of pairs of parts (n, 2), and their two faces that look at each other along the axis, (n, 2)."""
+    for number in range(pairs.shape[0]):
+        a, b = pairs[number, 0], pairs[number, 1]
+        separation, axis, _, _ = separate(solids, a, b, reach)
+        separation_out[number] = separation
+        if separation <= reach:
+            faces_out[number, 0] = most_along(solids, a, axis, 1.0)[1]
+            faces_out[number, 1] = most_along(solids, b, axis, -1.0)[1]

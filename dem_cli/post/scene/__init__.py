@@ -1,0 +1,1 @@
+"""Structures in pictures of matplotlib: polygons in the plane, solids in space seen from the side that moves."""

@@ -1,0 +1,51 @@
+"""Drawing of a structure by its dimension: what pictures ask for, in the plane and in space alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.record import Frame
+from dem_cli.post.scene.axonometry import axonometry
+from dem_cli.post.scene.plane_drawing import PlaneDrawing
+from dem_cli.post.scene.space_drawing import SpaceDrawing
+
+
+class Drawing(Protocol):
+    """The structure in a picture of matplotlib."""
+
+    legend: tuple[str, ...]
+    lights: tuple[float, ...]
+    force_width: float
+
+    def flat(self, points: np.ndarray) -> np.ndarray:
+        """Where points (n, d) are in the picture [m], (n, 2)."""
+
+    def window(self, corners: Sequence[np.ndarray], low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part of the picture that shows these corners as far as they are in a box [m], (d,)."""
+
+    def draw_blocks(self, axis: Any, low: np.ndarray, high: np.ndarray) -> Callable[[np.ndarray], None]:
+        """The blocks in a window; returns what puts their corners (n_vertices, d) in place."""
+
+    def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
+        """Outlines of the start."""
+
+    def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
+        """Joints by state, over blocks that are in place."""
+
+    def finish(self, axis: Any) -> None:
+        """What else a reader needs, over a picture whose limits are set."""
+
+
+DRAWINGS: dict[int, Callable[[Model, Frame | None], Drawing]] = {
+    2: lambda model, frame: PlaneDrawing(model),
+    3: lambda model, frame: SpaceDrawing(model, axonometry(model, frame)),
+}
+
+
+def drawing_of(model: Model, frame: Frame | None) -> Drawing:
+    """frame: whose motion the reader should see best."""
+    return DRAWINGS[model.dimension](model, frame)

@@ -1,0 +1,65 @@
+"""View of a rendered structure by its dimension: from where it is seen, and what stands before it gives the light."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.errors import UsageError
+from dem_cli.model.model import Model
+from dem_cli.output.record import Frame
+from dem_cli.post.scene.axonometry import Axonometry, axonometry, looks_right
+
+_PLANE = Axonometry(*np.eye(3))  # y is upwards
+_DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # in the plane: from the structure to the eye
+
+
+class Standpoint(NamedTuple):
+    """Standpoint that a user asks for."""
+
+    view: str | None = None  # "front" or "3d"; None: front in the plane, 3d in space
+    azimuth: float | None = None  # in space, from x towards y [deg]; None: as it is best
+    elevation: float | None = None  # in space, above the ground [deg]
+
+
+AS_BEST = Standpoint()
+
+
+class RenderedView(NamedTuple):
+    """Rendered view."""
+
+    axes: Axonometry
+    before: Axonometry  # of a reader who stands before the structure: light comes from where it would for them
+    deep: bool  # oblique: with shades in corners
+
+
+def view_of(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
+    """As the options ask for. Raises UsageError where a structure in the plane is given an azimuth or elevation."""
+    return _VIEWS[model.dimension](model, frames, asked)
+
+
+def _in_plane(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
+    if asked.azimuth is not None or asked.elevation is not None:
+        raise UsageError("--azimuth and --elevation are for structures in space; --view 3d turns one in the plane")
+    name = asked.view or "front"
+    eye = np.array(_DIRECTIONS[name])
+    eye /= np.linalg.norm(eye)
+    right = np.cross(_PLANE.up, eye)
+    right /= np.linalg.norm(right)
+    return RenderedView(Axonometry(right, np.cross(eye, right), eye), _PLANE, name != "front")
+
+
+def _in_space(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
+    farthest = max(frames, key=lambda frame: frame.displacement)
+    axes = axonometry(model, farthest, asked.azimuth, asked.elevation, asked.view != "front")
+    ahead = axes.eye + np.cross(axes.right, (0.0, 0.0, 1.0))  # half as high as the reader: tops and sides are lit
+    ahead /= np.linalg.norm(ahead)
+    left = (
+        -looks_right(model, axes) * axes.right
+    )  # light comes from the left of a reader: from where the wide side looks
+    return RenderedView(axes, Axonometry(left, np.cross(ahead, axes.right), ahead), True)
+
+
+_VIEWS: dict[int, Callable[[Model, Sequence[Frame], Standpoint], RenderedView]] = {2: _in_plane, 3: _in_space}

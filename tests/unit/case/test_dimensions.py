@@ -1,0 +1,94 @@
+"""What cases of two and of three dimensions have: vectors, keys that one of them alone knows, and where it is said."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from synthetic.spatial_case import spatial_case
+
+from dem_cli.api import make_case_model
+from dem_cli.case.dimensions import NAME, SCOPES, in_space, known_in
+from dem_cli.case.keys import json_schema, tables
+from dem_cli.case.reader import CaseSource, validate
+from dem_cli.case.variation import value_at, with_value
+from dem_cli.case.vector import VectorLength
+from dem_cli.case.writer import case_text
+from dem_cli.errors import CaseError
+
+WALL = {"kind": "wall", "block": [1.0, 0.5], "courses": 2, "blocks_per_course": 2}
+ALL = tables(make_case_model())
+numbers = st.floats(-10.0, 10.0)
+
+
+@pytest.mark.parametrize("scope", SCOPES, ids=lambda scope: scope.key)
+def test_every_key_of_the_table_exists(scope):
+    """A key that is renamed takes its line along; values are values of the key."""
+    steps = tuple(scope.key.split("."))
+    keys = [key for table in ALL for key in table.keys if (*table.path, key.name) == steps]
+    assert keys
+    for value in scope.values:
+        assert any(str(value) in key.allowed or isinstance(value, int) for key in keys), value
+    assert NAME in steps or "NAME" not in steps
+
+
+def test_what_is_known_in_one_dimension_is_said_in_the_schema():
+    schema = json_schema(make_case_model())
+    blocks, wall, modes = (schema["$defs"][name] for name in ("BlockTable", "Wall", "ModesAnalysis"))
+    assert blocks["properties"]["thickness"]["description"].endswith("(2D only)")
+    assert blocks["properties"]["polygon"]["description"].endswith("(3D only)")
+    assert wall["properties"]["sides"]["description"].endswith("(3D only)")
+    assert "(2D only)" in modes["description"]
+    assert (schema["properties"]["dimension"]["enum"], known_in(("load", "force"))) == ([2, 3], None)
+    origin = wall["properties"]["origin"]
+    assert (origin["minItems"], origin["maxItems"]) == (2, 3)
+
+
+@given(values=st.lists(numbers, max_size=5), dimension=st.sampled_from([2, 3]))
+@settings(deadline=None, max_examples=60)
+def test_a_vector_is_as_long_as_the_case_has_dimensions(values, dimension):
+    tables_ = {"dimension": dimension, "structure": [WALL | {"origin": values}]}
+    try:
+        case = spatial_case(**tables_)
+    except CaseError as error:
+        assert len(values) != dimension
+        (problem,) = error.problems
+        assert problem.path == ("structure", 0, "origin")
+        assert f"must be a list of {dimension} numbers" in problem.message
+    else:
+        assert case.structure[0].origin == tuple(values)
+
+
+def test_vectors_that_are_left_out_have_three_components():
+    case = spatial_case(structure=[WALL, WALL | {"origin": [1.0, 2.0, 3.0]}])
+    assert [wall.origin for wall in case.structure] == [(0.0, 0.0, 0.0), (1.0, 2.0, 3.0)]
+    assert case.analysis.direction == (1.0, 0.0, 0.0)
+    assert "origin" not in case.structure[0].model_fields_set
+    assert in_space(case) is case
+    assert VectorLength(3, 6).padded((0.0, 0.0, 0.0)) == (0.0,) * 6
+
+
+def test_the_effective_case_gives_itself():
+    """Defaults that are of the other dimension are left out of it."""
+    case = spatial_case(
+        structure=[WALL | {"sides": [{"face": "-y", "strip": 0.4}]}],
+        block=[{"id": "a", "polygon": [[0, 1], [1, 1], [1, 2]], "y": [0, 1]}],
+        monitor=[{"block": "a", "quantity": "rotation", "component": "z"}, {"point": [0.1, 0.1, 0.1]}],
+    )
+    text = case_text(case)
+    again = validate(tomllib.loads(text), make_case_model(), CaseSource(Path("case.toml"), text))
+    assert again.model_copy(update={"dem": None}) == case
+    assert case_text(again) == text
+    assert "follow" not in text
+    assert case.monitor[1].place == "(0.1, 0.1, 0.1)"
+
+
+def test_a_case_that_varies_keeps_its_vectors():
+    case = spatial_case(structure=[WALL | {"origin": [1.0, 2.0, 3.0]}], analysis={"kind": "gravity"})
+    varied = with_value(case, "structure.0.thickness", 0.3)
+    assert (varied.structure[0].origin, varied.dimension) == ((1.0, 2.0, 3.0), 3)
+    with pytest.raises(CaseError, match="changes neither structure nor load"):
+        value_at(case, "dimension")

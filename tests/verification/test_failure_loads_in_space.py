@@ -1,0 +1,34 @@
+"""Failure loads of blocks in space with an answer by hand, mirrored and turned structures, planar twins."""
+
+from __future__ import annotations
+
+import pytest
+from engine import solve
+from studies.space.by_hand import BY_HAND
+from studies.space.structures import mirrored, quarter
+from studies.space.walls import tapered_drums
+
+RESOLUTION = 5e-4
+
+
+def load_of(case: dict, **analysis) -> float:
+    """The failure load, the middle of its bracket; bracket and books are as they should be."""
+    case = {**case, "analysis": {**case["analysis"], "resolution": RESOLUTION, **analysis}}
+    summary, _ = solve(case)
+    assert summary["status"] == "ok", summary["warnings"]
+    low, high = summary["failure_load_bracket"]
+    assert high - low <= 1.01 * RESOLUTION * high
+    assert abs(summary["energy_closure"]) < 0.01
+    return 0.5 * (low + high)
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_load_by_hand(name):
+    known = BY_HAND[name]
+    assert load_of(known.case) == pytest.approx(known.load, rel=known.tolerance)
+
+
+@pytest.mark.parametrize("change", [quarter, mirrored])
+def test_turned_and_mirrored(change):
+    case = tapered_drums()
+    assert load_of(change(case)) == pytest.approx(load_of(case), rel=RESOLUTION)
