@@ -81,19 +81,21 @@ def from_faces(points: Sequence | np.ndarray, loops: Sequence[Sequence[int]]) ->
 
 
 def prism(corners: np.ndarray, low: float, high: float) -> Polyhedron:
-    """A polygon (n, 2) in x and z, counter-clockwise, from y = low to high [m]."""
+    """A convex polygon (n, 2) in x and z, from y = low to high [m]."""
     return prisms([corners], low, high)[0]
 
 
 def prisms(polygons: Sequence[np.ndarray], low: np.ndarray | float, high: np.ndarray | float) -> list[Polyhedron]:
-    """Polygons (n, 2) in x and z, counter-clockwise, each from its y = low to high [m], or all from the same.
+    """Convex polygons (n, 2) in x and z, each from its y = low to high [m], or all from the same.
 
-    Face k goes along edge k of the polygon; then come the one at y = low and that at y = high.
+    Face k goes along edge k of the polygon; then come the one at y = low and that at y = high. Polygons that run
+    clockwise are turned round.
     """
     if not len(polygons):
         return []
     counts = np.array([len(each) for each in polygons])
-    flat = np.concatenate(polygons)
+    areas = polygon.properties_of_all(np.concatenate(polygons), np.concatenate([[0], np.cumsum(counts)])).area
+    flat = np.concatenate([each if area > 0.0 else each[::-1] for each, area in zip(polygons, areas, strict=True)])
     ends = np.repeat(
         np.broadcast_to(np.stack(np.broadcast_arrays(low, high), axis=-1), (len(counts), 2)), counts, axis=0
     )

@@ -13,6 +13,7 @@ from dem_cli.kernels.jit import inline, kernel
 TIE = 1e-9  # of the size: separations that are the same
 EDGE_SHARE = 0.01  # of the separation by faces, and
 EDGE_SIZE = 1e-6  # of the size: by so much an axis of two edges must beat the faces, which make steadier joints
+ALIGNED = 1e-5  # sine of the angle between edges whose cross product is round-off: of blocks of one bond, turned
 NO_EDGE = -1
 
 
@@ -90,9 +91,10 @@ def _highest_edges(solids, a, b):
             if side3 * side4 >= 0.0 or side1 * side4 <= 0.0:
                 continue
             there = row3(solids.corners, solids.edges[k, 0])
-            c = cross3(along, minus3(row3(solids.corners, solids.edges[k, 1]), there))
+            beside = minus3(row3(solids.corners, solids.edges[k, 1]), there)
+            c = cross3(along, beside)
             length = math.sqrt(dot3(c, c))
-            if length == 0.0:
+            if length <= ALIGNED * math.sqrt(dot3(along, along) * dot3(beside, beside)):
                 continue
             if dot3(c, n1) + dot3(c, n2) < 0.0:
                 length = -length

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from oracle.shapes import rectangle, running_wall
+from oracle.shapes import arch, rectangle, running_wall
 from scipy.optimize import linprog
 from synthetic.spatial import extruded, spatial_model
 from synthetic.spatial_joints import KN, KS, near_pairs, one_joint, shifted, start_joints, turned
@@ -15,7 +15,7 @@ from dem_cli.contact.compatibility import compatibility
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.geometry import polygon
 from dem_cli.geometry.polyhedron import Polyhedron, box, hull, prism
-from dem_cli.geometry.rotation import moments
+from dem_cli.geometry.rotation import matrices, moments
 from dem_cli.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.spatial_geometry import AREA, CENTRE, POLAR
 from dem_cli.model.bodies import bodies_of
@@ -234,6 +234,30 @@ def test_broad_phase_finds_the_pairs_of_brute_force():
     a, b = np.nonzero(np.triu(near, 1))
     kept = (blocks[a] != blocks[b]) & ~(fixed[blocks[a]] & fixed[blocks[b]])
     assert found.tolist() == np.column_stack([a, b])[kept].tolist()
+
+
+@pytest.mark.parametrize("shape", ["wall", "arch", "drums"])
+def test_turned_and_moved_structures_keep_their_joints(shape):
+    """In any direction, mirrored and far from the origin: the same pairs, points and areas, to round-off."""
+    random, ring = np.random.default_rng(6), np.arange(12) * np.pi / 6.0
+    circle = np.column_stack([np.cos(ring), np.sin(ring)])
+    blocks = {
+        "wall": lambda: extruded(running_wall(4, 4)[0], 0.1),
+        "arch": lambda: extruded(arch(9, 1.0, 0.2)[0], 0.3),
+        "drums": lambda: [prism(circle, 0.5 * i, 0.5 * (i + 1)) for i in range(6)],
+    }[shape]()
+    straight = start_joints(spatial_model(blocks))
+    for far in (0.0, 1.0, 100.0, -1.0):
+        turn = matrices(random.normal(size=(1, 3)))[0] * (1.0 if far >= 0.0 else -1.0)
+        mirrored = [tuple(face[:: 1 if far >= 0.0 else -1] for face in block.faces) for block in blocks]
+        moved = [
+            Polyhedron(block.vertices @ turn.T + far, faces) for block, faces in zip(blocks, mirrored, strict=True)
+        ]
+        found = start_joints(spatial_model(moved))
+        assert found.joints.blocks.tolist() == straight.joints.blocks.tolist()
+        assert found.geometry.kinds.tolist() == straight.geometry.kinds.tolist()
+        assert np.array_equal(found.joints.starts, straight.joints.starts)
+        assert found.geometry.areas == pytest.approx(straight.geometry.areas, rel=1e-9)
 
 
 BASE = box([-2.0, -2.0, -1.0], [2.0, 2.0, 0.0])

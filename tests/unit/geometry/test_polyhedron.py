@@ -127,6 +127,7 @@ def test_prisms_along_the_edges_of_their_polygons():
             ends = {tuple(flat[k]), tuple(flat[(k + 1) % len(flat)])}
             assert {tuple(corner) for corner in solid.vertices[face][:, [0, 2]]} == ends
     assert np.ptp(second.vertices[:, 1]) == 3.0
+    assert properties(prism(triangle[::-1], 0.0, 0.5)).volume == properties(first).volume
 
 
 def test_mass_of_a_box_of_a_corner_and_of_a_compound():
