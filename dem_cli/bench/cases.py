@@ -7,7 +7,8 @@ answer between the two has no error. `upper` is the associated bound.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -92,6 +93,16 @@ SIZES = (  # walls of the same blocks and friction 0.6, by size
     _wall(70, 32, 2275, 0.412874, 0.414026),
     _wall(200, 100, 20100, 0.399383, 0.399490),
 )
+
+
+def prisms(known: KnownStructure) -> KnownStructure:
+    """The same blocks in space, as deep as the structure is thick; loads are those of the plane."""
+    return replace(known, name=f"{known.name}, prisms", overrides=(*known.overrides, "dimension=3"))
+
+
+def wall_of(courses: int, blocks: int, count: int) -> KnownStructure:
+    """A wall of the same blocks and friction 0.6 as SIZES, of which no failure load is known."""
+    return _wall(courses, blocks, count, math.nan, None)
 
 
 def solve(case: Case, model: Model, observer: Observer | None = None, settings: Settings = DEFAULT) -> dict[str, Any]:

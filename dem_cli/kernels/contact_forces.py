@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import keep, make_press, push_apart
+from dem_cli.kernels.contact_point import make_press, push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
@@ -25,10 +25,7 @@ def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
     def contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
         blocks, starts, axes, arms, places = joints.blocks, joints.starts, joints.axes, joints.arms, joints.places
-        kns, kss, parameters = joints.kn, joints.ks, joints.law
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory = contacts.slip, contacts.memory
-        velocities, forces = bodies.velocities, bodies.forces
+        gaps, normals, velocities, forces = contacts.gaps, contacts.normal, bodies.velocities, bodies.forces
         d = len(like)
         lost = 0.0
         for number in range(blocks.shape[0]):
@@ -51,11 +48,9 @@ def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
                 gaps[point] = gap
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
-                normal, shear, path, work = press(
-                    gap, opened, sliding_at(slides, spin, place), normals[point], load(shears, point, 0, like[1:]),
-                    kns[point], kss[point], parameters, joint, memory, point,
-                )  # fmt: skip
-                keep(normals, shears, slips, point, normal, shear, path)
+                normal, shear, work = press(
+                    gap, opened, sliding_at(slides, spin, place), joints, contacts, joint, point
+                )
                 lost += work
                 push += normal
                 rub = axpy(1.0, shear, rub)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dem_cli.kernels.jit import always_inline, inline, named
-from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, dot, norm, store
+from dem_cli.kernels.vec import add_at, add_torques, axpy, compose, dot, load, norm, store
 
 
 @always_inline
@@ -30,33 +30,29 @@ def make_press(law: Callable, bonded: bool = False) -> Callable:
     """
 
     @always_inline
-    def press(gap, opened, slide, pressed, old, kn, ks, parameters, joint, memory, point):
-        """One point: (normal, shear force, slip path, work lost) [N, N, m, J].
+    def press(gap, opened, slide, joints, contacts, joint, point):
+        """Normal and shear force of a point [N], kept in `contacts` with its slip path, and the work lost there [J].
 
-        opened, slide: by how much b moved against a in this step, across and along the joint [m]; pressed, old: normal
-        and shear force before it [N].
+        opened, slide: by how much b moved against a in this step, across and along the joint [m].
         """
-        normal, shear, slipped = law(gap, slide, old, kn, ks, parameters, joint, memory, point)
-        if not slipped:
-            return normal, shear, 0.0, 0.0
-        # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
-        plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
-        path = norm(plastic) if normal > 0.0 else 0.0
-        lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
-        if bonded and not (pressed >= 0.0 and normal >= 0.0 and pressed * normal == 0.0):
-            # The same across the joint: work done on the spring, less what it stores; to meet or part costs nothing.
-            lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
-        return normal, shear, path, lost
+        normals, shears, slips = contacts.normal, contacts.shear, contacts.slip
+        kn, ks, pressed, old = joints.kn[point], joints.ks[point], normals[point], load(shears, point, 0, slide)
+        normal, shear, slipped = law(gap, slide, old, kn, ks, joints.law, joint, contacts.memory, point)
+        lost = 0.0
+        if slipped:
+            # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
+            plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
+            if normal > 0.0:
+                slips[point] += norm(plastic)
+            lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
+            if bonded and not (pressed >= 0.0 and normal >= 0.0 and pressed * normal == 0.0):
+                # The same across the joint: work done on the spring, less what it stores; meeting or parting is free.
+                lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)
+        normals[point] = normal
+        store(shears, point, 0, shear)
+        return normal, shear, lost
 
     return named(press, law, "bonded" if bonded else "")
-
-
-@inline
-def keep(normals, shears, slips, point, normal, shear, path):
-    """Forces and slip path of a point into their arrays; without a branch, else these are counted by reference."""
-    slips[point] += path
-    normals[point] = normal
-    store(shears, point, 0, shear)
 
 
 @always_inline

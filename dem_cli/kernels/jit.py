@@ -125,7 +125,9 @@ def kernel(function: Callable) -> CompiledKernel:
     return cast(CompiledKernel, compiled)
 
 
-inline = register_jitable
+# What kernels call allocates nothing and keeps no array, so that references to arrays need no counting: counted at each
+# call inside a branching loop, they cost several times the work of a law. (`_nrt`: numba's runtime for references.)
+inline = register_jitable(_nrt=False)
 
 
 def named(function: Callable, *parts: Callable | str) -> Callable:
@@ -139,6 +141,5 @@ def named(function: Callable, *parts: Callable | str) -> Callable:
     return function
 
 
-# For what is called for each point of the contact loop. Hand it numbers and tuples, not arrays: an array
-# that crosses such a call inside a branching loop is counted by reference each time, which doubles the cost.
-always_inline = register_jitable(forceinline=True)
+# For what is called for each point of the contact loop.
+always_inline = register_jitable(forceinline=True, _nrt=False)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, keep, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
 from dem_cli.kernels.vec import axpy, load, scale, sliding
@@ -31,9 +31,8 @@ def make_planar_forces(
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
-        kns, kss, parameters, frames, levers = joints.kn, joints.ks, joints.law, joints.frames, joints.levers
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale, closures = contacts.slip, contacts.memory, contacts.stale, contacts.closure
+        frames, levers = joints.frames, joints.levers
+        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         friction_work = 0.0
@@ -80,11 +79,7 @@ def make_planar_forces(
                     levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
                     levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
-                normal, shear, path, work = press(
-                    gap_low, opened_low, slide, normals[first], load(shears, first, 0, like[1:]),
-                    kns[first], kss[first], parameters, joint, memory, first,
-                )  # fmt: skip
-                keep(normals, shears, slips, first, normal, shear, path)
+                normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
@@ -96,11 +91,7 @@ def make_planar_forces(
                     levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
                     levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
-                normal, shear, path, work = press(
-                    gap_high, opened_high, slide, normals[second], load(shears, second, 0, like[1:]),
-                    kns[second], kss[second], parameters, joint, memory, second,
-                )  # fmt: skip
-                keep(normals, shears, slips, second, normal, shear, path)
+                normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b

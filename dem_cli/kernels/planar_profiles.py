@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, keep, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, share_of
 from dem_cli.kernels.vec import axpy, load, scale, sliding
@@ -75,10 +75,8 @@ def make_profiled_forces(
             joints.blocks, joints.starts, geometry.edges, geometry.scales, geometry.profile
         )  # fmt: skip
         frames, levers, places_out = joints.frames, joints.levers, joints.points
-        kns, kss, parameters = joints.kn, joints.ks, joints.law
-        gaps, shears, normals = contacts.gaps, contacts.shear, contacts.normal
-        slips, memory, stale, sunk = contacts.slip, contacts.memory, contacts.stale, geometry.sunk
-        closures = contacts.closure
+        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
+        sunk = geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         d = len(like)
         lost = 0.0
@@ -174,11 +172,7 @@ def make_profiled_forces(
                     continue
                 loaded = True
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
-                normal, shear, path, work = press(
-                    gap, opened, slide, normals[point], load(shears, point, 0, like[1:]),
-                    kns[point], kss[point], parameters, joint, memory, point,
-                )  # fmt: skip
-                keep(normals, shears, slips, point, normal, shear, path)
+                normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b

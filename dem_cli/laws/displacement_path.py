@@ -13,6 +13,23 @@ from dem_cli.kernels.contact_point import make_press
 from dem_cli.laws.law import Law
 
 
+class OneJoint(NamedTuple):
+    """What a point takes of kernels.records.Joints."""
+
+    kn: np.ndarray  # [N/m], (1,)
+    ks: np.ndarray  # [N/m], (1,)
+    law: np.ndarray  # (1, n_parameters)
+
+
+class OneContact(NamedTuple):
+    """What a point takes of kernels.records.Contacts."""
+
+    normal: np.ndarray  # [N], (1,)
+    shear: np.ndarray  # [N], (1, d − 1)
+    slip: np.ndarray  # [m], (1,)
+    memory: np.ndarray  # (1, n_memory)
+
+
 class PathResponse(NamedTuple):
     """Response to a displacement path, one row a step; work and energy from the start up to there."""
 
@@ -46,25 +63,23 @@ def drive(
     """
     law, path = law.of(table), np.asarray(path, float)
     d = path.shape[1]
-    point_kn, point_ks = kn * area, (kn if ks is None else ks) * area
     columns = list(law.columns(table, kn))
     for column in law.rates:
         columns[column] *= step
-    parameters, memory = np.array([columns], float), np.zeros((1, law.n_memory(d)))
+    stiffness = np.array([kn * area]), np.array([(kn if ks is None else ks) * area])
+    joint = OneJoint(*stiffness, np.array([columns], float))
+    contact = OneContact(np.zeros(1), np.zeros((1, d - 1)), np.zeros(1), np.zeros((1, law.n_memory(d))))
     if touches:
-        memory[0, : len(law.intact)] = law.intact
-    press = make_press(law.function, law.bonded)
-    normal, shear, lost, slip, work = 0.0, (0.0,) * (d - 1), 0.0, 0.0, 0.0
-    before, rows = np.array([start, *shear]), []
+        contact.memory[0, : len(law.intact)] = law.intact
+    press, lost, work = make_press(law.function, law.bonded), 0.0, 0.0
+    before, rows = np.array([start, *np.zeros(d - 1)]), []
     for row in path:
-        moved, old = row - before, np.array([normal, *shear])
-        if law.bonded or row[0] < 0.0 or normal != 0.0:
-            normal, shear, path_length, loss = press(
-                row[0], moved[0], tuple(moved[1:]), normal, shear, point_kn, point_ks, parameters, 0, memory, 0
-            )
-            lost, slip = lost + loss, slip + path_length
-        work -= 0.5 * (old + np.array([normal, *shear])) @ moved
-        elastic = 0.5 * (normal**2 / point_kn + np.dot(shear, shear) / point_ks)
-        rows.append((normal, shear, slip, lost, work, elastic, memory[0].copy()))
+        moved, old = row - before, np.array([*contact.normal, *contact.shear[0]])
+        if law.bonded or row[0] < 0.0 or old[0] != 0.0:
+            lost += press(row[0], moved[0], tuple(moved[1:]), joint, contact, 0, 0)[2]
+        forces = np.array([*contact.normal, *contact.shear[0]])
+        work -= 0.5 * (old + forces) @ moved
+        elastic = 0.5 * (forces[0] ** 2 / joint.kn[0] + forces[1:] @ forces[1:] / joint.ks[0])
+        rows.append((forces[0], forces[1:], contact.slip[0], lost, work, elastic, contact.memory[0].copy()))
         before = row
     return PathResponse(path, *(np.array(column) for column in zip(*rows, strict=True)))

@@ -10,10 +10,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-IMPORT_NAMES = {"vtk": "vtkmodules", "box2d": "Box2D", "pillow": "PIL"}  # distribution: how it is imported
+IMPORT_NAMES = {  # distribution: how it is imported
+    "vtk": "vtkmodules", "box2d": "Box2D", "pillow": "PIL", "mujoco-core": "mujoco",
+}  # fmt: skip
 TOOLS = {"mypy", "pytest-timeout", "pytest-xdist", "ruff", "furo", "myst-parser", "sphinx"}  # run, not imported
 EXTRA_OF = {  # may be absent
-    "matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench", "pyvista": "viz",
+    "matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench", "mujoco-core": "bench",
+    "compas_cra": "bench", "pyvista": "viz",
     "imageio-ffmpeg": "movie", "dask": "cluster",
 }  # fmt: skip
 

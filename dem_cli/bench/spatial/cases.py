@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.0  # m, of the block
 LENGTH, TALL = 20.0, 10.0  # m, of the wall
+MODULUS = 2.5e9  # Pa, of its stone: kn × height of a block
 SEARCH = "dem, resolution 0.0005"
 
 
@@ -34,11 +35,14 @@ def _block(azimuth: int) -> KnownStructure:
     )
 
 
-def wall_of(courses: int, blocks: int, load: float = math.nan, upper: float | None = None) -> KnownStructure:
+def wall_out_of_plane(courses: int, blocks: int, load: float = math.nan, upper: float | None = None) -> KnownStructure:
     """The wall of 20 × 10 × 0.8 m in so many courses of so many blocks; nan: no load of it is known."""
     count = (courses // 2) * (2 * blocks + 1) + courses % 2 * blocks  # every other course has one more
-    size = f"structure.0.block=[{LENGTH / blocks!r}, {TALL / courses!r}]"
-    overrides = (COURSES_KEY.format(courses), BLOCKS_KEY.format(blocks), size)
+    overrides = (
+        COURSES_KEY.format(courses), BLOCKS_KEY.format(blocks),
+        f"structure.0.block=[{LENGTH / blocks!r}, {TALL / courses!r}]",
+        f"joints.dry.kn={MODULUS * courses / TALL!r}", f"joints.dry.ks={0.4 * MODULUS * courses / TALL!r}",
+    )  # fmt: skip
     return KnownStructure(f"wall {count:,}", "spatial/wall", overrides, load, SEARCH, upper)
 
 
@@ -49,8 +53,14 @@ KNOWN_IN_SPACE = {
         _block(60),
         KnownStructure("panel", "spatial/panel", (), 0.125, "closed form: turns over at thickness / height"),
         KnownStructure("L wall", "spatial/l_wall", (), 0.16692, SEARCH, 0.237113),
-        wall_of(10, 20, 0.1972, 0.371594),
+        wall_out_of_plane(10, 20, 0.1972, 0.371604),
     )
 }
-SIZES_IN_SPACE = (wall_of(5, 10), wall_of(10, 20), wall_of(16, 32), wall_of(22, 45), wall_of(32, 64))
-MANY = wall_of(70, 143)
+SIZES_IN_SPACE = (
+    wall_out_of_plane(5, 10),
+    wall_out_of_plane(10, 20),
+    wall_out_of_plane(16, 32),
+    wall_out_of_plane(22, 45),
+    wall_out_of_plane(32, 64),
+)
+MANY = wall_out_of_plane(70, 143)
