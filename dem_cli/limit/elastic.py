@@ -6,8 +6,8 @@ In units of a mean block weight W and of W over a median joint stiffness. For ev
     c = c(μN, T) ∈ K,  a ∈ K,                   c ∘ a = 0      reserve of friction, slip (plastic) in this increment
     Bt (u − u₀) = −(T − T₀)/ks + γ(a)                          slide: elastic and plastic part
 
-with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N inside Newton's
-iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
+with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N
+inside Newton's iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
 """
 
 from __future__ import annotations
@@ -21,7 +21,11 @@ from scipy.sparse.linalg import SuperLU, splu
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
-from dem_cli.limit.slips import slips_of
+from dem_cli.limit.slip_cones import SlipCones
+from dem_cli.limit.slip_pairs import SlipPairs
+from dem_cli.limit.slips import Slips
+
+KINDS: dict[int, type[SlipPairs] | type[SlipCones]] = {2: SlipPairs, 3: SlipCones}  # of slips, by dimension
 
 
 class State(NamedTuple):
@@ -69,7 +73,8 @@ class Elastic:
         self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
         self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
-        self.slips = slips_of(d, len(self.kn))
+        self.slips: Slips = KINDS[d](len(self.kn))
+        self.interior_point = settings.of_increment(d)
         self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight
@@ -117,24 +122,20 @@ class Elastic:
         dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)])
         scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
         along = [rows[:, k].reshape(self.n_points, -1) * scale for k in range(rows.shape[1])]
-        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
-        used = (i >= 0) & (j >= 0)
-        self.point = np.broadcast_to(np.arange(self.n_points)[:, None], used.shape)[used]
         self.outer = []
         for first, second in ((0, 0), *self.slips.products_of_rows):
             outer = np.einsum("pi,pj->pij", along[first], along[second])
             if 0 < first < second:  # of two tangents, either way round
                 outer = outer + outer.swapaxes(1, 2)
-            self.outer.append(outer.reshape(used.shape)[used])
-        n = len(self.columns)
-        keys, self.place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
+            self.outer.append(outer.reshape(self.n_points, -1))
+        self.work = np.empty((2, *self.outer[0].shape))
+        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+        used, n = (i >= 0) & (j >= 0), len(self.columns)
+        keys, place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
         self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
+        self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
+        self.place[used.ravel()] = place
         self.diagonal = np.flatnonzero(self.indices == keys // n)
-
-    def parts(self, x: np.ndarray) -> list[np.ndarray]:
-        """N, c, p and a of the vector of an increment."""
-        n = self.n_points
-        return np.split(x, (n, len(x) // 2, len(x) // 2 + n))
 
     def elastic(self, share: np.ndarray | float = 1.0) -> SuperLU:
         """LU of the structure while nothing slips; share: of the stiffness of every point."""
@@ -146,10 +147,11 @@ class Elastic:
         Raises RuntimeError where it is singular.
         """
         self.factorisations += 1
-        values = 0.0
-        for factor, outer in zip((stiff_n, *tangential), self.outer, strict=True):
-            values = values + factor[self.point] * outer
-        data = np.bincount(self.place, values, len(self.indices))
+        values, more = self.work
+        np.multiply(stiff_n[:, None], self.outer[0], out=values)
+        for factor, outer in zip(tangential, self.outer[1:], strict=True):
+            values += np.multiply(factor[:, None], outer, out=more)
+        data = np.bincount(self.place, values.ravel(), len(self.indices) + 1)[:-1]
         path = self.settings.path
         data[self.diagonal] += path.singular * np.abs(data[self.diagonal]).mean()
         n = len(self.columns)

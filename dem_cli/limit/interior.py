@@ -24,7 +24,7 @@ class Iterate:
     u: np.ndarray
     load: float
     shear: np.ndarray
-    x: np.ndarray  # N, c, p, a (limit.slips), all positive or inside their cones, (2·(1 + d)·n_points,)
+    x: np.ndarray  # N, c, p, a as limit.slips keeps them, positive or inside their cones, (2·(1 + d)·n_points,)
 
     def copy(self) -> Iterate:
         """The same, to be kept."""
@@ -36,7 +36,7 @@ class Increment:
 
     def __init__(self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
-        self.settings = problem.settings.interior_point
+        self.settings = problem.interior_point
         self.end = self.settings.end * min(1.0, float(problem.own.min(initial=1.0))) ** 2
 
     def start(self, tau: float, ahead: float) -> Iterate:
@@ -48,7 +48,7 @@ class Increment:
         limit, shear, slip = slips.started(mu * before.normal, before.shear, ahead * before.slip, tau)
         normal = np.maximum(normal, limit / mu)
         shear = slips.limited(shear, self.settings.friction_used * mu * normal)
-        x = np.concatenate([normal, slips.reserves(mu * normal, shear), opening, slip])
+        x = slips.joined(normal, opening, mu * normal, shear, slip)
         return Iterate(before.displacements.copy(), before.load, shear, x)
 
     def solve(
@@ -72,7 +72,7 @@ class Increment:
             if not self._factorise(at):
                 return None
             means.append(mean)
-            if infeasible < settings.feasible:
+            if self.straight < settings.feasible:
                 if self._spread(at, mean) < settings.centred and (kept is None or mean < settings.reversal * kept[0]):
                     kept = (mean, at.copy())
                 if len(means) > settings.patience and mean > settings.stalled * means[-settings.patience]:
@@ -84,7 +84,7 @@ class Increment:
             centring = next(share for least, share in settings.centring if length > least or least == 0.0)
             step = self._direction(tau if first else max(centring * mean, self.end))
             length, first = self._to_boundary(at, step), False
-            _move(at, step, length)
+            self._move(at, step, length)
         return None
 
     # -- the central path by its arc length -----------------------------------------------------------
@@ -97,7 +97,7 @@ class Increment:
                 return at
             if stop():
                 return None
-            infeasible = self._residuals(at)
+            self._residuals(at)
             if not self._factorise(at):
                 return None
             spread = self._spread(at, tau)
@@ -107,7 +107,7 @@ class Increment:
                 return None
             tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
             tangent *= -1.0 if last is None else np.sign(tangent @ last)
-            on_path = on_path or (infeasible < settings.feasible and spread < settings.wide)
+            on_path = on_path or (self.straight < settings.feasible and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
                 offset = slips.relative(at.x, onto.positive)
@@ -120,7 +120,7 @@ class Increment:
                 change = float(np.clip(change, max(np.log(self.end / tau), -settings.down), settings.up))
             step = onto.and_on(along, tau * change)
             length = self._to_boundary(at, step)
-            _move(at, step, length)
+            self._move(at, step, length)
             tau *= np.exp(length * change)
         return None
 
@@ -129,26 +129,30 @@ class Increment:
     def _residuals(self, at: Iterate) -> float:
         """Residuals of the linear equations into self; returns the largest."""
         problem, before, slips = self.problem, self.before, self.problem.slips
-        normal, reserve, opening, slip = problem.parts(at.x)
+        normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
         self.off_gap = problem.bn @ at.u + normal / problem.kn - opening
         slide = problem.bt @ (at.u - before.displacements)
-        self.off_slide = slips.slides(slip) - (at.shear - before.shear) / problem.ks_t - slide
-        self.off_reserve = slips.reserves(problem.friction * normal, at.shear) - reserve
+        self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - slide
+        self.off_reserve = slips.lacks(problem.friction * normal, at.shear, at.x)
         if self.displacement is None:
             self.off_target = self.target - at.load
         else:
             self.off_target = self.displacement - problem.live @ at.u
-        rest = (self.unbalanced, self.off_gap, self.off_slide, self.off_reserve)
-        return max(float(np.abs(r).max(initial=0.0)) for r in rest)
+        linear, turning = (
+            max(float(np.abs(off).max(initial=0.0)) for off in parts)
+            for parts in ((self.unbalanced, self.off_gap), (self.off_slide, self.off_reserve))
+        )
+        self.straight = slips.straight(linear, turning)
+        return max(linear, turning)
 
     def _factorise(self, at: Iterate) -> bool:
         look()
         problem = self.problem
-        self.normal, reserve, self.opening, slip = problem.parts(at.x)
+        self.normal, self.opening = problem.slips.normals(at.x)
         self.soft_n = self.opening + self.normal / problem.kn
         self.stiff_n = self.normal / self.soft_n
-        self.joints = problem.slips.linear(reserve, slip, problem.friction, problem.ks, self.stiff_n)
+        self.joints = problem.slips.linear(at.x, problem.friction, problem.ks, self.stiff_n)
         try:
             self.lu = problem.factorised(self.stiff_n, self.joints.stiffness)
         except RuntimeError:
@@ -185,7 +189,7 @@ class Increment:
         closing = problem.bn @ u
         d_normal = push - self.stiff_n * closing
         d_shear = joints.sheared(rub, problem.bt @ u, closing)
-        d_reserve = problem.slips.reserves(problem.friction * d_normal, d_shear) + off_reserve
+        d_reserve = problem.slips.changes(problem.friction * d_normal, d_shear) + off_reserve
         d_opening = off_gap + closing + d_normal / problem.kn
         d_slip = joints.slipped(forced, d_reserve - off_reserve)
         return Direction(u, float(load), d_shear, np.concatenate([d_normal, d_reserve, d_opening, d_slip]))
@@ -196,18 +200,17 @@ class Increment:
         steepest = slips.extremes(slips.relative(at.x, step.positive))[0]
         return min(1.0, -self.settings.boundary / steepest) if steepest < 0.0 else 1.0
 
+    def _move(self, at: Iterate, step: Direction, length: float) -> None:
+        at.u = at.u + length * step.displacements
+        at.load += length * step.load
+        at.shear = at.shear + length * step.shear
+        at.x = self.problem.slips.moved(at.x, length * step.positive)
+
     def _spread(self, at: Iterate, mean: float) -> float:
         """Largest ratio of a product to the mean, or of the mean to a product."""
         products = self.problem.slips.products(at.x)
         return max(float(products.max()) / mean, mean / max(float(products.min()), 1e-300))
 
     def _state(self, at: Iterate) -> State:
-        normal, _, _, slip = self.problem.parts(at.x)
-        return State(at.u, at.load, normal, at.shear, slip)
-
-
-def _move(at: Iterate, step: Direction, length: float) -> None:
-    at.u = at.u + length * step.displacements
-    at.load += length * step.load
-    at.shear = at.shear + length * step.shear
-    at.x = at.x + length * step.positive
+        slips = self.problem.slips
+        return State(at.u, at.load, slips.normals(at.x)[0], at.shear, slips.slip(at.x))

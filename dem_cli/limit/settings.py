@@ -111,9 +111,15 @@ class LimitSettings:
 
     path: PathSettings = PathSettings()
     interior_point: InteriorPointSettings = InteriorPointSettings()
+    # In space slips turn as well as grow: arcs are followed in shorter strides, from closer to the path.
+    interior_point_in_space: InteriorPointSettings = InteriorPointSettings(stride=0.2, wide=2.0, on_arc=200)
     associated: AssociatedSettings = AssociatedSettings()
     reduced: ReducedSettings = ReducedSettings()
     least: LeastSettings = LeastSettings()
+
+    def of_increment(self, dimension: int) -> InteriorPointSettings:
+        """The interior point in 2D or 3D."""
+        return {2: self.interior_point, 3: self.interior_point_in_space}[dimension]
 
 
 DEFAULT_LIMIT = LimitSettings()

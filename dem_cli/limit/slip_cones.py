@@ -1,25 +1,116 @@
-"""Friction and slip in space: reserve c = (μN, T) and slip a = (|γ|, γ) in the Lorentz cone, c ∘ a = 0 (limit/slips.py).
+"""Friction and slip in space: c = (μN, T) and a = (|γ|, γ) in the Lorentz cone, c ∘ a = 0 (contract: limit/slips.py).
 
-x₀ ≥ |x̄| is the cone, c ∘ a = (c·a, c₀ ā + a₀ c̄), e = (1, 0, 0), det x = x₀² − |x̄|², x⁻¹ = (x₀, −x̄) / det x. The
-condition c ∘ a = τ e is made linear after Nesterov and Todd: with the scaling P, P c = a,
+c ∘ a = τ e where T and γ are opposite, T = r d and γ = −g d with one unit vector d, and the eigenvalues of both cones,
+c₁, c₂ = c₀ ∓ r and a₁, a₂ = a₀ ± g, make two pairs
 
-    da + P dc = τ c⁻¹ − a,     P = η (2 w wᵀ − J),   J = diag(1, −1, −1)
+    c₁ a₁ = c₂ a₂ = τ
 
-so that dγ = (τ c⁻¹ − a)_t − P_t0 μ dN − P_tt dT, as in the plane with numbers for matrices. P_tt + 1/ks has the
-eigenvectors w̄ and the one across it.
+as in the plane, where d cannot turn. So d is an unknown of its own. Along d the equations are those of the plane;
+across it both turn by one angle, dT = r dθ and dγ = −g dθ, that is dγ = −(a₀/c₀) dT. Scalings of the cone that are
+symmetric (Nesterov and Todd) keep steps straight; next to the boundary those leave the cone after angles of √(c₁/c₂),
+and arcs (limit/interior.py) come to a halt. Here c₁ and a₂, which are small where a point slides, change along d, and
+T and γ turn as far as Newton's step has it; what μN then lacks to c₀, and T and γ to the common d, is left to the next.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.limit.slips import apart
 
+TURNS = (
+    0.5  # of x₀: from this |x̄| on the smaller eigenvalue moves along d and x̄ turns; below it, x₀ and x̄ move straight
+)
+
+
+class Polar(NamedTuple):
+    """What is kept of each point; all (n_points,) or (2, n_points)."""
+
+    normal: np.ndarray  # N
+    opening: np.ndarray  # p
+    c: np.ndarray  # c₁ and c₂
+    a: np.ndarray  # a₁ and a₂
+    d: np.ndarray
+
+    @property
+    def reserve(self) -> np.ndarray:
+        """c, (3, n_points)."""
+        return _element(self.c, self.d)
+
+    @property
+    def slip(self) -> np.ndarray:
+        """a, (3, n_points)."""
+        return _element(self.a, self.d)
+
+    def moved(self, by: Change) -> Polar:
+        """After a change: T and γ as they are now, but for what is across the direction of both."""
+        reserve, slip = self.reserve + by.reserve, self.slip + by.slip
+        d = _unit(reserve[1:] - slip[1:], self.d)
+        shear = np.maximum((reserve[1:] * d).sum(axis=0), 0.0)
+        slide = np.maximum(-(slip[1:] * d).sum(axis=0), 0.0)
+        c = np.where(_turns(self.c), self.c[0] + _eigenvalues(by.reserve, self.d)[0], reserve[0] - shear)
+        a = np.where(_turns(self.a), self.a[1] + _eigenvalues(by.slip, self.d)[1], slip[0] - slide)
+        ends = np.stack([c, c + 2.0 * shear]), np.stack([a + 2.0 * slide, a])
+        return Polar(self.normal + by.normal, self.opening + by.opening, *ends, d)
+
+
+class Change(NamedTuple):
+    """A change of reserves and slips."""
+
+    normal: np.ndarray
+    reserve: np.ndarray  # of c, (3, n_points)
+    opening: np.ndarray
+    slip: np.ndarray  # of a, (3, n_points)
+
+
+def polar(x: np.ndarray) -> Polar:
+    """Of the vector of an increment."""
+    rows = x.reshape(8, -1)
+    return Polar(rows[0], rows[1], rows[2:4], rows[4:6], rows[6:])
+
+
+def change_of(x: np.ndarray) -> Change:
+    """Of the change of that vector: N, c, p, a."""
+    rows = x.reshape(8, -1)
+    return Change(rows[0], rows[1:4], rows[4], rows[5:])
+
+
+def _element(eigenvalues: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """(x₀, x̄) of the eigenvalues x₀ ∓ x̄·d, (3, n_points)."""
+    first, second = eigenvalues
+    return np.concatenate([0.5 * (first + second)[None], 0.5 * (second - first) * d])
+
+
+def _eigenvalues(element: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """x₀ ∓ x̄·d, (2, n_points)."""
+    along = (d * element[1:]).sum(axis=0)
+    return np.stack([element[0] - along, element[0] + along])
+
+
+def _turns(eigenvalues: np.ndarray) -> np.ndarray:
+    """Elements x̄ of which turns as it moves, (n_points,) bool."""
+    first, second = eigenvalues
+    return np.abs(second - first) > TURNS * (first + second)
+
+
+def _across(element: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """x̄ across d, (n_points,)."""
+    return d[0] * element[2] - d[1] * element[1]
+
+
+def _unit(vectors: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+    """Directions of vectors, (2, n_points); otherwise: of those without length."""
+    length = np.sqrt((vectors * vectors).sum(axis=0))
+    some = length > 0.0
+    return np.where(some, vectors / np.where(some, length, 1.0), otherwise)
+
 
 class SlipCones:
-    """Reserves (μN, T₁, T₂) and slips (|γ|, γ₁, γ₂), (3·n_points,) each."""
+    """Reserves (μN, T₁, T₂) and slips (|γ|, γ₁, γ₂); x is N, p, c₁, c₂, a₁, a₂, d."""
 
-    products_of_rows = ((1, 1), (2, 2), (1, 2), (1, 0), (2, 0))
+    products_of_rows: tuple[tuple[int, int], ...] = ((1, 1), (2, 2), (1, 2), (1, 0), (2, 0))
 
     def __init__(self, n_points: int) -> None:
         self.n_points = n_points
@@ -29,103 +120,116 @@ class SlipCones:
         none = np.zeros(self.n_points)
         return [ks, ks, none, none, none]
 
-    def reserves(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    def normals(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """N, p."""
+        return x[: self.n_points], x[self.n_points : 2 * self.n_points]
+
+    def slip(self, x: np.ndarray) -> np.ndarray:
+        """a."""
+        return polar(x).slip.ravel()
+
+    def slides(self, x: np.ndarray) -> np.ndarray:
+        """γ."""
+        return polar(x).slip[1:].ravel()
+
+    def lacks(self, limit: np.ndarray, shear: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """(μN, T) − c."""
+        return self.changes(limit, shear) - polar(x).reserve.ravel()
+
+    def changes(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """(μN, T)."""
         return np.concatenate([limit, shear])
-
-    def slides(self, slip: np.ndarray) -> np.ndarray:
-        """γ."""
-        return slip[self.n_points :]
 
     def limited(self, shear: np.ndarray, limit: np.ndarray) -> np.ndarray:
         """|T| ≤ limit, the direction kept."""
         force = shear.reshape(2, -1)
-        return (force * np.minimum(1.0, limit / np.maximum(_length(force), np.finfo(float).tiny))).ravel()
+        length = np.sqrt((force * force).sum(axis=0))
+        beyond = length > limit
+        return (force * np.where(beyond, limit / np.where(beyond, length, 1.0), 1.0)).ravel()
+
+    def straight(self, linear: float, turning: float) -> float:
+        """The residual of reserves and slides is made by turning, in every step."""
+        return linear
 
     def started(
         self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Reserve less slip, eigenvalue by eigenvalue apart."""
-        difference = (self.reserves(limit, self.limited(shear, limit)) - slip).reshape(3, -1)
-        length = _length(difference[1:])
-        along = difference[1:] / np.where(length > 0.0, length, 1.0)
-        (high, slip_high), (low, slip_low) = (apart(difference[0] + sign * length, tau) for sign in (1.0, -1.0))
-        slips = np.concatenate([[0.5 * (slip_high + slip_low)], 0.5 * (slip_high - slip_low) * along])
-        return 0.5 * (high + low), (0.5 * (high - low) * along).ravel(), slips.ravel()
+        difference = (self.changes(limit, self.limited(shear, limit)) - slip).reshape(3, -1)
+        d = _unit(difference[1:], np.array([[1.0], [0.0]]))
+        c, a = apart(_eigenvalues(difference, d), tau)
+        return 0.5 * (c[0] + c[1]), (0.5 * (c[1] - c[0]) * d).ravel(), np.concatenate([a, d]).ravel()
+
+    def joined(
+        self, normal: np.ndarray, opening: np.ndarray, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray
+    ) -> np.ndarray:
+        """With reserves of these forces, which lie along d."""
+        rows = slip.reshape(4, -1)
+        c = _eigenvalues(self.changes(limit, shear).reshape(3, -1), rows[2:])
+        return np.concatenate([normal, opening, c.ravel(), slip])
 
     def products(self, x: np.ndarray) -> np.ndarray:
-        """N p, and both eigenvalues of c ∘ a as its determinant has them."""
-        normal, reserve, opening, slip = self._parts(x)
-        half = (reserve * slip).sum(axis=0)
-        product = det(reserve) * det(slip)
-        high = half + np.sqrt(np.maximum(half**2 - product, 0.0))
-        return np.concatenate([normal * opening, high, product / high])
+        """N p, c₁ a₁, c₂ a₂."""
+        at = polar(x)
+        return np.concatenate([at.normal * at.opening, (at.c * at.a).ravel()])
 
     def relative(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Boosted into the frame in which each element is a multiple of e; of unit length as two eigenvalues are."""
-        normal, reserve, opening, slip = self._parts(x)
-        by_normal, by_reserve, by_opening, by_slip = self._parts(change)
-        of_reserve, of_slip = _boosted(reserve, by_reserve), _boosted(slip, by_slip)
-        return np.concatenate([by_normal / normal, of_reserve, by_opening / opening, of_slip])
+        """Of eigenvalues over themselves; across d over c₀ and a₀, an angle where the element turns."""
+        at, by = polar(x), change_of(change)
+        found = [(by.normal / at.normal)[None], (by.opening / at.opening)[None]]
+        for kept, element in ((at.c, by.reserve), (at.a, by.slip)):
+            scale = np.where(_turns(kept), 0.5 * (kept[0] + kept[1]), np.sqrt(kept[0] * kept[1]))
+            found += [_eigenvalues(element, at.d) / kept, (np.sqrt(2.0) * _across(element, at.d) / scale)[None]]
+        return np.concatenate(found).ravel()
 
     def extremes(self, relative: np.ndarray) -> tuple[float, float]:
-        """Of the eigenvalues of all cones, and the numbers beside them."""
-        normal, reserve, opening, slip = self._parts(relative)
-        values = [normal, opening]
-        for element in (reserve, slip):
-            lead, length = np.sqrt(0.5) * element[0], np.sqrt(0.5) * _length(element[1:])
-            values += [lead - length, lead + length]
-        return min(float(v.min(initial=0.0)) for v in values), max(float(v.max(initial=0.0)) for v in values)
+        """Of the numbers, and of the eigenvalues of what changes along and across."""
+        rows = relative.reshape(8, -1)
+        low, high = float(rows[:2].min(initial=0.0)), float(rows[:2].max(initial=0.0))
+        for first, second, across in (rows[2:5], rows[5:]):
+            middle, radius = 0.5 * (first + second), np.sqrt(0.25 * (first - second) ** 2 + 0.5 * across**2)
+            low = min(low, float((middle - radius).min(initial=0.0)))
+            high = max(high, float((middle + radius).max(initial=0.0)))
+        return low, high
 
-    def linear(
-        self, reserve: np.ndarray, slip: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray
-    ) -> ConeStiffness:
+    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Numbers added, reserves and slips turned."""
+        return np.concatenate([np.atleast_2d(part) for part in polar(x).moved(change_of(change))]).ravel()
+
+    def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> ConeStiffness:
         """The products made linear."""
-        return ConeStiffness(reserve.reshape(3, -1), slip.reshape(3, -1), friction, ks, stiff_n)
-
-    def _parts(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """N, c, p, a; c and a as (3, n_points)."""
-        rows = x.reshape(8, -1)
-        return rows[0], rows[1:4], rows[4], rows[5:]
+        return ConeStiffness(polar(x), friction, ks, stiff_n)
 
 
 class ConeStiffness:
-    """c ∘ a = τ e made linear; elements are (3, n_points)."""
+    """c ∘ a = τ e made linear."""
 
-    def __init__(
-        self, reserve: np.ndarray, slip: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray
-    ) -> None:
-        self.reserve, self.slip, self.det = reserve, slip, det(reserve)
-        of_slip = det(slip)
-        self.eta = np.sqrt(of_slip / self.det)
-        one, two = slip / np.sqrt(of_slip), reserve / np.sqrt(self.det)
-        self.w = np.concatenate([one[:1] + two[:1], one[1:] - two[1:]])
-        self.w /= np.sqrt(2.0 * (1.0 + (one * two).sum(axis=0)))
-        length = _length(self.w[1:])
-        self.way = np.where(length > 0.0, self.w[1:] / np.where(length > 0.0, length, 1.0), [[1.0], [0.0]])
-        self.across = np.stack([-self.way[1], self.way[0]])
-        soft = self.eta + 1.0 / ks
-        self.stiff_across, self.stiff_along = 1.0 / soft, 1.0 / (soft + 2.0 * self.eta * length**2)
-        self.drag = friction * 2.0 * self.eta * self.w[0] * length * self.stiff_along * self.way
+    def __init__(self, at: Polar, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> None:
+        self.at, self.d, self.ratios = at, at.d, at.a / at.c
+        self.turning = (at.a[0] + at.a[1]) / (at.c[0] + at.c[1])
+        one, two = self.ratios
+        self.stiff_along = 1.0 / (1.0 / ks + 0.5 * (one + two))
+        self.stiff_across = 1.0 / (1.0 / ks + self.turning)
+        self.drag = friction * 0.5 * (two - one) * self.stiff_along * self.d
         self.coupling = self.drag * stiff_n
 
     @property
     def stiffness(self) -> list[np.ndarray]:
         """Of the tangents by themselves and by each other, and by the normal."""
-        (a1, a2), (c1, c2) = self.way, self.across
-        along, across = self.stiff_along, self.stiff_across
+        (d1, d2), along, across = self.d, self.stiff_along, self.stiff_across
         return [
-            along * a1 * a1 + across * c1 * c1, along * a2 * a2 + across * c2 * c2, along * a1 * a2 + across * c1 * c2,
+            along * d1 * d1 + across * d2 * d2, along * d2 * d2 + across * d1 * d1, (along - across) * d1 * d2,
             *-self.coupling,
         ]  # fmt: skip
 
     def towards(self, tau: float, off: np.ndarray) -> np.ndarray:
-        """τ c⁻¹ − a − P off."""
-        return (tau * self._inverse() - self.slip - self._scaled(off.reshape(3, -1))).ravel()
+        """(τ − c a) / c of each pair, less what the reserves lack."""
+        forced = _element((tau - self.at.c * self.at.a) / self.at.c, self.d)
+        return forced.ravel() - self._yielding(off.reshape(3, -1))
 
     def along(self) -> np.ndarray:
-        """c⁻¹."""
-        return self._inverse().ravel()
+        """1 / c of each pair."""
+        return _element(1.0 / self.at.c, self.d).ravel()
 
     def rubbed(self, forced: np.ndarray, off_slide: np.ndarray, push: np.ndarray) -> np.ndarray:
         """Slips and normal forces turned into shear force by the soft joint."""
@@ -137,38 +241,19 @@ class ConeStiffness:
         return rubbed + (self.coupling * closing - self._stiff(slide.reshape(2, -1))).ravel()
 
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Where a reserve grows its slip falls."""
-        return forced - self._scaled(change.reshape(3, -1)).ravel()
+        """Where a reserve grows its slip falls; across d both turn."""
+        return forced - self._yielding(change.reshape(3, -1))
 
-    def _inverse(self) -> np.ndarray:
-        return np.concatenate([self.reserve[:1], -self.reserve[1:]]) / self.det
-
-    def _scaled(self, element: np.ndarray) -> np.ndarray:
-        """P · element."""
-        mirrored = np.concatenate([element[:1], -element[1:]])
-        return self.eta * (2.0 * (self.w * element).sum(axis=0) * self.w - mirrored)
+    def _yielding(self, element: np.ndarray) -> np.ndarray:
+        """Slips that a change of the reserves takes back, (3·n_points,)."""
+        found = _element(self.ratios * _eigenvalues(element, self.d), self.d)
+        across = self.turning * _across(element, self.d)
+        found[1] -= across * self.d[1]
+        found[2] += across * self.d[0]
+        return found.ravel()
 
     def _stiff(self, slide: np.ndarray) -> np.ndarray:
-        """(P_tt + 1/ks)⁻¹ · slide."""
-        along, across = (self.way * slide).sum(axis=0), (self.across * slide).sum(axis=0)
-        return self.stiff_along * along * self.way + self.stiff_across * across * self.across
-
-
-def det(element: np.ndarray) -> np.ndarray:
-    """x₀² − |x̄|², (n_points,)."""
-    length = _length(element[1:])
-    return (element[0] - length) * (element[0] + length)
-
-
-def _length(vectors: np.ndarray) -> np.ndarray:
-    return np.sqrt((vectors * vectors).sum(axis=0))
-
-
-def _boosted(element: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Change in the frame in which the element is e, times √2, (3·n_points,)."""
-    root = np.sqrt(det(element))
-    unit = element / root
-    along = (unit[1:] * change[1:]).sum(axis=0)
-    lead = unit[0] * change[0] - along
-    rest = change[1:] + unit[1:] * (along / (1.0 + unit[0]) - change[0])
-    return (np.sqrt(2.0) * np.concatenate([lead[None], rest]) / root).ravel()
+        """Shear forces of a slide."""
+        along = self.stiff_along * (self.d * slide).sum(axis=0)
+        across = self.stiff_across * (self.d[0] * slide[1] - self.d[1] * slide[0])
+        return np.stack([along * self.d[0] - across * self.d[1], along * self.d[1] + across * self.d[0]])

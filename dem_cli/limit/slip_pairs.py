@@ -1,4 +1,4 @@
-"""Friction and slip in the plane: reserves c± = μN ± T and slips a± of both senses, c± a± = 0 (contract: limit/slips.py)."""
+"""Friction and slip in the plane: reserves c± = μN ± T, slips a± either way, c± a± = 0 (contract: limit/slips.py)."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dem_cli.limit.slips import apart
 
 
 class SlipPairs:
-    """Reserves (c₊, c₋) and slips (a₊, a₋), (2·n_points,) each."""
+    """Reserves (c₊, c₋) and slips (a₊, a₋), (2·n_points,) each; x is N, c₊, c₋, p, a₊, a₋."""
 
-    products_of_rows = ((1, 1), (1, 0))
+    products_of_rows: tuple[tuple[int, int], ...] = ((1, 1), (1, 0))
 
     def __init__(self, n_points: int) -> None:
         self.n_points = n_points
@@ -19,26 +19,50 @@ class SlipPairs:
         """Nothing slips."""
         return [ks, np.zeros(self.n_points)]
 
-    def reserves(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    def changes(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """c± = μN ± T."""
         return np.concatenate([limit + shear, limit - shear])
 
-    def slides(self, slip: np.ndarray) -> np.ndarray:
+    def normals(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """N, p."""
+        n = self.n_points
+        return x[:n], x[3 * n : 4 * n]
+
+    def slip(self, x: np.ndarray) -> np.ndarray:
+        """a₊, a₋."""
+        return x[4 * self.n_points :]
+
+    def slides(self, x: np.ndarray) -> np.ndarray:
         """a₊ − a₋."""
-        one, two = np.split(slip, 2)
-        return one - two
+        n = self.n_points
+        return x[4 * n : 5 * n] - x[5 * n :]
+
+    def lacks(self, limit: np.ndarray, shear: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """(μN ± T) − c±."""
+        n = self.n_points
+        return self.changes(limit, shear) - x[n : 3 * n]
 
     def limited(self, shear: np.ndarray, limit: np.ndarray) -> np.ndarray:
         """|T| ≤ limit."""
         return np.clip(shear, -limit, limit)
 
+    def straight(self, linear: float, turning: float) -> float:
+        """All of it."""
+        return max(linear, turning)
+
     def started(
         self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Each reserve and its slip apart."""
-        reserve, slip = apart(np.maximum(self.reserves(limit, shear), 0.0) - slip, tau)
+        reserve, slip = apart(np.maximum(self.changes(limit, shear), 0.0) - slip, tau)
         one, two = np.split(reserve, 2)
         return 0.5 * (one + two), 0.5 * (one - two), slip
+
+    def joined(
+        self, normal: np.ndarray, opening: np.ndarray, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray
+    ) -> np.ndarray:
+        """N, c±, p, a±."""
+        return np.concatenate([normal, self.changes(limit, shear), opening, slip])
 
     def products(self, x: np.ndarray) -> np.ndarray:
         """N p, c± a±."""
@@ -53,11 +77,14 @@ class SlipPairs:
         """Of all numbers."""
         return float(relative.min(initial=0.0)), float(relative.max(initial=0.0))
 
-    def linear(
-        self, reserve: np.ndarray, slip: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray
-    ) -> PairStiffness:
+    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Number by number."""
+        return x + change
+
+    def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> PairStiffness:
         """The products made linear."""
-        return PairStiffness(reserve, slip, friction, ks, stiff_n)
+        n = self.n_points
+        return PairStiffness(x[n : 3 * n], x[4 * n :], friction, ks, stiff_n)
 
 
 class PairStiffness:

@@ -2,10 +2,11 @@
 
 c is the reserve of friction of a point and a its slip in the increment, both in one self-dual cone and square to each
 other: c ∘ a = 0 (Coulomb friction without dilation). In the plane the cone is two half-lines, c± = μN ± T and a± ≥ 0
-(limit/slip_pairs.py); in space it is round, c = (μN, T) and a = (|γ|, γ), γ the slip (limit/slip_cones.py). Reserves,
-slips and shear forces are kept component by component: all points' first, then all points' second.
+(limit/slip_pairs.py); in space it is round, c = (μN, T) and a = (|γ|, γ), γ the slip (limit/slip_cones.py). Components
+are kept one behind the other: all points' first, then all points' second; so are shear forces.
 
-The vector of an increment is x = (N, c, p, a), p: opening of the joint. On its central path N p = τ, c ∘ a = τ e.
+On the central path of an increment N p = τ, p the opening, and c ∘ a = τ e. How its vector x keeps N, c, p and a is the
+business of each kind; a change of it is always (dN, dc, dp, da).
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ class SlipStiffness(Protocol):
 
     @property
     def stiffness(self) -> list[np.ndarray]:
-        """Factors of the products of rows that are its part of the matrix, in the order of Slips.products_of_rows."""
+        """Its part of the matrix: factors of the products of rows, in the order of Slips.products_of_rows."""
 
     def towards(self, tau: float, off: np.ndarray) -> np.ndarray:
-        """Change of the slips towards products of τ with the forces as they are; off: what c lacks, (d·n_points,)."""
+        """Change of the slips towards products of τ while forces stay; off: what c lacks, (d·n_points,)."""
 
     def along(self) -> np.ndarray:
         """The same for a change of τ by one."""
@@ -32,7 +33,7 @@ class SlipStiffness(Protocol):
         """Change of the shear forces while no block moves; forced: of slips, push: of normal forces."""
 
     def sheared(self, rubbed: np.ndarray, slide: np.ndarray, closing: np.ndarray) -> np.ndarray:
-        """Change of the shear forces as blocks slide and close."""
+        """Change of the shear forces as blocks slide and joints open."""
 
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Change of the slips as the reserves change, (d·n_points,)."""
@@ -41,46 +42,57 @@ class SlipStiffness(Protocol):
 class Slips(Protocol):
     """Reserves and slips of so many points."""
 
-    products_of_rows: tuple[tuple[int, int], ...]  # directions (0: normal) whose rows make the part in the matrix
+    # Directions (0: normal) whose rows make the part of friction in the matrix; two tangents count either way round.
+    products_of_rows: tuple[tuple[int, int], ...]
 
     def elastic(self, ks: np.ndarray) -> list[np.ndarray]:
         """Factors of the products of rows where nothing slips."""
 
-    def reserves(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """c, from μN (n_points,) and T."""
+    def started(
+        self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """μN, T and slips off the boundary, with products τ, near given forces and the slip that is expected."""
 
-    def slides(self, slip: np.ndarray) -> np.ndarray:
-        """γ, from a."""
+    def joined(
+        self, normal: np.ndarray, opening: np.ndarray, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray
+    ) -> np.ndarray:
+        """x; slip: as `started` gives it."""
+
+    def normals(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """N and p."""
+
+    def slip(self, x: np.ndarray) -> np.ndarray:
+        """a, (d·n_points,)."""
+
+    def slides(self, x: np.ndarray) -> np.ndarray:
+        """γ, ((d − 1)·n_points,)."""
+
+    def changes(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """Change of c as μN and T change."""
+
+    def lacks(self, limit: np.ndarray, shear: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """What c lacks to that of μN and T, as a change."""
 
     def limited(self, shear: np.ndarray, limit: np.ndarray) -> np.ndarray:
         """The shear forces as far as friction allows them."""
 
-    def started(
-        self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """μN, T and a off the boundary, with products τ, near forces of the last increment and the slips expected."""
+    def straight(self, linear: float, turning: float) -> float:
+        """Of the residuals, what shorter steps bring down; turning: that of reserves and slides."""
 
     def products(self, x: np.ndarray) -> np.ndarray:
         """All N p and the eigenvalues of c ∘ a: equal on the central path."""
 
     def relative(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """A change of x in units of x itself: over each number, or in the frame in which the cone's element is e."""
+        """A change in units of x itself."""
 
     def extremes(self, relative: np.ndarray) -> tuple[float, float]:
-        """The fastest fall and growth of anything in x, relative to itself; below −1 x has left its cones."""
+        """The fastest fall and growth of anything in x, relative to itself; at −1 x leaves its cones."""
 
-    def linear(
-        self, reserve: np.ndarray, slip: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray
-    ) -> SlipStiffness:
-        """The condition made linear."""
+    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """x after a change that leaves it inside its cones."""
 
-
-def slips_of(dimension: int, n_points: int) -> Slips:
-    """Reserves and slips in 2D or 3D."""
-    from dem_cli.limit.slip_cones import SlipCones
-    from dem_cli.limit.slip_pairs import SlipPairs
-
-    return {2: SlipPairs, 3: SlipCones}[dimension](n_points)
+    def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> SlipStiffness:
+        """The condition made linear; stiff_n: stiffness across the joint."""
 
 
 def apart(difference: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
