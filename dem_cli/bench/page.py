@@ -73,7 +73,7 @@ def references() -> list[str]:
         " the same blocks and μ 0.6. Where head joints carry friction the load is not unique: loading from gravity"
         " ends between the load without that friction and that of the zero-dilation path of `dem limit`"
         " (docs/numerics.md), and between the two there is no error. The associated load is an upper bound; in brackets"
-        " its distance from what is admissible. Those in space (`dimension = 3`) come last: the L wall has 39 blocks"
+        " its distance from what is admissible. Those in space (`dimension = 3`) come last: the L wall has 42 blocks"
         " and μ 0.6; wall 205 is 20 m long, 10 m high and 0.8 m thick, pushed out of its plane against columns behind"
         " its ends."
     )

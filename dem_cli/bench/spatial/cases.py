@@ -7,9 +7,10 @@ much; the reference is the bracket of a fine search, and `path`, the zero-dilati
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import TYPE_CHECKING
 
-from dem_cli.bench.cases import BLOCKS_KEY, COURSES_KEY, KnownStructure
+from dem_cli.bench.cases import BLOCKS_KEY, COURSES_KEY, KnownStructure, solve
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -52,8 +53,8 @@ KNOWN_IN_SPACE = {
         _block(30),
         _block(60),
         KnownStructure("panel", "spatial/panel", (), 0.125, "closed form: turns over at thickness / height"),
-        KnownStructure("L wall", "spatial/l_wall", (), 0.16692, SEARCH, 0.237113),
-        wall_out_of_plane(10, 20, 0.1972, 0.371604),
+        KnownStructure("L wall", "spatial/l_wall", (), 0.285812, SEARCH, 0.361778, 0.285597),
+        wall_out_of_plane(10, 20, 0.201955, 0.371604),
     )
 }
 SIZES_IN_SPACE = (
@@ -64,3 +65,9 @@ SIZES_IN_SPACE = (
     wall_out_of_plane(32, 64),
 )
 MANY = wall_out_of_plane(70, 143)
+
+
+@cache
+def compiled_in_space() -> None:
+    """Have all kernels of a run in space compiled or loaded, so that nobody's time holds that."""
+    solve(*KNOWN_IN_SPACE["panel"].build("analysis.resolution=0.1"))

@@ -14,7 +14,7 @@ from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.spatial import compas_walls, mujoco_walls
 from dem_cli.bench.spatial.associated import associated_job, statics_error
 from dem_cli.bench.spatial.boxes import Boxes, boxes_of
-from dem_cli.bench.spatial.cases import KNOWN_IN_SPACE, friction_of
+from dem_cli.bench.spatial.cases import KNOWN_IN_SPACE, compiled_in_space, friction_of
 from dem_cli.bench.timing import TimedTask, in_turn
 from dem_cli.version import install_command
 
@@ -52,6 +52,7 @@ def problem_of(known: KnownStructure) -> BoxProblem:
 
 def measure(options: BenchOptions) -> GroupResult:
     """One record per structure, program and setting; axis: the program, value: the setting."""
+    compiled_in_space()
     found = GroupResult()
     names = list(KNOWN_IN_SPACE)[:1] if options.quick else list(KNOWN_IN_SPACE)
     problems = [problem_of(KNOWN_IN_SPACE[name]) for name in names]

@@ -11,7 +11,7 @@ from dem_cli.bench.cases import KnownStructure, solve
 from dem_cli.bench.kernels import blocks_of
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.spatial.associated import associated_job
-from dem_cli.bench.spatial.cases import MANY, SIZES_IN_SPACE
+from dem_cli.bench.spatial.cases import MANY, SIZES_IN_SPACE, compiled_in_space
 from dem_cli.bench.table import count, lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
 
@@ -24,6 +24,7 @@ STEP_LIMIT = "analysis.max_steps=2000000"
 
 def measure(options: BenchOptions) -> GroupResult:
     """Records of three axes; value: blocks."""
+    compiled_in_space()
     found = GroupResult()
     sizes = [known for known in SIZES_IN_SPACE if options.long or blocks_of(known) < LARGEST]
     if not options.long:
