@@ -25,9 +25,10 @@ from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.post.playback import SHORTEST, Playback, playback
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
-from dem_cli.render.view import AS_BEST, Standpoint, view_of
+from dem_cli.render.view import view_of
 
 STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
 _AROUND = 0.015  # of the size of what is seen: empty space on all sides
