@@ -15,7 +15,7 @@ from dem_cli.case.cross_references import check_names
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry.rotation import moments
-from dem_cli.model.blocks import Block, block_corners
+from dem_cli.model.blocks import Block
 from dem_cli.model.bodies import bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
@@ -127,7 +127,9 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
 
 def _sorted(blocks: list[Block]) -> list[Block]:
     """From the lowest up, then along x, in space also along y: neighbours get numbers close to each other."""
-    lows = np.array([block_corners(block).min(axis=0) for block in blocks])
+    corners = [getattr(part, "vertices", part) for block in blocks for part in block.parts]
+    counts = [sum(len(getattr(part, "vertices", part)) for part in block.parts) for block in blocks]
+    lows = np.minimum.reduceat(np.concatenate(corners), np.cumsum([0, *counts[:-1]]), axis=0)
     step = 1e-6 * (float(np.ptp(lows, axis=0).max()) or 1.0)  # against round-off within a course
     *sideways, up = lows.T
     order = np.lexsort((sideways[-1], *(np.rint(axis / step) for axis in (*sideways[-2::-1], up))))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.blocks import Block
 from dem_cli.model.bodies import bodies_of
 from dem_cli.model.model import Model
-from dem_cli.structures.placement import depth, full_id, in_space
+from dem_cli.structures.placement import depth, full_id, spatial_places
 from dem_cli.structures.registry import GENERATORS
 
 if TYPE_CHECKING:
@@ -30,15 +30,16 @@ def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> Imp
         raise CaseError(problems)
     upright = tuple(table.model_copy(update={"origin": (0.0, 0.0), "rotation_deg": 0.0}) for table in case.structure)
     flat_case = case.model_copy(update={"structure": upright})
-    changed: dict[str, Block] = {}
+    changed: dict[str, tuple[Any, ...]] = {}
     doubts: dict[CaseProblem, None] = {}
     for i, table in enumerate(case.structure):
         flat = _elevation(case, i)
         found = imperfect(flat_case, _planar_model(case, flat), flat)
-        changed |= {block.id: block for block in in_space(found.blocks, table)}
+        parts, _ = spatial_places(found.blocks, table)
+        changed |= {block.id: tuple(next(parts) for _ in block.parts) for block in found.blocks}
         doubts |= dict.fromkeys(found.doubts)
     return ImperfectBlocks(
-        [replace(block, parts=changed[block.id].parts) if block.id in changed else block for block in blocks],
+        [replace(block, parts=changed[block.id]) if block.id in changed else block for block in blocks],
         list(doubts),
     )
 

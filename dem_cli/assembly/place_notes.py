@@ -13,6 +13,7 @@ from dem_cli.geometry.parts import shapes_of
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 
+ROUND_OFF = 1e-9  # of a size: coordinates that are none
 ALL = 0.999  # of a part: so much of it is all of it
 
 
@@ -25,7 +26,7 @@ class PlaceNotes(NamedTuple):
 
 def block_place(model: Model, block: int) -> str:
     """Where the centroid of a block is."""
-    return f" at {rounded(model.centroids[block])}"
+    return f" at {rounded(model.centroids[block], model.shapes.radii[block])}"
 
 
 def common_place(model: Model, parts: np.ndarray) -> str:
@@ -37,13 +38,15 @@ def common_place(model: Model, parts: np.ndarray) -> str:
     found = common(normals[faces], offsets[faces])
     if found is None:
         return ""
-    whole = found.volume >= ALL * model.parts.volumes[parts].min()
-    return f", {found.volume:.3g} m3{' (all of it)' if whole else ''} around {rounded(found.centroid)}"
+    whole = " (all of it)" if found.volume >= ALL * model.parts.volumes[parts].min() else ""
+    place = rounded(found.centroid, model.parts.sizes[parts].min())
+    return f", {found.volume:.3g} m3{whole} around {place}"
 
 
-def rounded(point: np.ndarray) -> str:
-    """A point as people read it."""
-    return show([float(f"{x:.4g}") + 0.0 for x in point])
+def rounded(point: np.ndarray, size: float) -> str:
+    """A point of something of that size [m] as people read it."""
+    places = np.where(np.abs(point) > ROUND_OFF * size, point, 0.0)
+    return show([float(f"{x:.4g}") for x in places])
 
 
 NOTES = {

@@ -9,7 +9,7 @@ import math
 from types import GenericAlias
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
 from dem_cli.case.vector import VectorLength
 
@@ -63,6 +63,17 @@ class StructureBase(CaseModel):
         description="turned about its origin, counter-clockwise; in 3D in plan, about the vertical [deg]",
         examples=[5.0],
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _thickness_within_block(cls, table: Any, info: ValidationInfo) -> Any:
+        """In 3D a block may be given with its thickness: block = [length, height, thickness]."""
+        block = table.get("block") if isinstance(table, dict) else None
+        if not isinstance(block, (list, tuple)) or len(block) != 3 or (info.context or {}).get("dimension") != 3:
+            return table
+        if "thickness" in table:
+            raise KeyProblem("block and thickness say the same; give one of them", "thickness")
+        return {**table, "block": block[:2], "thickness": block[2]}
 
     @property
     def rotation(self) -> float:

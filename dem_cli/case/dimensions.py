@@ -29,6 +29,11 @@ class Scope(NamedTuple):
     none: Any = None  # a value that says no more than leaving it out
     beside: tuple[str, Any] | None = None  # only beside this key of the same table with this value
 
+    @property
+    def name(self) -> str:
+        """The key without its table."""
+        return self.key.rpartition(".")[2]
+
     def holds(self, value: Any, table: Any) -> bool:
         """Whether it is about this value in its table."""
         if self.beside is not None and (not isinstance(table, dict) or table.get(self.beside[0]) != self.beside[1]):
@@ -56,7 +61,6 @@ SCOPES = (
     Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
-    Scope("monitor.between", 2, YET),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
@@ -75,12 +79,17 @@ def dimension_of(data: dict[str, Any]) -> int:
 
 def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
     """What a case, as read, says that its dimension does not know."""
-    others = [scope for scope in SCOPES if scope.dimension != dimension_of(data)]
-    for scope in others:
-        for path, value, table in _found(data, scope.key.split("."), ()):
-            if _unset(scope, value) or not scope.holds(value, table):
-                continue
+    for scope, path, table in _foreign(data):
+        value = table[scope.name]
+        if not _unset(scope, value) and scope.holds(value, table):
             yield CaseProblem(path, scope.message(value), at_key=not scope.values)
+
+
+def leave_out(data: dict[str, Any]) -> None:
+    """Takes defaults out of a whole case, in place, that its dimension does not know."""
+    for scope, _, table in list(_foreign(data)):
+        if not scope.values:
+            del table[scope.name]
 
 
 def _unset(scope: Scope, value: Any) -> bool:
@@ -88,25 +97,30 @@ def _unset(scope: Scope, value: Any) -> bool:
     return value in ([], {}, scope.none)
 
 
-def _found(value: Any, steps: Sequence[str], path: KeyPath, table: Any = None) -> Iterator[tuple[KeyPath, Any, Any]]:
-    """Every place of a key path in plain data: path, value, the table around."""
-    if not steps:
-        yield path, value, table
-    elif isinstance(value, (list, tuple)):
-        for i, item in enumerate(value):
-            yield from _found(item, steps, (*path, i), table)
-    elif isinstance(value, dict):
-        names = list(value) if steps[0] == NAME else [steps[0]] if steps[0] in value else []
-        for name in names:
-            yield from _found(value[name], steps[1:], (*path, name), value)
-
-
-def leave_out(data: dict[str, Any]) -> None:
-    """Takes defaults out of a whole case, in place, that its dimension does not know."""
+def _foreign(data: dict[str, Any]) -> Iterator[tuple[Scope, KeyPath, dict[str, Any]]]:
+    """Keys in plain data that the other dimension alone knows, whatever their value: path, and the table around."""
+    here: dict[str, list[tuple[str, Scope]]] = {}
     for scope in SCOPES:
-        if scope.dimension != dimension_of(data) and not scope.values:
-            for path, _, table in list(_found(data, scope.key.split("."), ())):
-                del table[path[-1]]
+        if scope.dimension != dimension_of(data):
+            here.setdefault(scope.key.rpartition(".")[0], []).append((scope.name, scope))
+    for parent, scopes in here.items():
+        for path, table in _tables(data, parent.split(".") if parent else (), ()):
+            for name, scope in scopes:
+                if name in table:
+                    yield scope, (*path, name), table
+
+
+def _tables(value: Any, steps: Sequence[str], path: KeyPath) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
+    """Every table at a key path of plain data."""
+    if isinstance(value, (list, tuple)):
+        for i, item in enumerate(value):
+            yield from _tables(item, steps, (*path, i))
+    elif isinstance(value, dict) and not steps:
+        yield path, value
+    elif isinstance(value, dict):
+        for name in list(value) if steps[0] == NAME else steps[:1]:
+            if name in value:
+                yield from _tables(value[name], steps[1:], (*path, name))
 
 
 def known_in(path: Sequence[str], value: Any = None) -> int | None:

@@ -107,8 +107,8 @@ class Monitor(CaseModel):
     quantity: Literal["displacement", "rotation", "velocity", "acceleration", "opening", "slip"] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
-        "a joint: opening [m] (largest separation of its two ends, negative: pressed) or slip [m] of the second "
-        "block against the first, at the middle, along the normal turned by +90°",
+        "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
+        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(

@@ -23,6 +23,11 @@ class JointEnds(NamedTuple):
     normal: np.ndarray  # unit, from the first block to the second, (d,)
     on_first: np.ndarray  # from the centroid of the first block [m], (n, d)
     on_second: np.ndarray  # opposite places on the second, from its centroid [m], (n, d)
+    shares: np.ndarray  # of the joint that belong to each place, (n,)
+
+    def middles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Middle of the joint on both blocks, from their centroids [m], (d,) each."""
+        return self.shares @ self.on_first, self.shares @ self.on_second
 
 
 class StartJoints:
@@ -54,4 +59,4 @@ class StartJoints:
         joint, centroids = int(found.lengths.argmax()), self.model.centroids
         here = slice(found.starts[joint], found.starts[joint + 1])
         on_first, on_second = found.on_first[here] - centroids[first], found.on_second[here] - centroids[second]
-        return JointEnds(found.normals[joint], on_first, on_second)
+        return JointEnds(found.normals[joint], on_first, on_second, found.shares[here])

@@ -15,7 +15,7 @@ import numpy as np
 from dem_cli.contact.between import StartJoints
 from dem_cli.contact.joints import DrawnFaces
 from dem_cli.geometry.outlines import away_from, furthest
-from dem_cli.geometry.rotation import beside, tangents_of, turned_with
+from dem_cli.geometry.rotation import beside, tangents_of, turning
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, JointPlaces, JointStates
 
@@ -50,10 +50,10 @@ class DrawnJoints:
         faces, owners, n = self.faces, self.owners, len(self.places.area)
         moved, shifts = positions - self.model.centroids, []
         for block, arms in zip(self.blocks, self.arms, strict=True):
-            shifts.append(moved[block] + (turned_with(arms, orientations[block]) - arms))
+            shifts.append(moved[block] + (turning(orientations[block])(arms) - arms))
         apart = self.apart + shifts[1] - shifts[0]
         ends = faces.on_first + shifts[0] + 0.5 * apart
-        normals = turned_with(faces.normals, orientations[faces.blocks[:, 0]])
+        normals = turning(orientations[faces.blocks[:, 0]])(faces.normals)
         tangents = tangents_of(normals, beside(normals))
         gaps = (apart * normals[owners]).sum(axis=1)
         slides = [self._means((apart * along[owners]).sum(axis=1)) for along in tangents]

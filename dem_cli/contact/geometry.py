@@ -31,6 +31,9 @@ class JointGeometry(Protocol):
     def kept(self) -> Self:
         """The same with a copy of what changes."""
 
+    def settled(self) -> Self:
+        """What is still asked for when points stay where they were placed."""
+
 
 Geometry = TypeVar("Geometry", bound=JointGeometry)
 Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing

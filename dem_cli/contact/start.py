@@ -52,4 +52,5 @@ def joints_of_start(
     built = build_joints(model, faces, bodies, properties, n_memory)
     close_touching(built.contacts, smallest)
     bond_touching(model, built.joints, built.contacts, properties)
-    return built._replace(joints=in_planes(built.joints, built.contacts.gaps, bodies.positions))
+    planes = in_planes(built.joints, built.contacts.gaps, bodies.positions)
+    return built._replace(joints=planes, geometry=built.geometry.settled())

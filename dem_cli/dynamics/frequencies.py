@@ -31,7 +31,7 @@ class System(NamedTuple):
 
     rows: csr_array  # √k B M^(-1/2), (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
     geometric: csr_array | None  # M^(-1/2) G M^(-1/2) [1/s2], (n_free, n_free); None: left out
-    masses: np.ndarray  # [kg, kg m2], (n_free,)
+    masses: np.ndarray  # [kg, kg m2], (n_free_blocks, n_dof)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
     settings: FrequencySettings
 
@@ -46,7 +46,7 @@ class System(NamedTuple):
         """K [N/m, N, N m], (n_free, n_free)."""
         from scipy.sparse import diags_array
 
-        roots = diags_array(np.sqrt(self.masses))
+        roots = diags_array(np.sqrt(self.masses.ravel()))
         return (roots @ self.matrix @ roots).tocsr()
 
 
@@ -82,7 +82,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
         return found
     from scipy.sparse import diags_array
 
-    per_mass = diags_array(1.0 / np.sqrt(found.masses))
+    per_mass = diags_array(1.0 / np.sqrt(found.masses.ravel()))
     turning = geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies)
     return found._replace(geometric=(per_mass @ turning @ per_mass).tocsr())
 
@@ -95,11 +95,11 @@ def springs_of(
 
     d = model.dimension
     blocks = np.flatnonzero(~model.fixed)
-    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]]).ravel()
+    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]])
     springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
     if closed is not None:
         springs = springs * closed[:, None]
-    per_mass = diags_array(1.0 / np.sqrt(masses))
+    per_mass = diags_array(1.0 / np.sqrt(masses.ravel()))
     rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ per_mass).tocsr()
     rows.eliminate_zeros()
     return System(rows, None, masses, blocks, settings)
@@ -126,7 +126,7 @@ def limiting(sim: Simulation) -> Highest:
         return Highest(0.0, True, -1, -1)
     exact = vector is not None
     if vector is None:  # the degree of freedom with the largest bound
-        vector = np.zeros(len(found.masses))
+        vector = np.zeros(found.masses.size)
         vector[_gershgorin(found.matrix).argmax()] = 1.0
     block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1), found.settings.equal)]
     owner = sim.joints.owners
@@ -139,7 +139,7 @@ def limiting(sim: Simulation) -> Highest:
 def _largest(found: System) -> tuple[float, np.ndarray | None]:
     """Highest frequency [rad/s] and its mode times √M, (n_free,); no mode where the frequency is but a bound."""
     settings = found.settings
-    n = len(found.masses)
+    n = found.masses.size
     if n == 0 or found.rows.nnz == 0:
         return 0.0, np.zeros(n)
     matrix = found.matrix
@@ -160,8 +160,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
 
     The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
     """
-    n_free = len(found.blocks)
-    n_dof = len(found.masses) // max(n_free, 1)
+    masses, (n_free, n_dof) = found.masses, found.masses.shape
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
     held = np.repeat(strained, n_dof)
@@ -171,7 +170,6 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     vectors = flat.reshape(len(values), n_free, n_dof)
     still = values == 0.0
     loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > found.settings.equal).any(axis=0)
-    masses = found.masses.reshape(n_free, n_dof)
     moving = vectors[~still] / np.sqrt(masses)
     shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
     shapes = np.zeros((len(moving), n_blocks, n_dof))

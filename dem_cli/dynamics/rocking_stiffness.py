@@ -86,7 +86,7 @@ def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) ->
     """
     d = model.dimension
     found = springs_of(model, joints, settings=settings.frequency)
-    roots = np.sqrt(found.masses)
+    roots = np.sqrt(found.masses.ravel())
     dead = model.dead_loads[found.blocks]
     still = _solved(found, dead.ravel() / roots)
     points = len(joints.kn)

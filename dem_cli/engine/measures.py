@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.geometry import MOVING
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import quaternions, rotation_vectors
+from dem_cli.geometry.rotation import quaternions, rotation_vectors, turning
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
@@ -103,6 +104,17 @@ def closure(sim: Simulation) -> float:
     return float(error / largest) if largest > 0.0 else 0.0
 
 
+def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
+    """Where the contact points are now [m], (n_points, d); blocks: the first one of each.
+
+    Geometry that cannot move keeps its points where they were, however far its blocks go: these take them along.
+    """
+    if sim.model.dimension in MOVING:
+        return sim.joints.points
+    bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
+    return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
+
+
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
     joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
@@ -114,7 +126,7 @@ def contact_record(sim: Simulation) -> ContactRecord:
     return ContactRecord(
         joint=owner,
         blocks=joints.blocks[owner],
-        points=joints.points + sim.origin,
+        points=contact_points(sim, joints.blocks[owner, 0]) + sim.origin,
         normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
         shear_force=contacts.shear,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import across, angles_of, swept, turning
+from dem_cli.geometry.rotation import angles_of, beside, swept, tangents_of, turning
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -64,23 +64,27 @@ class PointMotion:
 
 
 class JointMonitors(NamedTuple):
-    """Pairs of points that lay opposite each other across joints: at its two ends for an opening, in the middle for a
-    slip. They are measured in the undeformed frame of the joint, which turns with the first block.
+    """Pairs of points that lay opposite each other across joints: at its ends or corners for an opening, in the middle
+    for a slip. They are measured in the undeformed frame of the joint, which turns with the first block.
     """
 
     first: np.ndarray  # points on the first block, (n_pairs,)
     second: np.ndarray  # and on the second
     apart: np.ndarray  # from the first to the second, undeformed [m], (n_pairs, d)
-    axes: np.ndarray  # along which they are measured, undeformed: the normal, or the tangent for a slip, (n_pairs, d)
+    axes: np.ndarray  # along which they are measured, undeformed: the normal, or a tangent for a slip, (n_pairs, d)
     begins: np.ndarray  # first pair of each of these monitors, (n,)
     columns: np.ndarray  # and its number among all, (n,)
+    lengths: np.ndarray  # whether its pairs are the two components of a slip in space, (n,) bool
 
     def fill(self, out: np.ndarray, motion: PointMotion) -> None:
-        """The largest of the pairs of each monitor [m], into its column of out (n, n_monitors)."""
+        """The largest of the pairs of each monitor, or the length of both [m], to its column of out (n, n_monitors)."""
         moved = motion.displacement
         distances = self.apart + moved[:, self.second] - moved[:, self.first]
         along = (distances * motion.turned(self.axes, self.first)).sum(axis=2)
-        out[:, self.columns] = np.maximum.reduceat(along, self.begins, axis=1)
+        largest = np.maximum.reduceat(along, self.begins, axis=1)
+        if self.lengths.any():
+            largest = np.where(self.lengths, np.sqrt(np.add.reduceat(along**2, self.begins, axis=1)), largest)
+        out[:, self.columns] = largest
 
 
 class PointMonitor(NamedTuple):
@@ -128,7 +132,8 @@ class Monitors:
         if pairs:
             first, second, apart, axes, columns = map(np.array, zip(*pairs, strict=True))
             unique, begins = np.unique(columns, return_index=True)
-            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique)
+            lengths = np.array([model.dimension > 2 and self.tables[k].quantity == "slip" for k in unique])
+            self._at_joints = JointMonitors(first, second, apart, axes, begins, unique, lengths)
         self._points = self._all_points()
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
@@ -185,11 +190,12 @@ class Monitors:
         self._joints = self._joints or StartJoints(self.model)
         ends = self._joints.ends(first, second)
         assert ends is not None  # assembly/validate.py
-        places, axis = list(zip(ends.on_first, ends.on_second, strict=True)), ends.normal
+        places = [(*pair, ends.normal) for pair in zip(ends.on_first, ends.on_second, strict=True)]
         if quantity == "slip":
-            places, axis = [(ends.on_first.mean(axis=0), ends.on_second.mean(axis=0))], across(ends.normal)
+            normal = ends.normal[np.newaxis]
+            places = [(*ends.middles(), tangent[0]) for tangent in tangents_of(normal, beside(normal))]
         rows = []
-        for on_first, on_second in places:
+        for on_first, on_second, axis in places:
             apart = self.model.centroids[second] + on_second - self.model.centroids[first] - on_first
             rows.append((self._point(first, on_first), self._point(second, on_second), apart, axis, column))
         return rows

@@ -25,10 +25,14 @@ def away_from(
 
 def furthest(places: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """Of each outline the two places that are furthest from each other, (n, 2)."""
-    found = np.empty((len(starts) - 1, 2), np.int64)
-    for joint, (first, after) in enumerate(zip(starts[:-1], starts[1:], strict=True)):
-        apart = ((places[first:after, None] - places[None, first:after]) ** 2).sum(axis=2)
-        found[joint] = first + np.sort(np.unravel_index(apart.argmax(), apart.shape))
+    counts, found = np.diff(starts), np.empty((len(starts) - 1, 2), np.int64)
+    for count in np.unique(counts):
+        joints = np.flatnonzero(counts == count)
+        first = starts[joints]
+        corners = places[first[:, np.newaxis] + np.arange(count)]
+        apart = ((corners[:, :, np.newaxis] - corners[:, np.newaxis]) ** 2).sum(axis=3).reshape(len(joints), -1)
+        pairs = np.stack(np.divmod(apart.argmax(axis=1), count), axis=1)
+        found[joints] = first[:, np.newaxis] + np.sort(pairs, axis=1)
     return found
 
 

@@ -23,13 +23,6 @@ def turned(vectors: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
     return turned_by(vectors, np.cos(angles), np.sin(angles))
 
 
-def turned_with(vectors: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-    """Vectors (n, d) turned by orientations (n, ·) as frames or solvers keep them, each by its own."""
-    if orientations.shape[1] == 1:
-        return turned(vectors, orientations[:, 0])
-    return (matrices(orientations) * vectors[:, np.newaxis]).sum(axis=2)
-
-
 def turned_as_one(vectors: np.ndarray, angle: float) -> np.ndarray:
     """Vectors (n, 2) turned about the origin by one angle [rad], as a product of matrices."""
     c, s = np.cos(angle), np.sin(angle)

@@ -71,6 +71,10 @@ class PlanarGeometry(NamedTuple):
     profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are plane
     sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
 
+    def settled(self) -> PlanarGeometry:
+        """What is still asked for when points stay where they were placed: all of it."""
+        return self
+
     def kept(self) -> PlanarGeometry:
         """The same with a copy of what changes."""
         return self._replace(sunk=self.sunk.copy())
@@ -106,6 +110,10 @@ class SpatialGeometry(NamedTuple):
     places: np.ndarray  # of the points, in the coordinates in which they were found [m], (n_points, 3)
     gaps: np.ndarray  # along the normal, positive open [m], (n_points,)
     areas: np.ndarray  # of the joints [m²], (n_joints,)
+
+    def settled(self) -> SpatialGeometry:
+        """What is still asked for when points stay where they were placed; these are then with the joints."""
+        return self._replace(axes=np.zeros((0, 9)), places=np.zeros((0, 3)), gaps=np.zeros(0))
 
     def kept(self) -> SpatialGeometry:
         """The same with a copy of what changes: nothing."""

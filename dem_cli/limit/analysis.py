@@ -14,7 +14,7 @@ from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
-from dem_cli.limit.cone import envelope_of, friction_of
+from dem_cli.limit.cone import envelope_of, friction_of, steep
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float], None]
 LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
+BOUNDED = (2,)  # dimensions in which these are known
 
 
 class LimitLoads(NamedTuple):
@@ -43,6 +44,21 @@ class LimitLoads(NamedTuple):
     lower: LowerBound | None = None  # below it nothing collapses; None where not asked for
     least: LeastLoad | None = None  # of joints that do not dilate; None where not asked for
 
+    @property
+    def head_friction(self) -> float | None:
+        """What friction of head joints takes in the associated mechanism, over the load: there they dilate and wedge.
+
+        None in the plane. Of walls that fail out of their plane the bound says little then: no real joint dilates.
+        """
+        found, joints = self.associated, self.structure.joints
+        if found.shear.shape[1] < 2 or not found.multiplier:
+            return None
+        motion = (self.structure.compatibility @ found.velocities.ravel()[self.structure.free]).reshape(
+            len(found.normal), -1
+        )
+        work = self.friction * found.normal * np.linalg.norm(motion[:, 1:], axis=1)
+        return float(work[steep(joints)].sum() / abs(found.multiplier))
+
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""
         found, ok = self.associated, self.associated.status == OK
@@ -55,6 +71,8 @@ class LimitLoads(NamedTuple):
             "iterations": found.iterations,
             "seconds": self.seconds,
         }
+        if (taken := self.head_friction) is not None:
+            said["associated_head_friction"] = taken
         for more in (self.lower, self.least):
             said |= more.summary() if more is not None else {}
         path = self.non_associated
@@ -86,9 +104,11 @@ def limit_loads(
     bounds              LOWER, LEAST or both, which take longer still
     progress            told the load and the displacement of every increment of the path (limit.path)
 
-    Raises UsageError without live loads, or where the strength of the law is not held by straight lines.
+    Raises UsageError without live loads, where the strength of the law is not held by straight lines, or where bounds
+    are not known in so many dimensions.
     """
     begun = time.perf_counter()
+    _require_known(model, bounds)
     structure = start_structure(model, properties, law)
     strength = envelope_of(structure.joints, law, heads_frictionless)
     associated = limit_load(structure, strength, settings.associated)
@@ -109,6 +129,13 @@ def limit_loads(
         found = found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
     left = envelope_of(structure.joints, law, heads_frictionless, residual=True)
     return _with_bounds(found, strength, left, bounds, settings)
+
+
+def _require_known(model: Model, bounds: Collection[str]) -> None:
+    """Bounds of joints that do not dilate have one shear force per joint: in space its points slide each their way."""
+    if bounds and model.dimension not in BOUNDED:
+        asked = " and ".join(f"--{name}" for name in sorted(bounds, reverse=True))
+        raise UsageError(f"{asked}: bounds of joints that do not dilate are known in 2D only; leave it out here")
 
 
 def _with_bounds(

@@ -227,9 +227,14 @@ def envelope_of(joints: Joints, law: Law, heads_frictionless: bool = False, resi
     found = strength(joints.law[joints.owners], joints.kn)
     if not heads_frictionless:
         return found
-    heads = np.abs(joints.frames[:, joints.points.shape[1] - 1]) < STEEP  # by the vertical part of the normal
-    smooth = {name: np.where(heads, 0.0, getattr(found, name)) for name in ("friction", "cohesion", "dilation")}
+    smooth = {name: np.where(steep(joints), 0.0, getattr(found, name)) for name in ("friction", "cohesion", "dilation")}
     return found._replace(**smooth)
+
+
+def steep(joints: Joints) -> np.ndarray:
+    """Points of head joints, steeper than 45° to the horizontal, (n_points,) bool."""
+    up = joints.points.shape[1] - 1  # the vertical part of the normals, which come first in the frames
+    return np.abs(joints.frames[:, up]) < STEEP
 
 
 def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> np.ndarray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from dem_cli.errors import KeyPath
 
 
@@ -29,8 +27,3 @@ class Block:
     fixed: bool = False
     across: tuple[float, float] | None = None
     path: KeyPath = field(default=(), compare=False)
-
-
-def block_corners(block: Block) -> np.ndarray:
-    """All corners of a block [m], (n, d)."""
-    return np.concatenate([getattr(part, "vertices", part) for part in block.parts])

@@ -145,7 +145,10 @@ _PLACE, _SHEAR = ("contact point", "coordinate"), ("contact point", "tangent")
 CONTACTS = {
     "joint": Described("joint that owns the point; numbered anew whenever joints are found anew", PURE, _POINT),
     "blocks": Described("the two blocks, by their numbers", PURE, ("contact point", "side"), ("a", "b")),
-    "points": _vector("where the force acts", "m", _PLACE),
+    "points": Described(
+        "where the force acts", "m", _PLACE, _XYZ[:2],
+        Described("where the force acts; it goes along with block a", "m", _PLACE, _XYZ),
+    ),
     "normals": _vector("unit vector from block a to block b", PURE, _PLACE),
     "normal_force": Described("normal force, compression positive", "N", _POINT),
     "shear_force": Described(

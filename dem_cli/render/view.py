@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
-from dem_cli.post.scene.axonometry import Axonometry, axonometry
+from dem_cli.post.scene.axonometry import Axonometry, axonometry, looks_right
 
 _PLANE = Axonometry(*np.eye(3))  # y is upwards
 _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # in the plane: from the structure to the eye
@@ -54,8 +54,12 @@ def _in_plane(model: Model, frames: Sequence[Frame], asked: Standpoint) -> Rende
 def _in_space(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
     farthest = max(frames, key=lambda frame: frame.displacement)
     axes = axonometry(model, farthest, asked.azimuth, asked.elevation, asked.view != "front")
-    upright = np.array([0.0, 0.0, 1.0])
-    return RenderedView(axes, Axonometry(axes.right, upright, np.cross(axes.right, upright)), True)
+    ahead = axes.eye + np.cross(axes.right, (0.0, 0.0, 1.0))  # half as high as the reader: tops and sides are lit
+    ahead /= np.linalg.norm(ahead)
+    left = (
+        -looks_right(model, axes) * axes.right
+    )  # light comes from the left of a reader: from where the wide side looks
+    return RenderedView(axes, Axonometry(left, np.cross(ahead, axes.right), ahead), True)
 
 
 _VIEWS: dict[int, Callable[[Model, Sequence[Frame], Standpoint], RenderedView]] = {2: _in_plane, 3: _in_space}

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.geometry.rotation import beside, matrices, unturned
+from dem_cli.geometry.rotation import beside, matrices, rotation_vectors, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.reader import Results
@@ -75,12 +75,8 @@ def view(results: Results) -> dict[str, Any]:
 
 def turns(orientations: np.ndarray) -> np.ndarray:
     """Rotation vectors [rad], (n, 3), of angles (n, 1) or of unit quaternions (n, 4), scalar first."""
-    if orientations.shape[1] == 1:
-        return np.column_stack((np.zeros((len(orientations), 2)), orientations))
-    sine = np.linalg.norm(orientations[:, 1:], axis=1)
-    angle = 2.0 * np.arctan2(sine, orientations[:, 0])
-    factor = np.divide(angle, sine, out=np.full(len(sine), 2.0), where=sine > 0.0)
-    return orientations[:, 1:] * factor[:, np.newaxis]
+    found = rotation_vectors(orientations)
+    return found if found.shape[1] == 3 else np.column_stack((np.zeros((len(found), 2)), found))
 
 
 def _shown(frames: Sequence[Frame]) -> list[Frame]:

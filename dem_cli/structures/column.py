@@ -41,7 +41,9 @@ class Column(StructureBase):
 
     kind: Literal["column"] = "column"
     block: tuple[Positive, Positive] | None = Field(
-        None, description="width at the foot and height of a block [m]", examples=[[0.5, 0.4]]
+        None,
+        description="width at the foot and height of a block, in 3D its thickness may follow [m]",
+        examples=[[0.5, 0.4]],
     )
     courses: int | None = Field(None, ge=1, le=10_000, description="number of blocks", examples=[8])
     top_width: Positive | None = Field(

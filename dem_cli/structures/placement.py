@@ -6,8 +6,9 @@ upright on the ground: blocks become prisms, half their thickness to either side
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -32,35 +33,35 @@ def full_id(prefix: str, local: str) -> str:
 
 def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dimension: int = 2) -> list[Block]:
     """Turns, then shifts the blocks of a generator; completes their ids and materials; notes their `path`."""
+    parts, others = PLACES[dimension](blocks, parameters)
     return [
         replace(
             block,
             id=full_id(parameters.id, block.id),
+            parts=tuple(next(parts) for _ in block.parts),
             material=block.material or parameters.material,
             path=path,
+            **others,
         )
-        for block in PLACES[dimension](blocks, parameters)
+        for block in blocks
     ]
 
 
-def in_the_plane(blocks: Sequence[Block], parameters: StructureBase) -> list[Block]:
-    """Blocks turned and shifted as drawn."""
+def planar_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
+    """Parts of all blocks in their final place, one after the other; other fields that change."""
     vertices = [part for block in blocks for part in block.parts]
     ends = np.cumsum([len(part) for part in vertices])[:-1]
     placed = polygon.moved(np.concatenate(vertices), parameters.rotation, parameters.origin)
-    parts = iter(np.split(placed, ends))
-    return [replace(block, parts=tuple(next(parts) for _ in block.parts)) for block in blocks]
+    return iter(np.split(placed, ends)), {}
 
 
-def in_space(blocks: Sequence[Block], parameters: StructureBase) -> list[Block]:
-    """Prisms of the blocks, turned in plan and shifted."""
+def spatial_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
+    """The same of prisms, turned in plan: their depth is in their corners."""
     drawn = [(part, *depth(block)) for block in blocks for part in block.parts]
     polygons, low, high = zip(*drawn, strict=True)
     prisms = polyhedron.prisms(polygons, np.array(low), np.array(high))
-    parts = iter(polyhedron.all_moved(prisms, parameters.rotation, parameters.origin))
-    return [
-        replace(block, parts=tuple(next(parts) for _ in block.parts), thickness=1.0, across=None) for block in blocks
-    ]
+    placed = polyhedron.all_moved(prisms, parameters.rotation, parameters.origin)
+    return iter(placed), {"thickness": 1.0, "across": None}
 
 
 def depth(block: Block) -> tuple[float, float]:
@@ -68,7 +69,8 @@ def depth(block: Block) -> tuple[float, float]:
     return block.across or (-block.thickness / 2.0, block.thickness / 2.0)
 
 
-PLACES: dict[int, Callable[[Sequence[Block], StructureBase], list[Block]]] = {2: in_the_plane, 3: in_space}
+Places = Callable[[Sequence[Block], StructureBase], tuple[Iterator[Any], dict[str, Any]]]
+PLACES: dict[int, Places] = {2: planar_places, 3: spatial_places}
 
 
 def aliases(structures: Mapping[str, Sequence[Block]]) -> dict[str, str]:

@@ -47,7 +47,11 @@ class Wall(StructureBase):
     """
 
     kind: Literal["wall"] = "wall"
-    block: tuple[Positive, Positive] = Field(description="length and height of a full block [m]", examples=[[0.4, 0.2]])
+    block: tuple[Positive, Positive] = Field(
+        description="length and height of a full block, in 3D its thickness may follow [m]",
+        examples=[[0.4, 0.2]],
+        json_schema_extra={"maxItems": 3},
+    )
     courses: int = Field(ge=1, le=10_000, description="number of courses", examples=[12])
     blocks_per_course: int = Field(
         ge=1,

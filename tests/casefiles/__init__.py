@@ -26,9 +26,14 @@ def read(path: Path) -> dict:
 
 
 def known_to_the_oracle(path: Path) -> bool:
-    """One kind of plane joint whose friction stays."""
+    """Blocks in the plane, one kind of plane joint whose friction stays."""
     (joint, *others) = read(path)["joints"].values()
-    return not others and joint.get("law", "coulomb") == "coulomb" and not {"profile", "softening"} & set(joint)
+    return (
+        read(path).get("dimension", 2) == 2
+        and not others
+        and joint.get("law", "coulomb") == "coulomb"
+        and not {"profile", "softening"} & set(joint)
+    )
 
 
 def references(path: Path) -> list[dict]:

@@ -125,6 +125,19 @@ def test_build_writes_the_geometry(tmp_path):
     assert sum(len(cells.data) for cells in mesh.cells) == 23
 
 
+def test_build_writes_solids_of_a_structure_in_space(tmp_path):
+    import meshio
+
+    path = tmp_path / "model.vtu"
+    result = dem("build", str(TEMPLATES / "out-of-plane.toml"), "-o", str(path))
+    assert result.exit_code == 0
+    mesh = meshio.read(path)
+    assert {cells.type for cells in mesh.cells} == {"hexahedron"}
+    n_blocks = sum(len(cells.data) for cells in mesh.cells)
+    assert result.stdout == f"{n_blocks} blocks written to {path}\n"
+    assert len(mesh.points) == 8 * n_blocks
+
+
 def test_build_where_nothing_can_be_written(tmp_path):
     (tmp_path / "file").touch()
     result = dem("build", str(TEMPLATES / "arch.toml"), "-o", str(tmp_path / "file" / "model.vtu"))

@@ -19,12 +19,14 @@ EXTRA = """
 [[interface]]
 between = ["a", "b"]
 joint = "dry"
-[[settlement]]
-block = "base"
-displacement = [0.0, -0.01]
 [reference]
 failure_load = 0.5
 tolerance = 0.01
+"""
+EXTRA_IN_THE_PLANE = """
+[[settlement]]
+block = "base"
+displacement = [0.0, -0.01]
 """
 QUICK = settings(deadline=None, max_examples=150, suppress_health_check=list(HealthCheck))
 
@@ -66,7 +68,7 @@ def outcome(path: Path, overrides: tuple[str, ...] = ()) -> None:
 @given(data=st.data())
 @QUICK
 def test_any_value_or_key(tmp_path, text, data):
-    tables = tomllib.loads(text + EXTRA)
+    tables = tomllib.loads(text + EXTRA + EXTRA_IN_THE_PLANE * ("dimension = 3" not in text))
     for _ in range(data.draw(st.integers(1, 3))):
         places = list(nodes(tables))
         holder, key, _ = places[data.draw(st.integers(0, len(places) - 1))]

@@ -85,26 +85,60 @@ def extruded(model: Model, joints: Joints, depth: float = DEPTH) -> tuple[Model,
     )
 
 
-def panel(courses: int, per_course: int, block: Sequence[float]) -> tuple[list[Solid], list[Face]]:
-    """A running-bond wall of blocks (length, depth, height) on a fixed base, along x and around y = 0."""
+def prism_on(corners: np.ndarray, height: float, area: float = 1.0) -> tuple[list[Solid], list[Face]]:
+    """One upright prism of weight one over these corners, on ground at z = 0."""
+    middle = (*np.mean(corners, axis=0)[:2], 0.5 * height)
+    return [Solid((0.0, 0.0, -1.0), fixed=True), Solid(middle)], [Face(0, 1, (0, 0, 1), corners, area)]
+
+
+def wedge(half_angle: float) -> tuple[list[Solid], list[Face]]:
+    """A long wedge in a groove along x with that half angle [rad]."""
+    rise, faces = 0.5 / np.tan(half_angle), []
+    for side in (-1.0, 1.0):
+        corners = [(x, side * y, z) for x in (-2.0, 2.0) for y, z in ((0.0, 0.0), (0.5, rise))]
+        faces.append(Face(0, 1, (0.0, -side * np.cos(half_angle), np.sin(half_angle)), corners))
+    return [Solid((0.0, 0.0, -1.0), fixed=True), Solid((0.0, 0.0, 2.0 / 3.0 * rise))], faces
+
+
+def panel(
+    courses: int, per_course: int, block: Sequence[float], offset: float = 0.5, held: float = 0.0
+) -> tuple[list[Solid], list[Face]]:
+    """A wall of blocks (length, depth, height) on a fixed base, along x and around y = 0.
+
+    offset: of every other course, in blocks; held: length of what it leans on behind (+y) both ends [m].
+    """
     length, depth, height = block
+    end = per_course * length
     solids, faces = [Solid((0.0, 0.0, -height), fixed=True)], []
-    below = [(0, 0.0, per_course * length)]  # number, from, to
+    posts = [(0.0, held), (end - held, end)] if held else []
+    solids += [Solid((0.5 * (x0 + x1), depth, 0.0), fixed=True) for x0, x1 in posts]
+    below = [(0, 0.0, end)]  # number, from, to
     for course in range(courses):
-        inner = length * (np.arange(per_course + course % 2 + 1) - 0.5 * (course % 2))
-        cuts = np.clip(inner, 0.0, per_course * length)
-        here = [(len(solids) + i, x0, x1) for i, (x0, x1) in enumerate(zip(cuts, cuts[1:]))]
+        shift = offset * (course % 2)
+        cuts = np.unique(np.clip(length * (np.arange(per_course + 2) - 1.0 + shift), 0.0, end))
+        here = [(len(solids) + i, x0, x1) for i, (x0, x1) in enumerate(zip(cuts, [*cuts[1:], end]))]
+        here = [(i, x0, x1) for i, x0, x1 in here if x1 > x0]
         z = course * height
         solids += [Solid((0.5 * (x0 + x1), 0.0, z + 0.5 * height), (x1 - x0) / length) for _, x0, x1 in here]
-        for a, a0, a1 in below:
-            for b, b0, b1 in here:
-                low, high = max(a0, b0), min(a1, b1)
-                if high - low > 1e-9 * length:
-                    faces.append(Face(a, b, (0, 0, 1), box((low, high), depth, (z, z)), (high - low) * depth))
-        for (a, _, x), (b, _, _) in zip(here, here[1:]):
-            faces.append(Face(a, b, (1, 0, 0), box((x, x), depth, (z, z + height)), depth * height))
+        faces += [Face(a, b, (0, 0, 1), box((x0, x1), depth, (z, z)), (x1 - x0) * depth)
+                  for a, b, x0, x1 in shared(below, here)]  # fmt: skip
+        faces += [Face(a, b, (1, 0, 0), box((x, x), depth, (z, z + height)), depth * height)
+                  for (a, _, x), (b, _, _) in zip(here, here[1:])]  # fmt: skip
+        behind = [(k, *post) for k, post in enumerate(posts, start=1)]
+        for a, b, x0, x1 in shared(here, behind):
+            corners = [(x, 0.5 * depth, h) for x in (x0, x1) for h in (z, z + height)]
+            faces.append(Face(a, b, (0, 1, 0), corners, (x1 - x0) * height))
         below = here
     return solids, faces
+
+
+Span = tuple[int, float, float]  # number of a solid, from, to
+
+
+def shared(one: Sequence[Span], other: Sequence[Span]) -> list[tuple[int, int, float, float]]:
+    """What spans of two rows have in common."""
+    pairs = [(a, b, max(a0, b0), min(a1, b1)) for a, a0, a1 in one for b, b0, b1 in other]
+    return [pair for pair in pairs if pair[3] - pair[2] > 1e-9]
 
 
 def box(xs: Sequence[float], depth: float, zs: Sequence[float]) -> np.ndarray:

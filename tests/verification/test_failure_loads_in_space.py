@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from engine import solve
 from studies.space.by_hand import BY_HAND
-from studies.space.structures import box, frustum, mirrored, quarter, regular, tables, towards
+from studies.space.structures import mirrored, quarter
+from studies.space.walls import tapered_drums
 
 RESOLUTION = 5e-4
 
@@ -25,16 +26,6 @@ def load_of(case: dict, **analysis) -> float:
 def test_load_by_hand(name):
     known = BY_HAND[name]
     assert load_of(known.case) == pytest.approx(known.load, rel=known.tolerance)
-
-
-def tapered_drums() -> dict:
-    ground = box("ground", (-1.0, -1.0, -0.3), (1.0, 1.0, 0.0), fixed=True)
-    radii = [0.40, 0.36, 0.32, 0.28]
-    drums = [
-        frustum(f"drum-{k}", regular(6, low), regular(6, high), 0.5 * k, 0.5 * (k + 1))
-        for k, (low, high) in enumerate(zip(radii, radii[1:]))
-    ]
-    return tables(ground, *drums, friction=0.7, direction=towards(20.0))
 
 
 @pytest.mark.parametrize("change", [quarter, mirrored])

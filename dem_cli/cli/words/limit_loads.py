@@ -14,6 +14,15 @@ LEAST_OF = {  # what is known of other collapse states
 }
 
 
+WEDGED = "head joints dilate in it and wedge: out of plane such a bound can be several times too high"
+SLIGHT = 0.01  # of the load: what head joints may take before this is said
+
+
+def wedged(limits: Mapping[str, Any]) -> bool:
+    """Whether friction of head joints that dilate carries some of the associated load, in space."""
+    return (limits.get("associated_head_friction") or 0.0) > SLIGHT
+
+
 def limit_rows(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each load, from the highest to the lowest; `limit_analysis` of a summary."""
     return [*_associated(limits), *_path(limits), *_least(limits), *_lower(limits), *_hand_check(limits)]
@@ -24,7 +33,8 @@ def _associated(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
         return []
     low, high = limits["associated_bounds"]
     how = f"upper bound, between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
-    return [("associated", f"{load_text(limits['associated'])}  ({how})")]
+    rows = [("associated", f"{load_text(limits['associated'])}  ({how})")]
+    return [*rows, ("", WEDGED)] if wedged(limits) else rows
 
 
 def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from dem_cli.cli.words.limit_loads import WEDGED, wedged
 from dem_cli.cli.words.numbers import load_text, seconds
 from dem_cli.cli.words.reference import reference_rows
 
@@ -29,6 +30,8 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     if known:
         text = ", ".join(f"{load_text(limits[key])} {key.replace('_', '-')}" for key in known)
         rows.append(("limit analysis", text))
+        if wedged(limits):
+            rows.append(("", f"associated: {WEDGED}"))
     return rows + reference_rows(summary)
 
 

@@ -21,6 +21,7 @@ from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
 
 Fields = Mapping[str, np.ndarray]
+_OF_TRIANGLES = (".stl",)  # formats that know no other faces
 _TYPES = {
     np.dtype(np.float32): "Float32",
     np.dtype(np.float64): "Float64",
@@ -71,7 +72,12 @@ def _write_foreign(path: Path, model: Model, vertices: np.ndarray) -> None:
     import meshio
 
     starts, corners = outlines(model)
-    cells = [("polygon", corners[a:b][np.newaxis]) for a, b in zip(starts, starts[1:])]
+    loops = [corners[a:b] for a, b in zip(starts, starts[1:])]
+    if path.suffix.lower() in _OF_TRIANGLES:
+        fans = [np.column_stack([np.full(len(loop) - 2, loop[0]), loop[1:-1], loop[2:]]) for loop in loops]
+        cells = [("triangle", np.concatenate(fans))]
+    else:
+        cells = [("polygon", loop[np.newaxis]) for loop in loops]
     try:
         meshio.Mesh(vertices, cells).write(path)
     except (meshio.ReadError, meshio.WriteError, KeyError, SystemExit) as error:

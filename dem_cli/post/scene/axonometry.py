@@ -15,6 +15,7 @@ from dem_cli.output.record import Frame
 
 AZIMUTH_ASIDE, ELEVATION = 32.0, 22.0  # degrees: from the middle of the wide side, and above the ground
 _STILL = 1e-12  # of the size of the structure: who moves less does not move
+_STRAIGHT = 0.05  # of the motion: one so small to a side is none
 
 
 class Axonometry(NamedTuple):
@@ -48,6 +49,13 @@ def wide_side(model: Model) -> np.ndarray:
     return np.eye(2)[int(extents[1] > extents[0])]
 
 
+def looks_right(model: Model, view: Axonometry) -> float:
+    """1 where the wide side that is seen looks to the right of the reader, −1 where it looks to the left."""
+    along = wide_side(model)
+    normal = np.array([-along[1], along[0], 0.0])
+    return float(np.sign(normal @ view.eye) * np.sign(normal @ view.right) or -1.0)
+
+
 def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) -> float:
     """Azimuth in degrees from which most is seen: of the wide side, from where the blocks move to in this frame.
 
@@ -55,12 +63,13 @@ def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) 
     """
     free = ~model.fixed if not model.fixed.all() else model.fixed
     along = wide_side(model)
-    across = np.array([along[1], -along[0]])
+    across = np.array([along[1], -along[0]])  # −y of a wall along x
     motion = np.zeros(2)
     if frame is not None:
         moved = (frame.positions - model.centroids)[free, :2]
         motion = moved.sum(axis=0) if np.abs(moved).max() > _STILL * np.ptp(model.centroids, axis=0).max() else motion
-    sides = [vector if motion @ vector >= 0.0 else -vector for vector in (across, along)]
+    least = -_STRAIGHT * np.linalg.norm(motion)
+    sides = [vector if motion @ vector >= least else -vector for vector in (across, along)]
     turn = np.radians(aside)
     eye = np.cos(turn) * sides[0] + np.sin(turn) * sides[1]
     return float(np.degrees(np.arctan2(eye[1], eye[0])))

@@ -11,13 +11,13 @@ from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
-from dem_cli.post.scene.axonometry import Axonometry
+from dem_cli.post.scene.axonometry import Axonometry, looks_right
 from dem_cli.post.scene.hidden_surfaces import NOTHING, SeenSurface, Window, seen_surface, window_of
 from dem_cli.post.scene.joint_strokes import visible_strokes
 from dem_cli.post.scene.plane_drawing import joint_width, state_colour
 
 _FINEST = 1800  # pixels along the longer side of a picture
-_LIGHT = (-0.14, 0.20, 0.06)  # to the right, upwards, towards the reader: how it changes the colour of a face
+_LIGHT = (0.14, 0.20, 0.06)  # to where the wide side looks, upwards, to the reader: how it changes the colour of a face
 _AMBIENT = 0.84
 _SAME_PLANE = 1e-4  # of the size of the structure: faces of one block that close to one plane are one
 _PIECE = 4.0  # pixels of a stroke that are seen or hidden as one
@@ -37,6 +37,7 @@ class SpaceDrawing:
         self.model, self.view = model, view
         self.starts, self.corners = model.topology.face_starts, model.topology.face_corners
         self.owners = model.part_blocks[model.topology.face_parts]
+        self.lit_from = looks_right(model, view)
         self.seen: SeenSurface | None = None
 
     def flat(self, points: np.ndarray) -> np.ndarray:
@@ -72,7 +73,8 @@ class SpaceDrawing:
         self.seen = seen = seen_surface(places, self.starts, self.corners, window)
         normals, sheets = self._sheets(places)
         stone = np.where(self.model.fixed[self.owners, np.newaxis], to_rgb(style.GROUND), to_rgb(style.STONE))
-        lit = np.clip(stone * (_AMBIENT + normals @ np.array(_LIGHT))[:, np.newaxis], 0.0, 1.0)
+        light = np.array(_LIGHT) * (self.lit_from, 1.0, 1.0)
+        lit = np.clip(stone * (_AMBIENT + normals @ light)[:, np.newaxis], 0.0, 1.0)
         colours = np.rint(255.0 * np.concatenate([lit, [(1.0, 1.0, 1.0)]])).astype(np.uint8)  # the last one: nothing
         picture = colours[seen.faces]
         picture[_edges(np.append(sheets, NOTHING)[seen.faces])] = np.rint(255.0 * np.array(to_rgb(style.STONE_EDGE)))
@@ -129,10 +131,10 @@ class SpaceDrawing:
         axis.add_collection(LineCollection(list(lines), colors=colours, linewidths=width, capstyle="butt", zorder=3))
 
     def finish(self, axis: Any) -> None:
-        """Arrows that show where x, y and z point."""
+        """Arrows that show where x, y and z point, in the corner from which the foot of the structure recedes."""
         (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
         length = _TRIAD * max(right - left, high - low)
-        at = np.array([left + 1.5 * length, low + 1.5 * length])
+        at = np.array([left + 1.5 * length if self.lit_from < 0.0 else right - 1.5 * length, low + 1.5 * length])
         for name, direction in zip("xyz", np.eye(3)):
             tip = at + length * self.view.flat(direction[np.newaxis])[0]
             arrow = {"arrowstyle": "-|>", "color": style.GREY, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}

@@ -1,5 +1,5 @@
 // What is drawn on the blocks of a scene: joints by their state, forces, and the outline of the start. In the plane all of
-// it stands before the blocks, whatever the direction of the look; in space blocks hide joints, but not forces.
+// it stands before the blocks, whatever the direction of the look; in space blocks hide all but forces.
 
 const WIDEST_FORCE = 0.16; // of the smaller side of an ordinary block
 const LONGEST_FORCE = 0.42; // of the smaller side of the smaller block, to either side of the joint
@@ -13,7 +13,7 @@ class Marks {
     this.joints = new THREE.LineSegments2(new THREE.LineSegmentsGeometry(), this.jointLook);
     this.forceLook = new THREE.MeshBasicMaterial({ ...over, opacity: 0.85 });
     this.bar = new THREE.BoxGeometry(1, 1, 1);
-    this.ghostLook = new THREE.LineBasicMaterial({ ...over, opacity: 0.65 });
+    this.ghostLook = new THREE.LineBasicMaterial({ ...among, opacity: 0.65 });
     this.looks = [this.jointLook, this.forceLook, this.ghostLook];
     this.ghost = new THREE.LineSegments(this.outline(), this.ghostLook);
     [this.ghost, this.joints].forEach((thing, i) => {

@@ -76,6 +76,18 @@ def test_a_structure_is_turned_in_plan_and_shifted(angle, x, y, z):
     assert moved.masses[order] == pytest.approx(still.masses, rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["wall", "column"])
+def test_a_thickness_within_the_block(kind, structures, space, case_of):
+    table = structures[kind]
+    within = {key: value for key, value in table.items() if key != "thickness"}
+    within["block"] = [*table["block"], table["thickness"]]
+    assert space(structure=[within]).masses.tolist() == space(structure=[table]).masses.tolist()
+    with pytest.raises(CaseError, match="block and thickness say the same; give one of them"):
+        space(structure=[within | {"thickness": 0.1}])
+    with pytest.raises(CaseError, match="must be a list of 2 numbers > 0"):
+        case_of(structure=[within])
+
+
 def test_blocks_are_numbered_from_the_lowest_up_along_x_then_y(space, wall):
     across = space(structure=[wall | {"rotation_deg": 90.0}])
     assert across.block_ids[:5] == ("wall-base", "wall-1-1", "wall-1-2", "wall-1-3", "wall-1-4")

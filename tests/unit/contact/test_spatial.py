@@ -30,8 +30,8 @@ def corners_of(model, block: int) -> np.ndarray:
 
 def share_a_point(a: np.ndarray, b: np.ndarray) -> bool:
     """Whether two hulls have a point in common: a linear program over the weights of their corners."""
-    equal = np.zeros((5, len(a) + len(b)))
-    equal[:3, : len(a)], equal[:3, len(a) :] = a.T, -b.T
+    equal, near = np.zeros((5, len(a) + len(b))), a.mean(axis=0)  # far from the origin its tolerance would be wide
+    equal[:3, : len(a)], equal[:3, len(a) :] = (a - near).T, (near - b).T
     equal[3, : len(a)] = equal[4, len(a) :] = 1.0
     return linprog(np.zeros(equal.shape[1]), A_eq=equal, b_eq=[0, 0, 0, 1, 1], method="highs").status == 0
 

@@ -14,7 +14,7 @@ from engine import block, rectangle, running_wall, scene, tables
 from engine.limits import on_a_base
 from oracle.strong_joints import Points, toppling_load
 from scipy.optimize import linprog
-from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, turned
+from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, prism_on, turned, wedge
 
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.laws.envelope import Envelope, envelope, frictional
@@ -27,7 +27,6 @@ NEAR = 1e-6  # relative
 WIDTH, DEPTH, HEIGHT = 0.3, 0.5, 1.0  # of a block that topples; of weight one
 GROUND = Solid((0.0, 0.0, -1.0), fixed=True)
 AZIMUTHS = [0.0, 20.0, 50.0, 75.0, 90.0, 130.0, 265.0]
-UP = (0.0, 0.0, 1.0)
 
 
 def horizontal(azimuth_deg: float) -> np.ndarray:
@@ -39,18 +38,17 @@ def structure(solids: Sequence[Solid], faces: Sequence[Face], push: Sequence[flo
     return structure_of(model, joints_of(model, faces))
 
 
-def on_ground(corners: np.ndarray, height: float, push: Sequence[float], area: float = 1.0, **more) -> Structure:
+def on_ground(corners: np.ndarray, height: float, push: Sequence[float]) -> Structure:
     """One prism of weight one on these corners, pushed at half its height."""
-    middle = (*np.mean(corners, axis=0)[:2], 0.5 * height)
-    return structure([GROUND, Solid(middle)], [Face(0, 1, UP, corners, area)], push, **more)
+    return structure(*prism_on(corners, height), push)
 
 
-def flat_block(push: Sequence[float], **more) -> Structure:
-    return on_ground(box((-0.5, 0.5), 1.0, (0.0, 0.0)), 0.1, push, **more)
+def flat_block(push: Sequence[float]) -> Structure:
+    return on_ground(box((-0.5, 0.5), 1.0, (0.0, 0.0)), 0.1, push)
 
 
-def tall_block(push: Sequence[float], **more) -> Structure:
-    return on_ground(box((-0.5 * WIDTH, 0.5 * WIDTH), DEPTH, (0.0, 0.0)), HEIGHT, push, **more)
+def tall_block(push: Sequence[float]) -> Structure:
+    return on_ground(box((-0.5 * WIDTH, 0.5 * WIDTH), DEPTH, (0.0, 0.0)), HEIGHT, push)
 
 
 def solved(made: Structure, strength: float | Envelope) -> LimitLoad:
@@ -122,21 +120,11 @@ def test_a_block_on_a_slope(direction):
 
 def test_a_wedge_along_its_groove_is_pressed_by_dilation():
     """Associated flow lifts the wedge, and friction holds it down: μ / √(sin² h − μ² cos² h), where real joints have
-    μ / sin h (test_lorentz_path)."""
+    μ / sin h (test_path_in_space)."""
     half, friction = np.radians(50.0), 0.25
     expected = friction / np.sqrt(np.sin(half) ** 2 - (friction * np.cos(half)) ** 2)
     assert expected == pytest.approx(0.33378, abs=5e-6)
-    assert load(wedge(half), friction) == pytest.approx(expected, rel=NEAR)
-
-
-def wedge(half_angle: float) -> Structure:
-    """A wedge in a groove along x with half that angle, pushed along it."""
-    rise = 0.5 / np.tan(half_angle)
-    faces = []
-    for side in (-1.0, 1.0):
-        corners = [(x, side * y, z) for x in (-2.0, 2.0) for y, z in ((0.0, 0.0), (0.5, rise))]
-        faces.append(Face(0, 1, (0.0, -side * np.cos(half_angle), np.sin(half_angle)), corners))
-    return structure([GROUND, Solid((0.0, 0.0, 2.0 / 3.0 * rise))], faces, (1.0, 0.0, 0.0))
+    assert load(structure(*wedge(half), (1.0, 0.0, 0.0)), friction) == pytest.approx(expected, rel=NEAR)
 
 
 @pytest.mark.parametrize("azimuth", [90.0, 60.0])

@@ -156,6 +156,17 @@ def test_faces_for_other_programs(run, tmp_path):
     assert {len(face) for face in faces} == {4}
 
 
+def test_triangles_for_programs_that_know_no_other_faces(run, tmp_path):
+    """The surface of STL encloses the volume of the blocks."""
+    write_geometry(tmp_path / "model.stl", run[1])
+    lines = [line.split() for line in (tmp_path / "model.stl").read_text(encoding="ascii").splitlines()]
+    corners = np.array([line[1:] for line in lines if line and line[0] == "vertex"], float)
+    a, b, c = (corners[k::3] for k in range(3))
+    assert len(a) == 12 * run[1].n_blocks
+    enclosed = np.einsum("nk,nk->n", a, np.cross(b, c)).sum() / 6.0
+    assert enclosed == pytest.approx(run[1].masses.sum() / DENSITY, rel=1e-5)
+
+
 def test_series_for_older_paraview(run, tmp_path):
     series = export_pvd(read(run[0]), tmp_path)
     assert [path.name for path in series] == ["blocks.pvd", "contacts.pvd"]

@@ -1,0 +1,31 @@
+"""Walls of 20 × 10 × 0.8 m out of their plane (Lemos 2019, 3.2 and 3.3): six patterns, and what is printed of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dem_cli import api
+from studies.places import CASES
+from studies.solution import from_file
+from studies.space.measure import dem, limits
+
+FILE = CASES / "validation" / "lemos_wall.toml"
+PATTERNS = {  # length of blocks and offset [m]: what a prototype of this solver found
+    (1.0, 0.0): 0.0802,
+    (1.0, 0.1): 0.2156,
+    (1.0, 0.5): 0.1973,
+    (2.0, 0.0): 0.0800,
+    (2.0, 0.1): 0.2840,
+    (2.0, 0.5): 0.2855,
+}
+
+
+def measure() -> list[dict[str, Any]]:
+    """All patterns."""
+    rows = []
+    for length, offset in PATTERNS:
+        keys = {"block": [length, 1.0], "blocks_per_course": round(20.0 / length), "offset": offset}
+        loaded = from_file(FILE, *(f"structure.0.{key}={value}" for key, value in keys.items()))
+        case, model = loaded.case, api.build_model(loaded)
+        rows.append({"name": f"{length:g} × 1 m, offset {offset:g} m"} | dem(case, model) | limits(case, model))
+    return rows
