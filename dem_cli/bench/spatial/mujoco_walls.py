@@ -56,7 +56,6 @@ class MujocoWorld:
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         mujoco.mj_forward(self.model, self.data)  # without a step: places are known
-        self.steps = 0
 
     def tilt(self, load: float) -> None:
         """Turn gravity so that its horizontal part is the load multiplier."""
@@ -64,7 +63,6 @@ class MujocoWorld:
 
     def step(self, steps: int) -> None:
         """Advance by so many steps."""
-        self.steps += steps
         self.mujoco.mj_step(self.model, self.data, steps)
 
     def places(self) -> np.ndarray:

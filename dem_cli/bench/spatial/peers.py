@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import statistics
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,6 +21,7 @@ LARGE_CASE = "wall 205"  # in MuJoCo minutes
 RESOLUTIONS = (0.02, 0.005, 0.002)  # of dem
 RESOLUTION, COARSE = 0.005, 0.05  # of the bisections elsewhere, and of MuJoCo's of the large case
 LIMIT, EXACT = "dem limit", "exact cones"
+STEP, STEPS = "MuJoCo, a step", 100  # steps after as many under half of the load
 SEARCHES, STATICS = (DEM, mujoco_walls.NAME), (LIMIT, compas_walls.NAME)
 
 
@@ -63,10 +63,13 @@ def measure(options: BenchOptions) -> GroupResult:
         else:
             rows += [row for problem in problems for row in rows_of(problem, options)]
     if not options.long:
-        found.notes.append(f"{LARGE_CASE} in MuJoCo was left out (`--long` measures it)")
+        found.notes.append(f"the load of {LARGE_CASE} in MuJoCo was left out (`--long` measures it, in ten minutes)")
     in_turn([row.job for row in rows], options.rounds(2), long=1.0)
     for row in rows:
-        found.records.append(record(row.known.name, row.program, row.setting, row.job.seconds, **row.job.result))
+        times, unit = row.job.seconds, "s"
+        if row.program == STEP:
+            times, unit = [1000.0 * seconds / STEPS for seconds in times], "ms"
+        found.records.append(record(row.known.name, row.program, row.setting, times, unit, **row.job.result))
     return found
 
 
@@ -80,10 +83,12 @@ def _in_mujoco(problem: BoxProblem, options: BenchOptions) -> list[Row]:
     large = problem.known.name == LARGE_CASE
     resolution = 0.1 if options.quick else COARSE if large else RESOLUTION
     chosen = [s for s in mujoco_walls.SETTINGS if (s.wide and options.long) or not large]
-    return [
+    rows = [
         Row(problem.known, mujoco_walls.NAME, setting.name, tilted(problem, setting, resolution))
         for setting in (chosen[:1] if options.quick else chosen)
     ]
+    best = mujoco_walls.SETTINGS[-1]
+    return [*rows, Row(problem.known, STEP, best.name, stepped(problem, best))]
 
 
 def tilted(problem: BoxProblem, setting: tilting.EngineSettings, resolution: float) -> TimedTask:
@@ -91,16 +96,28 @@ def tilted(problem: BoxProblem, setting: tilting.EngineSettings, resolution: flo
     known, boxes, friction, direction = problem
 
     def run() -> dict[str, Any]:
-        worlds: list[mujoco_walls.MujocoWorld] = []
-
-        def make() -> mujoco_walls.MujocoWorld:
-            worlds.append(mujoco_walls.MujocoWorld(boxes, friction, direction, setting))
-            return worlds[-1]
-
-        found = tilting.failure_load(make, setting, friction, resolution)
-        return found | {"error": known.error(found["load"]), "steps": sum(world.steps for world in worlds)}
+        found = tilting.failure_load(
+            lambda: mujoco_walls.MujocoWorld(boxes, friction, direction, setting), setting, friction, resolution
+        )
+        return found | {"error": known.error(found["load"])}
 
     return TimedTask(run)
+
+
+def stepped(problem: BoxProblem, setting: tilting.EngineSettings) -> TimedTask:
+    """Steps of MuJoCo under half of the load that the structure carries."""
+    worlds: list[mujoco_walls.MujocoWorld] = []
+
+    def prepare() -> None:
+        worlds[:] = [mujoco_walls.MujocoWorld(problem.boxes, problem.friction, problem.direction, setting)]
+        worlds[0].tilt(0.5 * problem.known.load)
+        worlds[0].step(STEPS)
+
+    def run() -> dict[str, Any]:
+        worlds[0].step(STEPS)
+        return {}
+
+    return TimedTask(run, prepare)
 
 
 def _in_compas(problem: BoxProblem, options: BenchOptions) -> list[Row]:
@@ -123,7 +140,7 @@ def balanced(problem: BoxProblem, tension: float) -> TimedTask:
 
 
 def page(records: list[Measurement]) -> list[str]:
-    """What was done, a table of failure loads, one of associated loads, and what a step costs."""
+    """What was done, a table of failure loads, one of associated loads, and what a step of MuJoCo costs."""
     names = tuple(KNOWN_IN_SPACE)
     lines = [*PAGE_TEXT]
     for title, programs in (("Failure loads", SEARCHES), ("Associated loads: statics alone", STATICS)):
@@ -133,13 +150,9 @@ def page(records: list[Measurement]) -> list[str]:
 
 
 def _steps(records: list[Measurement]) -> str:
-    """CPU time of a step in MuJoCo, in the middle of several."""
-    by_case: dict[str, list[float]] = {}
-    for r in records:
-        if r.axis == mujoco_walls.NAME:
-            by_case.setdefault(r.case, []).append(1000.0 * r.best / r.found["steps"])
-    costs = ", ".join(f"{case} {statistics.median(costs):.2g} ms" for case, costs in by_case.items())
-    return f"A step of {mujoco_walls.NAME}, the median of its settings: {costs}." if costs else ""
+    """CPU time of a step in MuJoCo."""
+    costs = ", ".join(f"{r.case} {r.best:.2g} ms" for r in records if r.axis == STEP)
+    return f"A step of MuJoCo under half of the load, with its last setting: {costs}." if costs else ""
 
 
 def picture(records: list[Measurement], path: Path) -> None:

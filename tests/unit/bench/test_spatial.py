@@ -130,7 +130,7 @@ def test_programs_that_are_not_installed_are_named(monkeypatch):
     monkeypatch.setattr(peers, "find_spec", lambda name: None)
     found = peers.measure(BenchOptions(quick=True))
     assert {record.axis for record in found.records} == {"dem", "dem limit"}
-    assert [note.split(" was")[0] for note in found.notes] == ["MuJoCo", "compas_cra", "wall 205 in MuJoCo"]
+    assert [note.split(" was")[0] for note in found.notes] == ["MuJoCo", "compas_cra", "the load of wall 205 in MuJoCo"]
 
 
 def test_memory_grows_with_the_points():
