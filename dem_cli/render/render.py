@@ -221,6 +221,7 @@ def caption(results: Results, frame: Frame, scale: float) -> str:
         return f"{frame.stage} mechanism: λ = {frame.load:.4g} · of any size: rigid blocks do not move before failure"
     factor, unit = style.length_unit(frame.displacement)
     instant = f"{frame.time:.2f} s" if results.kind in IN_SECONDS else f"{frame.stage}: λ = {frame.load:.4g}"
-    drawn = "true scale" if scale == 1.0 else f"displacements drawn {float(f"{scale:.4g}"):,.10g} times larger"
+    times = f"{float(format(scale, '.4g')):,.10g}"
+    drawn = "true scale" if scale == 1.0 else f"displacements drawn {times} times larger"
     instant = instant.replace("-", "−")
     return f"{instant} · moved up to {factor * frame.displacement:.3g} {unit} · {drawn}"
