@@ -65,6 +65,12 @@ def test_quick_answers_are_right(quick):
     for record in groups["precision"]["records"]:
         if record["axis"] == "resolution":
             assert abs(record["found"]["error"]) < record["value"] + 1e-4
+    for record in groups["peers"]["records"]:
+        if record["axis"] in ("dem", "dem limit"):
+            assert abs(record["found"]["error"]) < 1e-4
+    for record in groups["spatial"]["records"]:
+        if record["axis"] != "memory":
+            assert record["found"]["load"] > 0.08  # thickness over height: columns behind the ends hold the wall
 
 
 def test_quick_leaves_a_page_and_pictures(quick):
