@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float], None]
 LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
+BOUNDED = (2,)  # dimensions that have them: their programs are linear, of slips to and fro
 
 
 class LimitLoads(NamedTuple):
@@ -86,8 +87,12 @@ def limit_loads(
     bounds              LOWER, LEAST or both, which take longer still
     progress            told the load and the displacement of every increment of the path (limit.path)
 
-    Raises UsageError without live loads, or where the strength of the law is not held by straight lines.
+    Raises UsageError without live loads, where the strength of the law is not held by straight lines, or for bounds
+    in space.
     """
+    if bounds and model.dimension not in BOUNDED:
+        asked = " and ".join(f"--{name}" for name in bounds)
+        raise UsageError(f"{asked}: not available in 3D, where a joint slides in any direction; leave it out")
     begun = time.perf_counter()
     structure = start_structure(model, properties, law)
     strength = envelope_of(structure.joints, law, heads_frictionless)

@@ -158,3 +158,14 @@ def test_barton_s_joints_are_refused_in_words():
     answer = dem("limit", CASES / "verification" / "barton_block.toml")
     assert answer.exit_code == 2
     assert "that of law 'barton' is curved" in answer.stderr
+
+
+@pytest.mark.parametrize("bounds", [("--lower",), ("--least",)])
+def test_bounds_of_slips_to_and_fro_are_refused_in_space(bounds):
+    case = CASES / "validation" / "lemos_wall.toml"
+    answer = dem("limit", case, *bounds)
+    assert answer.exit_code == 2
+    assert (
+        answer.stderr
+        == f"error: {bounds[0]}: not available in 3D, where a joint slides in any direction; leave it out\n"
+    )
