@@ -125,11 +125,11 @@ def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) 
 
 
 def status(found: LimitLoads) -> str:
-    """Status of the whole: that of the first load that was not found."""
-    from dem_cli.limit.associated import OK
+    """Status of the whole: that of the first load that was not found; joints that lock as they dilate may fail else."""
+    from dem_cli.limit.associated import LOCKED, OK
 
     path = found.non_associated
-    return path.status if found.associated.status == OK and path is not None else found.associated.status
+    return path.status if found.associated.status in (OK, LOCKED) and path is not None else found.associated.status
 
 
 def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:

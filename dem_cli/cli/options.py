@@ -22,6 +22,14 @@ overrides_option = click.option(
     help="Change one value, such as --set joints.dry.friction=0.5; may be repeated.",
 )
 
+azimuth_option = click.option(
+    "--azimuth", type=float, metavar="DEG",
+    help="Of a structure in space: where one stands, from x towards y; default: where it moves to.",
+)  # fmt: skip
+elevation_option = click.option(
+    "--elevation", type=click.FloatRange(-90.0, 90.0), metavar="DEG", help="Of one in space: how high one stands."
+)
+
 STDIN, STANDARD_INPUT = "-", Path("<stdin>")  # on the command line; in messages
 
 given: list[str] = []  # the case that came from there last, for the report of a fault

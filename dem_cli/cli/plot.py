@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import AxisLimits, PictureSize
+from dem_cli.cli.options import AxisLimits, PictureSize, azimuth_option, elevation_option
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from dem_cli.cli.chart import ColumnChoice
     from dem_cli.post.chart import ChartOptions
+    from dem_cli.post.scene.axonometry import Standpoint
 
 CHART, SWEEP = "plot.png", "sweep.png"
 PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "collapse", "energy", "joints")
@@ -37,6 +38,8 @@ PICTURE_NAMES = ("capacity", "histories", "modes", "safety", "fragility", "colla
 @click.option("--log", type=click.Choice(("x", "y", "xy")), help="Logarithmic axes.")
 @click.option("--xlim", type=AxisLimits(), help="Ends of the x axis, such as 0:0.02.")
 @click.option("--ylim", type=AxisLimits(), help="Ends of the y axis.")
+@azimuth_option
+@elevation_option
 @click.option("--animate", is_flag=True, help="With all pictures of a run: collapse.gif as well.")
 def command(
     folders: Sequence[Path],
@@ -52,6 +55,8 @@ def command(
     log: str | None,
     xlim: tuple[float, float] | None,
     ylim: tuple[float, float] | None,
+    azimuth: float | None,
+    elevation: float | None,
     animate: bool,
 ) -> None:
     """Draw what the results in DIR hold.
@@ -65,6 +70,7 @@ def command(
     """
     from dem_cli.cli import chart
     from dem_cli.post.chart import CHART_FORMATS, ChartOptions
+    from dem_cli.post.scene.axonometry import Standpoint
 
     sweep = holds_sweep(folders)
     if (where or as_map) and not sweep:
@@ -74,15 +80,17 @@ def command(
     if picture is not None:
         if sweep or asked or options != ChartOptions():
             raise UsageError("--picture is for one run, without columns and sizes")
-        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png")
+        draw_picture(folders[0], picture, output or folders[0] / f"{picture}.png", Standpoint(None, azimuth, elevation))
         return
     if not sweep and not asked:
         if options != ChartOptions() or (output is not None and output.suffix.lower() in CHART_FORMATS):
             raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
-        draw_pictures(folders[0], output, animate)
+        draw_pictures(folders[0], output, animate, Standpoint(None, azimuth, elevation))
         return
     if animate:
         raise UsageError("--animate comes with all pictures of a run, without -x and -y")
+    if azimuth is not None or elevation is not None:
+        raise UsageError("--azimuth and --elevation are for pictures of a structure, not for charts")
     if listed:
         console.show("\n".join(chart.listing(folders, sweep)))
         return
@@ -111,7 +119,7 @@ def default(folders: Sequence[Path], sweep: bool) -> Path:
     return folders[0] / (SWEEP if sweep else CHART)
 
 
-def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
+def draw_pictures(folder: Path, output: Path | None, animate: bool, asked: Standpoint) -> None:
     """All pictures of one run."""
     from dem_cli.cli.motion import draw_spectra_of_run
     from dem_cli.output.folder import write_error
@@ -121,7 +129,7 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
     try:
         if output is not None:
             output.mkdir(parents=True, exist_ok=True)
-        written = draw_all(folder, target, animate) + draw_spectra_of_run(folder, target)
+        written = draw_all(folder, target, animate, asked) + draw_spectra_of_run(folder, target)
     except OSError as error:
         raise write_error(error, target) from None
     for path in written:
@@ -130,7 +138,7 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool) -> None:
         console.note(f"{folder}: nothing to draw, the run kept neither frames nor a history")
 
 
-def draw_picture(folder: Path, name: str, path: Path) -> None:
+def draw_picture(folder: Path, name: str, path: Path, asked: Standpoint) -> None:
     """One of the pictures of a run."""
     from dem_cli.output.folder import write_error
     from dem_cli.post.chart import check_format
@@ -139,7 +147,7 @@ def draw_picture(folder: Path, name: str, path: Path) -> None:
     check_format(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        draw_one(folder, f"{name}.png", path)
+        draw_one(folder, f"{name}.png", path, asked)
     except OSError as error:
         raise write_error(error, path) from None
     console.show(str(path))

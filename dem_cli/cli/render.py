@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from dem_cli.cli.options import PictureSize
+from dem_cli.cli.options import PictureSize, azimuth_option, elevation_option
 from dem_cli.cli.words import console
 from dem_cli.errors import UsageError
 
@@ -22,11 +22,8 @@ STILL, MOVIES = ".png", (".gif", ".mp4")
     help="Of a still: last, failure, a number from 0, or a time such as 2.5s.",
 )  # fmt: skip
 @click.option("--view", type=click.Choice(("front", "3d")), help="Default: front; of structures in space 3d.")
-@click.option(
-    "--azimuth", type=float, metavar="DEG",
-    help="Of a structure in space: where one stands, from x towards y; default: where it moves to.",
-)  # fmt: skip
-@click.option("--elevation", type=click.FloatRange(-90.0, 90.0), metavar="DEG", help="How high one stands.")
+@azimuth_option
+@elevation_option
 @click.option(
     "--scale", type=click.FloatRange(min=0.0, min_open=True), metavar="FACTOR",
     help="Of displacements; default: as they are, or larger where nobody would see them.",
@@ -63,8 +60,8 @@ def command(
     """Render the results in DIR: a picture of one frame, or a movie of all."""
     from dem_cli.output.folder import write_error
     from dem_cli.output.reader import read
+    from dem_cli.post.scene.axonometry import Standpoint
     from dem_cli.render.render import RenderOptions, render_apart
-    from dem_cli.render.view import Standpoint
 
     path = target(folder, output, movie)
     if path.suffix in MOVIES and frame != "last":

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 Progress = Callable[[float, float], None]
 LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
 BOUNDED = (2,)  # dimensions in which these are known
+SETTLED = (2,)  # dimensions in which LOCKED leaves no question: out of plane joints may lock because they dilate
 
 
 class LimitLoads(NamedTuple):
@@ -45,19 +46,23 @@ class LimitLoads(NamedTuple):
     least: LeastLoad | None = None  # of joints that do not dilate; None where not asked for
 
     @property
-    def head_friction(self) -> float | None:
-        """What friction of head joints takes in the associated mechanism, over the load: there they dilate and wedge.
+    def in_space(self) -> bool:
+        """Whether joints slide in more than one direction, and walls may fail out of their plane."""
+        return self.associated.shear.shape[1] > 1
 
-        None in the plane. Of walls that fail out of their plane the bound says little then: no real joint dilates.
+    @property
+    def head_friction(self) -> float | None:
+        """What friction of head joints takes in the associated mechanism, over the load; None: there is no load.
+
+        There they dilate and wedge, as no real joint does: of walls that fail out of their plane the bound says little.
         """
-        found, joints = self.associated, self.structure.joints
-        if found.shear.shape[1] < 2 or not found.multiplier:
+        found, structure = self.associated, self.structure
+        if not found.multiplier:
             return None
-        motion = (self.structure.compatibility @ found.velocities.ravel()[self.structure.free]).reshape(
-            len(found.normal), -1
-        )
-        work = self.friction * found.normal * np.linalg.norm(motion[:, 1:], axis=1)
-        return float(work[steep(joints)].sum() / abs(found.multiplier))
+        motion = structure.compatibility @ found.velocities.ravel()[structure.free]
+        slides = np.linalg.norm(motion.reshape(len(found.normal), -1)[:, 1:], axis=1)
+        taken = self.friction * found.normal * slides
+        return float(taken[steep(structure.joints)].sum() / abs(found.multiplier))
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""
@@ -71,8 +76,8 @@ class LimitLoads(NamedTuple):
             "iterations": found.iterations,
             "seconds": self.seconds,
         }
-        if (taken := self.head_friction) is not None:
-            said["associated_head_friction"] = taken
+        if self.in_space:
+            said["associated_head_friction"] = self.head_friction
         for more in (self.lower, self.least):
             said |= more.summary() if more is not None else {}
         path = self.non_associated
@@ -121,7 +126,8 @@ def limit_loads(
             found = found._replace(no_path=f"not looked for: the path knows friction alone, and law '{law.name}' more")
     if associated.status == FALLS:
         return found
-    if not (associated_only or associated.status == LOCKED or friction is None) and structure.dead.any():
+    settled = associated.status == LOCKED and model.dimension in SETTLED
+    if not (associated_only or settled or friction is None) and structure.dead.any():
         from dem_cli.limit.path import trace  # with SciPy's solvers
 
         begun = time.perf_counter()

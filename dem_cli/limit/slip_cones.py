@@ -6,10 +6,10 @@ c₁, c₂ = c₀ ∓ r and a₁, a₂ = a₀ ± g, make two pairs
     c₁ a₁ = c₂ a₂ = τ
 
 as in the plane, where d cannot turn. So d is an unknown of its own. Along d the equations are those of the plane;
-across it both turn by one angle, dT = r dθ and dγ = −g dθ, that is dγ = −(a₀/c₀) dT. Scalings of the cone that are
-symmetric (Nesterov and Todd) keep steps straight; next to the boundary those leave the cone after angles of √(c₁/c₂),
-and arcs (limit/interior.py) come to a halt. Here c₁ and a₂, which are small where a point slides, change along d, and
-T and γ turn as far as Newton's step has it; what μN then lacks to c₀, and T and γ to the common d, is left to the next.
+across it both turn by one angle, dT = r dθ and dγ = −g dθ, that is dγ = −(a₀/c₀) dT. Straight steps, as with the
+scaling of Nesterov and Todd, leave the cone after angles of √(c₁/c₂) where a point slides. Here c₁ and a₂, which are
+small there, change along d alone, and T and γ turn as far as Newton's step has it; what μN then lacks to c₀, and T and
+γ to the common d, is left to the next step.
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ import numpy as np
 
 from dem_cli.limit.slips import apart
 
-TURNS = (
-    0.5  # of x₀: from this |x̄| on the smaller eigenvalue moves along d and x̄ turns; below it, x₀ and x̄ move straight
-)
+# Of x₀: from this |x̄| on the smaller eigenvalue changes along d while x̄ turns; below it x₀ and x̄ move straight.
+TURNS = 0.5
 
 
 class Polar(NamedTuple):

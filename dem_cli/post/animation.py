@@ -16,6 +16,7 @@ from dem_cli.output.series import HistorySeries
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style, view_box
 from dem_cli.post.playback import milliseconds, playback
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import drawing_of
 
 _LAST_MS = 1200  # the last one stays longer
@@ -26,12 +27,12 @@ _MOST_LIT = 96  # colours of stone, and of ground
 _EDGES = ((_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE))
 
 
-def draw_animation(results: Results, path: Path) -> None:
+def draw_animation(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
     """One picture per frame. Raises UsageError where the run kept no frames, or Pillow is missing."""
     if not len(results.frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to animate")
     movie = playback(results)
-    pictures = _pictures(results, movie.frames)
+    pictures = _pictures(results, movie.frames, asked)
     times = [*milliseconds(movie.stays[:-1]), _LAST_MS]
     with path.open("wb") as file:
         pictures[0].save(
@@ -39,14 +40,14 @@ def draw_animation(results: Results, path: Path) -> None:
         )
 
 
-def _pictures(results: Results, frames: Sequence[Frame]) -> list[Any]:
+def _pictures(results: Results, frames: Sequence[Frame], asked: Standpoint) -> list[Any]:
     """Frames as images that share one palette."""
     with style.canvas() as make:
         try:
             from PIL import Image
         except ImportError:
             raise MissingExtra("an animation needs Pillow", "plot") from None
-        scene = _Scene(results, frames, make)
+        scene = _Scene(results, frames, make, asked)
         palette = Image.new("P", (1, 1))
         palette.putpalette(_palette(scene.drawing.lights))
         pictures = []
@@ -78,11 +79,11 @@ def _palette(lights: Sequence[float]) -> list[int]:
 class _Scene:
     """A figure whose blocks move: the structure above, the acceleration of its base below."""
 
-    def __init__(self, results: Results, frames: Sequence[Frame], make: Any):
+    def __init__(self, results: Results, frames: Sequence[Frame], make: Any, asked: Standpoint):
         model, self.results = results.model, results
         self.model = model
         self.scale = min(frame_measures.visible_scale(model, frame) for frame in frames)
-        self.drawing = drawing_of(model, max(frames, key=lambda frame: frame.displacement))
+        self.drawing = drawing_of(model, max(frames, key=lambda frame: frame.displacement), asked)
         self.carried = view_box.carried(results, self.scale)
         corners = [self._corners(frame) for frame in frames]
         low, high = self.drawing.window(corners, *view_box.window(model, corners))

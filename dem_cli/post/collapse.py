@@ -13,6 +13,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import Drawing, drawing_of
 
 MECHANISM = "mechanism"  # of limit analysis
@@ -21,10 +22,10 @@ _HAIRLINE = 0.02  # joints open by less than this share of the largest displacem
 _LEGEND_ROOM = 0.85  # inches
 
 
-def draw_collapse(results: Results, path: Path) -> None:
+def draw_collapse(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
     """One panel at failure, one at the last frame; one only where they are the same."""
     model, panels = results.model, _panels(results)
-    drawing = drawing_of(model, panels[-1][1])
+    drawing = drawing_of(model, panels[-1][1], asked)
     corners = [drawing.flat(rest_vertices(model))]
     drawn = []
     scales = [frame_measures.visible_scale(model, frame) for _, frame in panels]

@@ -12,6 +12,7 @@ from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.post import style
 from dem_cli.post.collapse import window
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import drawing_of
 
 MOST_MODES = 12  # modes in one picture
@@ -20,10 +21,10 @@ _TITLE_ROOM = 0.55  # inches
 _WIDEST, _HIGHEST = 10.5, 2.9  # inches: of the picture, of a panel
 
 
-def draw_modes(results: Results, path: Path) -> None:
+def draw_modes(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
     """A panel for each mode, as large as its frame has it; dashed: undeformed."""
     model, frames = results.model, shapes(results)
-    drawing = drawing_of(model, frames[0])
+    drawing = drawing_of(model, frames[0], asked)
     corners = [placed_vertices(model, frame.positions, frame.orientations) for frame in frames]
     low, high = window(model, [drawing.flat(places) for places in (rest_vertices(model), *corners)])
     width, height, rows, columns = _layout(high - low, len(frames))

@@ -19,8 +19,9 @@ from dem_cli.post.histories import draw_histories
 from dem_cli.post.joints import draw_joints
 from dem_cli.post.modes import draw_modes, shapes
 from dem_cli.post.safety import draw_safety, has_runs
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 
-PICTURES: dict[str, Callable[[Results, Path], None]] = {
+PICTURES: dict[str, Callable[..., None]] = {  # of results, into a file; some from a standpoint
     "capacity.png": draw_capacity,
     "histories.png": draw_histories,
     "modes.png": draw_modes,
@@ -29,11 +30,12 @@ PICTURES: dict[str, Callable[[Results, Path], None]] = {
     "collapse.png": draw_collapse,
     "energy.png": draw_energy,
 }
+SEEN_FROM = frozenset(("modes.png", "collapse.png"))  # those that show the structure
 ANIMATION = "collapse.gif"
 JOINTS = "joints.png"  # only where it is asked for
 
 
-def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
+def draw_all(folder: Path, output: Path, animate: bool = False, asked: Standpoint = AS_BEST) -> list[Path]:
     """Draw every picture that the results in `folder` allow; returns the files written. An animation takes longer.
 
     Raises KeyboardInterrupt between two.
@@ -43,17 +45,17 @@ def draw_all(folder: Path, output: Path, animate: bool = False) -> list[Path]:
     for name, draw in PICTURES.items():
         if has_data(name, results):
             look()
-            draw(results, output / name)
+            draw(results, output / name, *([asked] if name in SEEN_FROM else []))
             written.append(output / name)
     if animate:
         from dem_cli.post.animation import draw_animation
 
-        draw_animation(results, output / ANIMATION)
+        draw_animation(results, output / ANIMATION, asked)
         written.append(output / ANIMATION)
     return written
 
 
-def draw_one(folder: Path, name: str, path: Path) -> None:
+def draw_one(folder: Path, name: str, path: Path, asked: Standpoint = AS_BEST) -> None:
     """One of the pictures, into a file of any format of matplotlib. Raises UsageError where it has no data."""
     results = read(folder)
     if name == JOINTS:
@@ -61,7 +63,7 @@ def draw_one(folder: Path, name: str, path: Path) -> None:
         return
     if not has_data(name, results):
         raise UsageError(f"{folder}: nothing to draw for {name.removesuffix('.png')} in a run of kind {results.kind!r}")
-    PICTURES[name](results, path)
+    PICTURES[name](results, path, *([asked] if name in SEEN_FROM else []))
 
 
 def has_data(name: str, results: Results) -> bool:

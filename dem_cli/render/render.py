@@ -25,9 +25,10 @@ from dem_cli.output.record import Frame
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.post.playback import SHORTEST, Playback, playback
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
-from dem_cli.render.view import AS_BEST, Standpoint, view_of
+from dem_cli.render.view import view_of
 
 STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
 _AROUND = 0.015  # of the size of what is seen: empty space on all sides
@@ -220,6 +221,7 @@ def caption(results: Results, frame: Frame, scale: float) -> str:
         return f"{frame.stage} mechanism: λ = {frame.load:.4g} · of any size: rigid blocks do not move before failure"
     factor, unit = style.length_unit(frame.displacement)
     instant = f"{frame.time:.2f} s" if results.kind in IN_SECONDS else f"{frame.stage}: λ = {frame.load:.4g}"
-    drawn = "true scale" if scale == 1.0 else f"displacements drawn {scale:,.4g} times larger"
+    times = f"{float(format(scale, '.4g')):,.10g}"
+    drawn = "true scale" if scale == 1.0 else f"displacements drawn {times} times larger"
     instant = instant.replace("-", "−")
     return f"{instant} · moved up to {factor * frame.displacement:.3g} {unit} · {drawn}"

@@ -7,24 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
-from dem_cli.post.scene.axonometry import Axonometry, axonometry, looks_right
+from dem_cli.post.scene.axonometry import Axonometry, Standpoint, axonometry, looks_right, refuse_in_plane
 
 _PLANE = Axonometry(*np.eye(3))  # y is upwards
 _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # in the plane: from the structure to the eye
-
-
-class Standpoint(NamedTuple):
-    """Standpoint that a user asks for."""
-
-    view: str | None = None  # "front" or "3d"; None: front in the plane, 3d in space
-    azimuth: float | None = None  # in space, from x towards y [deg]; None: as it is best
-    elevation: float | None = None  # in space, above the ground [deg]
-
-
-AS_BEST = Standpoint()
 
 
 class RenderedView(NamedTuple):
@@ -41,8 +29,7 @@ def view_of(model: Model, frames: Sequence[Frame], asked: Standpoint) -> Rendere
 
 
 def _in_plane(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
-    if asked.azimuth is not None or asked.elevation is not None:
-        raise UsageError("--azimuth and --elevation are for structures in space; --view 3d turns one in the plane")
+    refuse_in_plane(asked)
     name = asked.view or "front"
     eye = np.array(_DIRECTIONS[name])
     eye /= np.linalg.norm(eye)
@@ -53,7 +40,7 @@ def _in_plane(model: Model, frames: Sequence[Frame], asked: Standpoint) -> Rende
 
 def _in_space(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
     farthest = max(frames, key=lambda frame: frame.displacement)
-    axes = axonometry(model, farthest, asked.azimuth, asked.elevation, asked.view != "front")
+    axes = axonometry(model, farthest, asked)
     ahead = axes.eye + np.cross(axes.right, (0.0, 0.0, 1.0))  # half as high as the reader: tops and sides are lit
     ahead /= np.linalg.norm(ahead)
     left = (

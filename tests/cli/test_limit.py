@@ -158,3 +158,65 @@ def test_barton_s_joints_are_refused_in_words():
     answer = dem("limit", CASES / "verification" / "barton_block.toml")
     assert answer.exit_code == 2
     assert "that of law 'barton' is curved" in answer.stderr
+
+
+OUT_OF_PLANE = """
+title = "Wall in space"
+dimension = 3
+[materials.stone]
+density = 2200.0
+[joints.dry]
+friction = 0.7
+[[structure]]
+kind = "wall"
+block = [1.0, 0.5]
+courses = 4
+blocks_per_course = 4
+thickness = 0.4
+sides = [{ face = "-y", strip = 0.5 }]
+[analysis]
+kind = "pushover"
+direction = [0.0, -1.0, 0.0]
+"""
+
+
+@pytest.fixture
+def out_of_plane(tmp_path):
+    path = tmp_path / "wall.toml"
+    path.write_text(OUT_OF_PLANE, encoding="utf-8")
+    return path
+
+
+def test_a_wall_out_of_its_plane_is_not_taken_at_its_bound(out_of_plane, tmp_path):
+    """Its head joints wedge between the posts, as no joint does that does not dilate: 1.415 against 0.819."""
+    answer = dem("limit", out_of_plane, "--set", "joints.dry.friction=0.5", "-o", tmp_path / "out")
+    assert answer.exit_code == 0
+    assert (
+        "head joints dilate in it and wedge: out of plane such a bound can be several times too high" in answer.stdout
+    )
+    results = read(tmp_path / "out")
+    limits = results.summary["limit_analysis"]
+    assert limits["associated"] > 1.5 * limits["non_associated"]
+    assert limits["associated_head_friction"] > 0.1
+    for frame in results.frames:
+        assert np.linalg.norm(frame.orientations, axis=1) == pytest.approx(1.0)
+        assert (results.model.live_loads * frame.velocities).sum() == pytest.approx(1.0)
+    assert "wedge" not in dem("limit", out_of_plane, "--heads", "frictionless", "--associated-only").stdout
+
+
+def test_joints_that_lock_because_they_dilate_fail_all_the_same(out_of_plane):
+    """At μ = 0.7 no load makes dilating joints fail; others do at 1.64, between posts that hold the ends."""
+    answer = dem("limit", out_of_plane)
+    assert "associated     no load of this direction makes it fail, if joints dilate as they slide" in answer.stdout
+    assert "\n  status" not in answer.stdout
+    limits = json.loads(dem("limit", out_of_plane, "--json").stdout)["limit_analysis"]
+    assert limits["associated"] is limits["associated_head_friction"] is None
+    assert limits["non_associated"] == pytest.approx(1.64, rel=0.03)
+
+
+@pytest.mark.parametrize("bound", ["--lower", "--least"])
+def test_bounds_that_are_known_in_2d_only(out_of_plane, bound):
+    answer = dem("limit", out_of_plane, bound)
+    assert answer.exit_code == 2
+    assert f"{bound}: bounds of joints that do not dilate are known in 2D only" in answer.stderr
+    assert answer.stdout == ""

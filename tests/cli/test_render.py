@@ -29,10 +29,11 @@ pytest.importorskip("matplotlib")
 from PIL import Image
 
 from dem_cli.post import style
+from dem_cli.post.scene.axonometry import Standpoint
 from dem_cli.render import block_colours, movie, opengl, render
 from dem_cli.render.render import RenderOptions
 from dem_cli.render.sheet import Sheet, layout
-from dem_cli.render.view import Standpoint, view_of
+from dem_cli.render.view import view_of
 
 ROOT = Path(__file__).resolve().parents[2]
 ASK = "from dem_cli.render.opengl import choose_window; choose_window()"

@@ -30,7 +30,8 @@ def limit_rows(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def _associated(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     if limits["associated"] is None:
-        return []
+        in_space = "associated_head_friction" in limits and limits["associated_status"].startswith("no load")
+        return [("associated", f"{limits['associated_status']}, if joints dilate as they slide")] if in_space else []
     low, high = limits["associated_bounds"]
     how = f"upper bound, between {low:.7g} and {high:.7g}, {seconds(limits['seconds'])}"
     rows = [("associated", f"{load_text(limits['associated'])}  ({how})")]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.record import Frame
@@ -16,6 +17,17 @@ from dem_cli.output.record import Frame
 AZIMUTH_ASIDE, ELEVATION = 32.0, 22.0  # degrees: from the middle of the wide side, and above the ground
 _STILL = 1e-12  # of the size of the structure: who moves less does not move
 _STRAIGHT = 0.05  # of the motion: one so small to a side is none
+
+
+class Standpoint(NamedTuple):
+    """Standpoint that a user asks for."""
+
+    view: str | None = None  # "front" or "3d"; None: front in the plane, 3d in space
+    azimuth: float | None = None  # in space, from x towards y [deg]; None: as it is best
+    elevation: float | None = None  # in space, above the ground [deg]
+
+
+AS_BEST = Standpoint()
 
 
 class Axonometry(NamedTuple):
@@ -75,16 +87,17 @@ def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) 
     return float(np.degrees(np.arctan2(eye[1], eye[0])))
 
 
-def axonometry(
-    model: Model,
-    frame: Frame | None,
-    azimuth: float | None = None,
-    elevation: float | None = None,
-    oblique: bool = True,
-) -> Axonometry:
-    """The view from an azimuth and an elevation in degrees; None: as it is best, or straight on where not oblique."""
+def axonometry(model: Model, frame: Frame | None, asked: Standpoint = AS_BEST) -> Axonometry:
+    """The view of a structure in space; frame: whose motion the reader should see best."""
+    oblique, (_, azimuth, elevation) = asked.view != "front", asked
     if azimuth is None:
         azimuth = azimuth_of(model, frame, AZIMUTH_ASIDE if oblique else 0.0)
     if elevation is None:
         elevation = ELEVATION if oblique else 0.0
     return seen_from(azimuth, elevation)
+
+
+def refuse_in_plane(asked: Standpoint) -> None:
+    """UsageError for an azimuth or an elevation of a structure in the plane."""
+    if asked.azimuth is not None or asked.elevation is not None:
+        raise UsageError("--azimuth and --elevation are for structures in space; this one lies in the plane")

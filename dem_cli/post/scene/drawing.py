@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
-from dem_cli.post.scene.axonometry import axonometry
+from dem_cli.post.scene.axonometry import AS_BEST, Standpoint, axonometry, refuse_in_plane
 from dem_cli.post.scene.plane_drawing import PlaneDrawing
 from dem_cli.post.scene.space_drawing import SpaceDrawing
 
@@ -40,12 +40,18 @@ class Drawing(Protocol):
         """What else a reader needs, over a picture whose limits are set."""
 
 
-DRAWINGS: dict[int, Callable[[Model, Frame | None], Drawing]] = {
-    2: lambda model, frame: PlaneDrawing(model),
-    3: lambda model, frame: SpaceDrawing(model, axonometry(model, frame)),
-}
+def _in_plane(model: Model, frame: Frame | None, asked: Standpoint) -> Drawing:
+    refuse_in_plane(asked)
+    return PlaneDrawing(model)
 
 
-def drawing_of(model: Model, frame: Frame | None) -> Drawing:
-    """frame: whose motion the reader should see best."""
-    return DRAWINGS[model.dimension](model, frame)
+def _in_space(model: Model, frame: Frame | None, asked: Standpoint) -> Drawing:
+    return SpaceDrawing(model, axonometry(model, frame, asked))
+
+
+DRAWINGS: dict[int, Callable[[Model, Frame | None, Standpoint], Drawing]] = {2: _in_plane, 3: _in_space}
+
+
+def drawing_of(model: Model, frame: Frame | None, asked: Standpoint = AS_BEST) -> Drawing:
+    """frame: whose motion the reader should see best. Raises UsageError for a standpoint that there is not."""
+    return DRAWINGS[model.dimension](model, frame, asked)

@@ -20,12 +20,18 @@ PATTERNS = {  # length of blocks and offset [m]: what a prototype of this solver
 }
 
 
+RIGID = ('joints.dry.kn="auto"', 'joints.dry.ks="auto"')
+
+
 def measure() -> list[dict[str, Any]]:
-    """All patterns."""
+    """All patterns, on joints as stiff as the source's and on stiff ones."""
     rows = []
-    for length, offset in PATTERNS:
+    for (length, offset), prototype in PATTERNS.items():
         keys = {"block": [length, 1.0], "blocks_per_course": round(20.0 / length), "offset": offset}
-        loaded = from_file(FILE, *(f"structure.0.{key}={value}" for key, value in keys.items()))
-        case, model = loaded.case, api.build_model(loaded)
-        rows.append({"name": f"{length:g} × 1 m, offset {offset:g} m"} | dem(case, model) | limits(case, model))
+        pattern = [f"structure.0.{key}={value}" for key, value in keys.items()]
+        for joints, changes in (("given", ()), ("stiff", RIGID)):
+            loaded = from_file(FILE, *pattern, *changes)
+            case, model = loaded.case, api.build_model(loaded)
+            name = f"{length:g} × 1 m, offset {offset:g} m, {joints} joints"
+            rows.append({"name": name, "prototype": prototype} | dem(case, model) | limits(case, model))
     return rows

@@ -24,7 +24,7 @@ def values(found: Mapping[str, Any]) -> dict[str, Any]:
         "n_by_hand": len(hand),
         "largest": percent(max(errors, default=0.0)),
         "walls": table(COMPARED, map(compared_cells, walls)),
-        "published": table(COMPARED, map(compared_cells, published)),
+        "published": table((*COMPARED[:4], "prototype", *COMPARED[4:]), map(published_cells, published)),
         "twins": table(TWINS, map(twin_cells, twins)),
         "n_twins": len(twins),
         "n_loads": len(loads),
@@ -56,6 +56,13 @@ def compared_cells(row: Mapping[str, Any]) -> list[str]:
     span = f"{number(said['lowest'])} to {number(said['highest'])}" if said else ""
     return [row["name"], str(row["blocks"]), f"{row['points']:,}", bracket(row["bracket"]), path(row), error,
             number(row["associated"]), span, f"{row['seconds']:.1f}"]  # fmt: skip
+
+
+def published_cells(row: Mapping[str, Any]) -> list[str]:
+    """The same, with what a prototype of the solver found."""
+    cells = compared_cells(row)
+    over = percent(middle(row) / row["prototype"] - 1.0)
+    return [*cells[:4], f"{number(row['prototype'])} ({over})", *cells[4:]]
 
 
 def twin_cells(row: Mapping[str, Any]) -> list[str]:

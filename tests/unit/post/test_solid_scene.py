@@ -12,7 +12,7 @@ from dem_cli.geometry.rotation import quaternions, rotation_vectors, unturned
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import read
 from dem_cli.post import frame_measures
-from dem_cli.post.scene.axonometry import axonometry, seen_from
+from dem_cli.post.scene.axonometry import Standpoint, axonometry, seen_from
 from dem_cli.post.scene.hidden_surfaces import NOTHING, seen_surface, window_of
 from dem_cli.post.scene.joint_strokes import strokes
 
@@ -38,7 +38,7 @@ def test_the_reader_stands_where_the_wall_moves_to():
     assert axonometry(model, frame).eye[1] > 0.7
     away = frame._replace(positions=2.0 * model.centroids - frame.positions)
     assert axonometry(model, away).eye[1] < -0.7
-    assert axonometry(model, None, azimuth=90.0, elevation=0.0).eye == pytest.approx([0.0, 1.0, 0.0])
+    assert axonometry(model, None, Standpoint(azimuth=90.0, elevation=0.0)).eye == pytest.approx([0.0, 1.0, 0.0])
 
 
 def nearest_by_rays(view, faces, window):
@@ -147,3 +147,28 @@ def test_pictures_of_a_run_in_space(tmp_path):
     picture = imread(tmp_path / "collapse.png")[..., :3]
     assert (picture.min(axis=2) < 0.99).mean() > 0.2
     assert len(read(folder).frames) == 4
+
+
+def test_plot_from_another_side(tmp_path):
+    """From behind the wall its open joint is to be seen; a chart has no sides, nor has the plane."""
+    pytest.importorskip("matplotlib")
+    from click.testing import CliRunner
+    from matplotlib.image import imread
+
+    from dem_cli.cli.main import main
+    from dem_cli.post import style
+
+    def plot(*words):
+        return CliRunner().invoke(main, ["plot", str(folder), *words])
+
+    model = solid_wall(3, 2)
+    folder = write_solid_run(tmp_path / "run", model, solid_frames(model, 4))
+    magenta = np.array([int(style.STATE_COLOURS["open"][i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    seen = {}
+    for azimuth in ("90", "-90"):
+        path = tmp_path / f"{azimuth}.png"
+        assert plot("--picture", "collapse", "-o", str(path), "--azimuth", azimuth).exit_code == 0
+        seen[azimuth] = (np.abs(imread(path)[:900, :, :3] - magenta).max(axis=2) < 0.05).sum()
+    assert seen["-90"] > 3 * seen["90"]
+    refused = plot("-x", "displacement", "-y", "load", "--azimuth", "30")
+    assert (refused.exit_code, "not for charts" in refused.output) == (2, True)
