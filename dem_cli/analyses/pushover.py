@@ -132,17 +132,19 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
 def _second_history(job: Job, load_search: LoadSearch) -> None:
     """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
-    Where it ends elsewhere, the load is raised again in small steps.
+    Where it ends elsewhere, or nowhere, the load is raised again in small steps.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or unique(search, resolution) or load_search.too_large():
         return
     path = search.limits.path
-    apart = load_range(search, resolution)
-    if path is None or path.load is None or apart is None or not path.finished:
+    if path is None:
         return
-    some = search.carried > job.settings.load_search.least * search.scale
-    if some and abs(path.load - search.carried) > resolution * path.load and search.start["kind"] == GRAVITY:
+    if path.load is not None and path.finished:
+        near = abs(path.load - search.carried) <= resolution * path.load
+        if near or load_range(search, resolution) is None:
+            return
+    if search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
         load_search.run_again_in_small_steps(search.carried)
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")

@@ -76,7 +76,6 @@ class WarmStartSettings:
 
     large: int = 1000  # blocks of one structure, beyond which the path takes too many factorisations
     flat: float = 1.0  # resolutions: growth of the load along the path, over that of displacement, that counts as none
-    slides: float = 1e-3  # share of friction in the work of a limit mechanism, below which nothing slides in it
     drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure
     at_the_end: int = 4  # last increments, among which the highest load is a plateau and not a peak
 

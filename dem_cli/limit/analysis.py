@@ -13,7 +13,7 @@ from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
-from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
+from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides
 from dem_cli.limit.cone import envelope_of, friction_of, steep
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
@@ -128,10 +128,8 @@ def limit_loads(
         return found
     settled = associated.status == LOCKED and model.dimension in SETTLED
     if not (associated_only or settled or friction is None) and structure.dead.any():
-        from dem_cli.limit.path import trace  # with SciPy's solvers
-
         begun = time.perf_counter()
-        path = trace(structure, friction, progress=progress, settings=settings)
+        path = _path(structure, friction, associated, progress, settings)
         found = found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
     left = envelope_of(structure.joints, law, heads_frictionless, residual=True)
     return _with_bounds(found, strength, left, bounds, settings)
@@ -142,6 +140,24 @@ def _require_known(model: Model, bounds: Collection[str]) -> None:
     if bounds and model.dimension not in BOUNDED:
         asked = " and ".join(f"--{name}" for name in sorted(bounds, reverse=True))
         raise UsageError(f"{asked}: bounds of joints that do not dilate are known in 2D only; leave it out here")
+
+
+def _path(
+    structure: Structure, friction: np.ndarray, associated: LimitLoad, progress: Progress, settings: LimitSettings
+) -> Path:
+    """The path to the load of joints that do not dilate.
+
+    Where nothing slides in the mechanism of the associated load, that is the only load: a plateau below it is none, and
+    the load is followed on.
+    """
+    from dem_cli.limit.path import trace  # with SciPy's solvers
+
+    path, lowest = trace(structure, friction, progress=progress, settings=settings), associated.lower
+    if path.load is None or lowest is None or slides(structure, friction, associated, settings.associated):
+        return path
+    if path.finished and path.load < lowest - settings.path.plateau * abs(lowest):
+        return trace(structure, friction, settings.path.finer, progress=progress, settings=settings)
+    return path
 
 
 def _with_bounds(

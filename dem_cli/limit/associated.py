@@ -64,6 +64,22 @@ class LimitLoad(NamedTuple):
     iterations: int  # of the solver
 
 
+def slides(
+    structure: Structure,
+    friction: np.ndarray,
+    found: LimitLoad,
+    settings: AssociatedSettings = DEFAULT_LIMIT.associated,
+) -> bool:
+    """Whether friction takes part in the mechanism of a load that was found; else no history of sliding changes it.
+
+    friction: coefficient of every point [-], (n_points,)
+    """
+    motion = structure.compatibility @ found.velocities.ravel()[structure.free]
+    slips = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
+    taken = float((friction * found.normal * slips).sum())
+    return found.upper is None or bool(taken > settings.slides * abs(found.upper))
+
+
 def limit_load(
     structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> LimitLoad:

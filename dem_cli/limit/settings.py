@@ -24,6 +24,7 @@ class PathSettings:
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
+    finer: float = 1e-5  # the same growth, where the load is known to be higher than a first plateau
     tau: float = 0.1  # of the first products, over the square of the largest normal force
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
@@ -70,6 +71,7 @@ class AssociatedSettings:
     gap: float = 1e-4  # largest accepted width of the bounds over the load
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
     proof: float = 1e-6  # relative error accepted in a proof that something is impossible
+    slides: float = 1e-3  # share of friction in the work of a mechanism, below which nothing slides in it
 
 
 @dataclass(frozen=True)

@@ -102,11 +102,9 @@ class RigidLimits:
         found = self.associated
         if self._matrices is None or found is None or found.upper is None:
             return True
-        structure, friction = self._matrices
-        motion = structure.compatibility @ found.velocities.ravel()[structure.free]
-        slides = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
-        taken = float((friction * found.normal * slides).sum())
-        return bool(taken > self.job.settings.warm_start.slides * abs(found.upper))
+        from dem_cli.limit.associated import slides
+
+        return slides(*self._matrices, found, self.job.settings.limit.associated)
 
     @cached_property
     def path(self) -> Path | None:

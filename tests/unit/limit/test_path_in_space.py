@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from casefiles import CASES
 from engine import scene
+from studies.space.structures import box as block
+from studies.space.structures import prism, tables
 from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, prism_on, turned, wedge
 
 from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import start_structure
+from dem_cli.geometry.polygon import properties
+from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.matrices import Structure, structure_of
@@ -206,3 +209,17 @@ def test_nothing_slips_in_an_elastic_structure():
     u = np.linalg.solve((made.compatibility.T.multiply(k) @ made.compatibility).toarray(), made.live)
     found = problem.displacements(problem.elastic().solve(problem.live)) / problem.live_scale
     assert found * problem.weight / problem.unit / problem.stiffness == pytest.approx(u, rel=1e-6, abs=1e-12)
+
+
+def test_a_rest_on_the_way_is_no_failure_where_nothing_slides():
+    """A foot whose next edge is almost in line: the load rests 1.6 % below that of toppling over the edge in front."""
+    outline = np.array([(-0.4, -0.2), (0.3, -0.25), (0.45, -0.25), (0.1, 0.4)])
+    direction, (left, right) = np.array([0.05, -1.0]) / np.hypot(0.05, 1.0), outline[:2]
+    ground = block("ground", (-2.0, -2.0, -0.3), (2.0, 2.0, 0.0), fixed=True)
+    case, model = scene(tables(ground, prism("block", outline, 0.0, 1.0), friction=0.8, direction=(*direction, 0.0)))
+    outwards = np.array([left[1] - right[1], right[0] - left[0]]) * (-1.0, -1.0) / np.linalg.norm(right - left)
+    expected = (left - properties(outline).centroid) @ outwards / (0.5 * outwards @ direction)
+    found = limit_loads(model, joint_properties(case, model), law_of(case)).summary()
+    assert found["non_associated_status"] == OK
+    assert found["non_associated"] == pytest.approx(expected, rel=NEAR)
+    assert found["associated"] == pytest.approx(expected, rel=NEAR)
