@@ -166,16 +166,16 @@ class Settings:
 
     def changed(self) -> dict[str, Any]:
         """The settings that differ from the default, by their path, such as "relaxation.tolerance"."""
-        return dict(_differences(self, ""))
+        return dict(_differences(self, type(self)(), ""))
 
 
-def _differences(settings: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Path and value of each setting of a record, and of the records in it, that is not the default."""
+def _differences(settings: Any, default: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Path and value of each setting of a record, and of the records in it, that is not as in the default record."""
     for part in fields(settings):
-        value = getattr(settings, part.name)
+        value, usual = getattr(settings, part.name), getattr(default, part.name)
         if is_dataclass(value):
-            yield from _differences(value, f"{path}{part.name}.")
-        elif value != part.default:
+            yield from _differences(value, usual, f"{path}{part.name}.")
+        elif value != usual:
             yield path + part.name, value
 
 
