@@ -196,13 +196,15 @@ def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
 
 def _of_the_start(job: Job) -> LimitLoads | None:
     """Limit analysis of the geometry of the start, where that of the run moves; None, with a word, without any."""
-    from dem_cli.limit.analysis import limit_loads, taken_as_plane
+    from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
 
-    properties = joint_properties(job.case, job.model, job.stiffness("fixed"))
+    properties, law = joint_properties(job.case, job.model, job.stiffness("fixed")), law_of(job.case)
     if note := taken_as_plane(properties):
         job.warnings.append(note)
     try:
-        return limit_loads(job.model, properties, law_of(job.case), settings=job.settings.limit)
+        if job.case.analysis.pattern == "tilt":
+            require_scalable(job.model, properties, law)
+        return limit_loads(job.model, properties, law, settings=job.settings.limit)
     except UsageError as error:
         job.warnings.append(f"no limit analysis: {error}")
         return None

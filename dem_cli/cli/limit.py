@@ -56,7 +56,7 @@ def command(
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start, and bounds of it."""
     from dem_cli import api
     from dem_cli.engine.properties import joint_properties, law_of
-    from dem_cli.limit.analysis import LEAST, LOWER, gaps_left_open, limit_loads, taken_as_plane
+    from dem_cli.limit.analysis import LEAST, LOWER, gaps_left_open, limit_loads, require_scalable, taken_as_plane
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
@@ -64,6 +64,8 @@ def command(
     require_multiplier(loaded)
     model = api.build_model(loaded)
     properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
+    if loaded.case.analysis.pattern == "tilt":
+        require_scalable(model, properties, law)
     if note := taken_as_plane(properties):
         loaded.warnings.append(note)
     if note := gaps_left_open(model):

@@ -184,6 +184,19 @@ def _with_bounds(
     return found
 
 
+def require_scalable(model: Model, properties: JointProperties, law: Law) -> None:
+    """Raises UsageError where the load of a tilting table is not that of a push: less weight on joints with strength.
+
+    Dead loads fall with the cosine of its angle, and so does the strength of joints with friction alone.
+    """
+    strength = envelope_of(start_structure(model, properties, law).joints, law)
+    if strength.cohesion.any() or strength.tension.any() or np.isfinite(strength.compression).any():
+        raise UsageError(
+            f"limit analysis keeps the dead loads, and those of a tilting table fall: strengths of law '{law.name}' "
+            "would count for too little; use analysis.pattern = 'mass'"
+        )
+
+
 def taken_as_plane(properties: JointProperties) -> str | None:
     """What is to be said of joints with a profile, which limit analysis does not see; None: there are none."""
     rough = [

@@ -220,3 +220,17 @@ def test_bounds_that_are_known_in_2d_only(out_of_plane, bound):
     assert answer.exit_code == 2
     assert f"{bound}: bounds of joints that do not dilate are known in 2D only" in answer.stderr
     assert answer.stdout == ""
+
+
+def test_tables_that_tilt_joints_with_strength_are_refused():
+    """The weight of the blocks falls with the cosine of the angle, and cohesion does not."""
+    glued = (CASES / "verification" / "cohesion_block.toml", "--set", "analysis.pattern=tilt")
+    answer = dem("limit", *glued)
+    assert answer.exit_code == 2
+    assert "those of a tilting table fall" in answer.stderr
+    answer = dem("run", *glued, "--set", "analysis.limit=true", "--json")
+    summary = json.loads(answer.stdout)
+    assert "limit_analysis" not in summary or summary["limit_analysis"] == {}
+    assert [line.split(":")[0] for line in summary["warnings"]] == ["no limit analysis"]
+    wall = dem("limit", WALL, "--associated-only", "--set", "analysis.pattern=tilt", "--json")
+    assert json.loads(wall.stdout)["limit_analysis"]["associated"] == pytest.approx(0.6812, abs=1e-4)
