@@ -92,7 +92,8 @@ def trace(
     """
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
-    most = min(settings.path.effort, settings.path.most * max(problem.n_points, 1)) if effort is None else effort
+    longest = settings.longest_path(structure.model.dimension) * max(problem.n_points, 1)
+    most = min(settings.path.effort, longest) if effort is None else effort
     path = Path(FALLS)
 
     def spent() -> bool:

@@ -18,6 +18,7 @@ class PathSettings:
     easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
     most: int = 2500  # factorisations before giving up
+    most_in_space: int = 1200  # the same in 3D: what ends at all ends by then
     folds: int = 4  # to go round under dead loads
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
     plateau: float = 2e-3  # relative growth of the load over that of the displacement that is none, ...
@@ -118,6 +119,10 @@ class LimitSettings:
     associated: AssociatedSettings = AssociatedSettings()
     reduced: ReducedSettings = ReducedSettings()
     least: LeastSettings = LeastSettings()
+
+    def longest_path(self, dimension: int) -> int:
+        """Factorisations of a path in 2D or 3D."""
+        return {2: self.path.most, 3: self.path.most_in_space}[dimension]
 
     def of_increment(self, dimension: int) -> InteriorPointSettings:
         """The interior point in 2D or 3D."""
