@@ -109,9 +109,10 @@ def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
 
 
 def nearest(value: Any, names: Iterable[Any]) -> str:
-    """`did you mean 'x'?`, or nothing when no name is near."""
-    close = get_close_matches(str(value), [str(name) for name in names], 1, 0.6)
-    return f"did you mean '{close[0]}'?" if close else ""
+    """`did you mean 'x'?`, or nothing when no name is near; a number that was meant has no quotes."""
+    known = {str(name): name for name in names}
+    close = get_close_matches(str(value), known, 1, 0.6)
+    return f"did you mean {show(known[close[0]])}?" if close else ""
 
 
 def listing(names: Iterable[Any]) -> str:
