@@ -60,6 +60,10 @@ class Increment:
         ahead  how far slips go on from the last increment, as a share of that
         folds  how many folds of the central path to go round
         """
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what runs away is given up
+            return self._solved(tau, ahead, folds, stop)
+
+    def _solved(self, tau: float, ahead: float, folds: int, stop: Callable[[], bool]) -> State | None:
         settings, slips = self.settings, self.problem.slips
         at, length, first = self.start(tau, ahead), 1.0, True
         kept: tuple[float, Iterate] | None = None
@@ -69,7 +73,7 @@ class Increment:
             infeasible = self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
                 return self._state(at)
-            if not self._factorise(at):
+            if not (np.isfinite(infeasible) and self._factorise(at)):
                 return None
             means.append(mean)
             if self.straight < settings.feasible:
