@@ -84,3 +84,15 @@ def test_one_load_whatever_the_method_and_the_point_of_view(kind, seed):
     for change in (mirrored, quarter, far_away, shuffled):
         other_low, other_high, _ = bracket(change(case))
         assert max(low, other_low) <= min(high, other_high) * (1.0 + 0.5 * RESOLUTION), change.__name__
+
+
+@pytest.mark.parametrize("off", [5e-8, 1e-7, 3e-7])
+def test_a_corner_that_touches_within_tolerance_carries(off):
+    """A foot of which one corner is rounded: of its two triangles one alone would carry, and no push at all."""
+    block = box("block", (0.0, 0.0, 0.0), (0.6, 0.4, 0.5))
+    corners = np.array(block["vertices"])
+    corners[(corners == (0.6, 0.4, 0.0)).all(axis=1), 2] += off
+    block["vertices"] = corners.tolist()
+    summary, _ = solve(tables(GROUND, block, friction=2.0, direction=(1.0, 0.0, 0.0)))
+    assert summary["contacts"] == 4
+    assert summary["failure_load"] == pytest.approx(0.3 / 0.25, rel=1e-4)
