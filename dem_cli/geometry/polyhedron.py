@@ -12,7 +12,7 @@ from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import beside, turned_as_one
 
 ROUND_OFF = 1e-9  # relative to the size of the polyhedron: what counts as the same point
-COPLANAR = 1e-7  # relative to the same: points that close to a plane lie on it
+COPLANAR = 1e-6  # relative to the same: points that close to a plane lie on it; faces touch that close (contact.start)
 
 
 class Polyhedron(NamedTuple):

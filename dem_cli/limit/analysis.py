@@ -147,8 +147,8 @@ def _path(
 ) -> Path:
     """The path to the load of joints that do not dilate.
 
-    Where nothing slides in the mechanism of the associated load, that is the only load: a plateau below it is none, and
-    the load is followed on.
+    Where nothing slides in the mechanism of the associated load, joints that do not dilate may carry it as well: a
+    plateau below it may be a rest on the way, and the load is followed on. One that is a failure stays.
     """
     from dem_cli.limit.path import trace  # with SciPy's solvers
 

@@ -70,7 +70,7 @@ def slides(
     found: LimitLoad,
     settings: AssociatedSettings = DEFAULT_LIMIT.associated,
 ) -> bool:
-    """Whether friction takes part in the mechanism of a load that was found; else no history of sliding changes it.
+    """Whether friction takes part in the mechanism of a load that was found; else it is that of joints that rock open.
 
     friction: coefficient of every point [-], (n_points,)
     """
