@@ -21,13 +21,15 @@ def distance(corners: np.ndarray, point: np.ndarray) -> float:
     """How far a point is from a convex body with these corners (n, d) [m]; 0 inside.
 
     The nearest point is a mean of the corners with weights w >= 0: those of the least |sum w (corner - point)|^2 +
-    (1 - sum w)^2, which points the same way whatever the sum is (non-negative least squares, Lawson and Hanson).
+    (1 - sum w)^2, which points the same way whatever the sum is. Bounded least squares (Stark and Parker 1995): that of
+    Lawson and Hanson, scipy's nnls, ends early where corners are symmetric to the last digits (1 % off).
     """
-    from scipy.optimize import nnls
+    from scipy.optimize import lsq_linear
 
     arms = np.asarray(corners, float) - point
     scale = float(np.abs(arms).max()) or 1.0
-    weights, _ = nnls(np.vstack([arms.T / scale, np.ones(len(arms))]), np.append(np.zeros(arms.shape[1]), 1.0))
+    rows, wanted = np.vstack([arms.T / scale, np.ones(len(arms))]), np.append(np.zeros(arms.shape[1]), 1.0)
+    weights = lsq_linear(rows, wanted, (0.0, np.inf), method="bvls", tol=1e-15).x
     away = float(np.linalg.norm(weights @ arms) / weights.sum())
     return away if away > ROUND_OFF * scale else 0.0
 

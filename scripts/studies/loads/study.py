@@ -18,11 +18,12 @@ FOLDERS = (CASES / "verification", CASES / "gallery")
 
 
 def pushovers() -> list[Path]:
-    """Case files that look for a failure load with joints that limit analysis knows, and no gap that may close."""
+    """Plane case files that look for a failure load with joints that limit analysis knows, and no gap that may close."""
     files = [file for folder in FOLDERS for file in sorted(folder.glob("*.toml"))]
     tables = {file: tomllib.loads(file.read_text(encoding="utf-8")) for file in files}
     kinds = {file: tables[file]["analysis"].get("kind", "pushover") for file in files}
-    return [file for file in files if kinds[file] == "pushover" and known(tables[file])]
+    plane = [file for file in files if tables[file].get("dimension", 2) == 2]  # in space: the study of that name
+    return [file for file in plane if kinds[file] == "pushover" and known(tables[file])]
 
 
 def known(tables: dict[str, Any]) -> bool:

@@ -22,6 +22,16 @@ def test_distance_from_a_box(point, half, far):
     assert distance(SIGNS * half + far, point + far) == pytest.approx(exact, abs=1e-10 + 1e-14 * abs(far))
 
 
+def test_distance_of_corners_symmetric_to_the_last_digits():
+    half, point, far = (
+        np.array([0.5678161418360557, 0.8440934138897425, 1.7622269363935776]),
+        1.0281302278171682,
+        8194.0,
+    )
+    found = distance(SIGNS * half + far, np.array([-point, 0.0, 0.0]) + far)
+    assert found == pytest.approx(point - half[0], abs=1e-10)
+
+
 def test_distance_in_the_plane():
     triangle = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]])
     assert distance(triangle, np.array([4.0, 3.0])) == pytest.approx(12.0 / 5.0)
