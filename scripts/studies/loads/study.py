@@ -18,7 +18,7 @@ FOLDERS = (CASES / "verification", CASES / "gallery")
 
 
 def pushovers() -> list[Path]:
-    """Plane case files that look for a failure load with joints that limit analysis knows, and no gap that may close."""
+    """Plane cases that look for a failure load with joints that limit analysis knows, and no gap that may close."""
     files = [file for folder in FOLDERS for file in sorted(folder.glob("*.toml"))]
     tables = {file: tomllib.loads(file.read_text(encoding="utf-8")) for file in files}
     kinds = {file: tables[file]["analysis"].get("kind", "pushover") for file in files}
