@@ -57,11 +57,11 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
         return None
     low, high = search.carried, search.high
     margin = resolution * max(abs(low), abs(high))
-    apart = [
-        other
-        for other in histories(search)[1:]
-        if other.load > high + margin or (other.finished and other.load < low - margin)
-    ]
+    others = histories(search)[1:]
+    if any(one.method == PATH and one.finished and low - margin <= one.load <= high + margin for one in others):
+        # Where joints lock because they dilate, nothing slides in the mechanism of the bound, far above any history.
+        others = [one for one in others if one.method != LIMIT]
+    apart = [other for other in others if other.load > high + margin or (other.finished and other.load < low - margin)]
     if not apart:
         return None
     loads = [low, *(other.load for other in apart)]

@@ -1,0 +1,35 @@
+"""Agreement of methods: which loads are said to differ, with made-up searches."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from dem_cli.statics.agreement import load_range
+
+RESOLUTION = 0.002
+
+
+def search(path: float, finished: bool = True, bound: float = 1.0, slides: bool = False) -> SimpleNamespace:
+    """A load of 0.36 raised from gravity, beside a path and the bound by limit analysis."""
+    limits = SimpleNamespace(slides=slides, followed=True, path=SimpleNamespace(load=path, finished=finished))
+    return SimpleNamespace(
+        found=True, low=0.36, high=0.3607, carried=0.36, wide=False, earlier=None, limits=limits, bound=bound,
+        crept_beyond=False, crept=None,
+    )  # fmt: skip
+
+
+def test_bound_of_joints_that_lock_is_no_history_beside_a_path_that_agrees():
+    assert load_range(search(0.3602), RESOLUTION) is None
+    assert load_range(search(0.3602, slides=True), RESOLUTION) is None
+
+
+@pytest.mark.parametrize(("path", "finished"), [(0.30, False), (0.40, True)])
+def test_bound_without_sliding_counts_where_no_path_agrees(path, finished):
+    assert load_range(search(path, finished), RESOLUTION)["highest"] == 1.0
+
+
+def test_path_that_ends_elsewhere_is_said():
+    found = load_range(search(0.34, slides=True), RESOLUTION)
+    assert (found["lowest"], found["highest"]) == (0.34, 0.36)
