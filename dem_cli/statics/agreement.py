@@ -65,8 +65,8 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
     if not apart:
         return None
     loads = [low, *(other.load for other in apart)]
-    others = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
-    why = f"{low:.5g} raised from gravity in steps, {others}"
+    named = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
+    why = f"{low:.5g} raised from gravity in steps, {named}"
     return {"lowest": float(min(loads)), "highest": float(max(loads)), "why": why}
 
 
