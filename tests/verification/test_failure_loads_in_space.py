@@ -6,7 +6,7 @@ import pytest
 from engine import solve
 from studies.space.by_hand import BY_HAND
 from studies.space.structures import mirrored, quarter
-from studies.space.walls import tapered_drums
+from studies.space.walls import WALLS, tapered_drums
 
 RESOLUTION = 5e-4
 
@@ -32,3 +32,12 @@ def test_load_by_hand(name):
 def test_turned_and_mirrored(change):
     case = tapered_drums()
     assert load_of(change(case)) == pytest.approx(load_of(case), rel=RESOLUTION)
+
+
+@pytest.mark.slow
+def test_one_history_is_none():
+    """A T wall whose path ends nowhere: the load is raised a second time, in small steps, and both are said."""
+    summary, _ = solve(WALLS["T, towards the leg"])
+    found = {one["method"]: one for one in summary["histories"]}
+    assert not found["zero-dilation path"]["finished"]
+    assert found["in larger steps"]["load"] == pytest.approx(found["raised from gravity"]["load"], rel=0.02)
