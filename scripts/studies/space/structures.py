@@ -77,14 +77,20 @@ def mapped(case: dict, points: Map, directions: Map) -> dict:
 
 def quarter(case: dict) -> dict:
     """The case turned by 90° about z."""
-    turn = lambda v: np.stack([-v[..., 1], v[..., 0], v[..., 2]], axis=-1)  # noqa: E731
-    return mapped(case, turn, turn)
+
+    def turned(vectors: np.ndarray) -> np.ndarray:
+        return np.stack([-vectors[..., 1], vectors[..., 0], vectors[..., 2]], axis=-1)
+
+    return mapped(case, turned, turned)
 
 
 def mirrored(case: dict) -> dict:
     """The mirror image of the case, x turned to −x."""
-    flip = lambda v: v * np.array([-1.0, 1.0, 1.0])  # noqa: E731
-    return mapped(case, flip, flip)
+
+    def flipped(vectors: np.ndarray) -> np.ndarray:
+        return vectors * np.array([-1.0, 1.0, 1.0])
+
+    return mapped(case, flipped, flipped)
 
 
 # -- walls that meet: courses of boxes, corners bonded by courses that pass in turn ---------------------------------
