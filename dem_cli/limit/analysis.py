@@ -13,7 +13,7 @@ from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
-from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides
+from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides, work_of_friction
 from dem_cli.limit.cone import envelope_of, friction_of, steep
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
@@ -59,10 +59,8 @@ class LimitLoads(NamedTuple):
         found, structure = self.associated, self.structure
         if not found.multiplier:
             return None
-        motion = structure.compatibility @ found.velocities.ravel()[structure.free]
-        slides = np.linalg.norm(motion.reshape(len(found.normal), -1)[:, 1:], axis=1)
-        taken = self.friction * found.normal * slides
-        return float(taken[steep(structure.joints)].sum() / abs(found.multiplier))
+        taken = work_of_friction(structure, self.friction, found)[steep(structure.joints)].sum()
+        return float(taken / abs(found.multiplier))
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says under `limit_analysis`."""

@@ -74,10 +74,15 @@ def slides(
 
     friction: coefficient of every point [-], (n_points,)
     """
+    taken = float(work_of_friction(structure, friction, found).sum())
+    return found.upper is None or bool(taken > settings.slides * abs(found.upper))
+
+
+def work_of_friction(structure: Structure, friction: np.ndarray, found: LimitLoad) -> np.ndarray:
+    """What friction takes at every point in the mechanism of a load that was found [N m], (n_points,)."""
     motion = structure.compatibility @ found.velocities.ravel()[structure.free]
     slips = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
-    taken = float((friction * found.normal * slips).sum())
-    return found.upper is None or bool(taken > settings.slides * abs(found.upper))
+    return friction * found.normal * slips
 
 
 def limit_load(
