@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.vec import dot
 
 TIE = 1e-9  # of the size: separations that are the same
 EDGE_SHARE = 0.01  # of the separation by faces, and
@@ -21,12 +22,6 @@ NO_EDGE = -1
 def cross3(a, b):
     """Cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-@inline
-def dot3(a, b):
-    """Scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @inline
@@ -53,7 +48,7 @@ def height_over(solids, face, part):
     """Least height of the corners of a part over the plane of a face, negative where one lies behind."""
     n = row3(solids.normals, face)
     x = row3(solids.corners, solids.face_corners[solids.face_starts[face]])
-    offset = dot3(x, n)
+    offset = dot(x, n)
     least = math.inf
     for k in range(solids.part_starts[part], solids.part_starts[part + 1]):
         height = solids.corners[k, 0] * n[0] + solids.corners[k, 1] * n[1] + solids.corners[k, 2] * n[2] - offset
@@ -83,23 +78,23 @@ def _highest_edges(solids, a, b):
         turn_a = cross3(n2, n1)
         for k in range(solids.part_edges[b], solids.part_edges[b + 1]):
             m1, m2 = row3(solids.normals, solids.edges[k, 2]), row3(solids.normals, solids.edges[k, 3])
-            side1, side2 = -dot3(m1, turn_a), -dot3(m2, turn_a)
+            side1, side2 = -dot(m1, turn_a), -dot(m2, turn_a)
             if side1 * side2 >= 0.0:
                 continue
             turn_b = cross3(m2, m1)  # of −m2 and −m1: the same
-            side3, side4 = dot3(n1, turn_b), dot3(n2, turn_b)
+            side3, side4 = dot(n1, turn_b), dot(n2, turn_b)
             if side3 * side4 >= 0.0 or side1 * side4 <= 0.0:
                 continue
             there = row3(solids.corners, solids.edges[k, 0])
             beside = minus3(row3(solids.corners, solids.edges[k, 1]), there)
             c = cross3(along, beside)
-            length = math.sqrt(dot3(c, c))
-            if length <= ALIGNED * math.sqrt(dot3(along, along) * dot3(beside, beside)):
+            length = math.sqrt(dot(c, c))
+            if length <= ALIGNED * math.sqrt(dot(along, along) * dot(beside, beside)):
                 continue
-            if dot3(c, n1) + dot3(c, n2) < 0.0:
+            if dot(c, n1) + dot(c, n2) < 0.0:
                 length = -length
             c = (c[0] / length, c[1] / length, c[2] / length)
-            apart = dot3(minus3(there, start), c)
+            apart = dot(minus3(there, start), c)
             if apart > best:
                 best, best_a, best_b, axis = apart, i, k, c
     return best, best_a, best_b, axis
@@ -110,7 +105,7 @@ def most_along(solids, part, axis, sign):
     """The face of a part whose normal points most along sign × axis, and the cosine between them."""
     best, best_face = -math.inf, solids.part_faces[part]
     for face in range(solids.part_faces[part], solids.part_faces[part + 1]):
-        cosine = sign * dot3(row3(solids.normals, face), axis)
+        cosine = sign * dot(row3(solids.normals, face), axis)
         if cosine > best + TIE:
             best, best_face = cosine, face
     return best, best_face

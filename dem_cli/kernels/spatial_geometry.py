@@ -12,7 +12,8 @@ import math
 from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.overlap import SAME, area_of, clip, share_area, simplify
 from dem_cli.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
-from dem_cli.kernels.separation import NO_EDGE, cross3, dot3, minus3, row3, separate, unit3
+from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
+from dem_cli.kernels.vec import axpy, dot
 
 STEEP = math.cos(math.radians(30.0))  # faces within that angle look at each other
 PARALLEL = 1e-2  # sine of the angle between faces, or edges, that lie along each other
@@ -22,12 +23,6 @@ BESIDE = 0.8  # cosine: the normal of a crossing is nearer than that to the one 
 
 MARGIN, AREA, GAP, POLAR = 0, 1, 2, 3  # columns of `measures`
 CENTRE = 4  # and the next two
-
-
-@inline
-def add3(a, b, factor):
-    """a + factor × b."""
-    return (a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2])
 
 
 @inline
@@ -47,7 +42,7 @@ def first_tangent(solids, face, normal):
     first = solids.face_starts[face]
     start = row3(solids.corners, solids.face_corners[first])
     along = minus3(row3(solids.corners, solids.face_corners[first + 1]), start)
-    return unit3(add3(along, normal, -dot3(along, normal)))
+    return unit3(axpy(-dot(along, normal), normal, along))
 
 
 @inline
@@ -57,7 +52,7 @@ def _flatten(solids, face, origin, t1, t2, work, row, turned):
     for k in range(count):
         place = count - 1 - k if turned else k
         arm = minus3(row3(solids.corners, solids.face_corners[first + place]), origin)
-        work[row, k, 0], work[row, k, 1], work[row, k, 2] = dot3(arm, t1), dot3(arm, t2), float(place)
+        work[row, k, 0], work[row, k, 1], work[row, k, 2] = dot(arm, t1), dot(arm, t2), float(place)
     return count
 
 
@@ -95,14 +90,14 @@ def _own_normal(solids, face_a, face_b, n_a, n_b, what, middle):
     place = n_b - 1 - crossing % n_b  # b runs the other way round: edge k goes from its corner place + … to the next
     along_b = _edge_direction(solids, face_b, place - 1 if place else n_b - 1)
     c = cross3(along_a, along_b)
-    length = math.sqrt(dot3(along_a, along_a) * dot3(along_b, along_b))
-    level = dot3(c, middle)
+    length = math.sqrt(dot(along_a, along_a) * dot(along_b, along_b))
+    level = dot(c, middle)
     if abs(level) < SKEW * length:
         return middle
     c = unit3(c)
     if level < 0.0:
         c = (-c[0], -c[1], -c[2])
-    return c if dot3(c, middle) > BESIDE else middle
+    return c if dot(c, middle) > BESIDE else middle
 
 
 @inline
@@ -129,11 +124,11 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
         return 0
     share_area(work, count, area, gx, gy, weights, first)
     angle = cross3(normal_a, normal_b)
-    sine = math.sqrt(dot3(angle, angle))
+    sine = math.sqrt(dot(angle, angle))
     slope_a, slope_b = _slopes(normal_a, middle, t1, t2), _slopes(normal_b, middle, t1, t2)
     arm = minus3(face_origin(solids, face_b), origin)
-    rise = dot3(arm, normal_b) / dot3(middle, normal_b)  # of the plane of b over the origin, which lies on that of a
-    upright, nearest, perimeter = dot3(middle, normal_a), math.inf, 0.0
+    rise = dot(arm, normal_b) / dot(middle, normal_b)  # of the plane of b over the origin, which lies on that of a
+    upright, nearest, perimeter = dot(middle, normal_a), math.inf, 0.0
     for k in range(count):
         m = k + 1 if k + 1 < count else 0
         x, y = work[2, k, 0], work[2, k, 1]
@@ -141,10 +136,10 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
         gap = (high - low) * upright
         gaps[first + k], features[first + k] = gap, int(work[2, k, 2])
         nearest = min(nearest, gap)
-        _put(places, first + k, add3(add3(add3(origin, t1, x), t2, y), middle, 0.5 * (low + high)))
+        _put(places, first + k, axpy(0.5 * (low + high), middle, axpy(y, t2, axpy(x, t1, origin))))
         perimeter += math.sqrt((work[2, m, 0] - x) ** 2 + (work[2, m, 1] - y) ** 2)
     level = 0.5 * (slope_a[0] * gx + slope_a[1] * gy + rise + slope_b[0] * gx + slope_b[1] * gy)
-    centre = add3(add3(add3(origin, t1, gx), t2, gy), middle, level)
+    centre = axpy(level, middle, axpy(gy, t2, axpy(gx, t1, origin)))
     margin, normal, anchor = 2.0 * area / perimeter, middle, centre
     if sine > PLANE:
         normal, anchor, touches = _at_the_nearest(
@@ -154,8 +149,8 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
             margin = min(margin, _edge_margin(work, (n_a, n_b), minus3(anchor, origin), t1, t2, touches))
         for k in range(first, first + count):
             place = row3(places, k)
-            _put(places, k, add3(place, normal, dot3(minus3(anchor, place), normal)))
-        centre = add3(centre, normal, dot3(minus3(anchor, centre), normal))
+            _put(places, k, axpy(dot(minus3(anchor, place), normal), normal, place))
+        centre = axpy(dot(minus3(anchor, centre), normal), normal, centre)
     measures[joint, MARGIN], measures[joint, AREA], measures[joint, POLAR] = margin, area, polar
     measures[joint, GAP] = rise + (slope_b[0] - slope_a[0]) * gx + (slope_b[1] - slope_a[1]) * gy
     measures[joint, GAP] *= upright
@@ -167,8 +162,8 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
 @inline
 def _slopes(normal, middle, t1, t2):
     """Rise of a plane along t1 and t2, over the plane across `middle`."""
-    upright = dot3(normal, middle)
-    return -dot3(normal, t1) / upright, -dot3(normal, t2) / upright
+    upright = dot(normal, middle)
+    return -dot(normal, t1) / upright, -dot(normal, t2) / upright
 
 
 @inline
@@ -183,7 +178,7 @@ def _at_the_nearest(solids, face_a, face_b, counts, points, middle, out):
     for k in range(first, first + count):
         if gaps[k] <= reach:
             own = _own_normal(solids, face_a, face_b, counts[0], counts[1], features[k], middle)
-            normal, anchor, found = add3(normal, own, 1.0), add3(anchor, row3(places, k), 1.0), found + 1
+            normal, anchor, found = axpy(1.0, own, normal), axpy(1.0, row3(places, k), anchor), found + 1
             if features[k] >= counts[0] + counts[1]:
                 crossings += 1
     share = 1.0 / found
@@ -196,7 +191,7 @@ def _edge_margin(work, counts, arm, t1, t2, touches):
     """How far the nearest place lies within one of both faces; a crossing of two edges is at the rim of both."""
     if touches == 2:
         return math.inf
-    x, y = dot3(arm, t1), dot3(arm, t2)
+    x, y = dot(arm, t1), dot(arm, t2)
     return max(_inside(work, 0, counts[0], x, y), _inside(work, 1, counts[1], x, y))
 
 
@@ -213,15 +208,15 @@ def _support(solids, part, normal, band):
     """Two corners of a part that lie furthest against a normal, within `band` of the furthest; twice the same: one."""
     lowest = math.inf
     for k in range(solids.part_starts[part], solids.part_starts[part + 1]):
-        lowest = min(lowest, dot3(row3(solids.corners, k), normal))
+        lowest = min(lowest, dot(row3(solids.corners, k), normal))
     start, end, longest = -1, -1, -1.0
     for k in range(solids.part_starts[part], solids.part_starts[part + 1]):
-        if dot3(row3(solids.corners, k), normal) > lowest + band:
+        if dot(row3(solids.corners, k), normal) > lowest + band:
             continue
         for m in range(k, solids.part_starts[part + 1]):
-            if dot3(row3(solids.corners, m), normal) <= lowest + band:
+            if dot(row3(solids.corners, m), normal) <= lowest + band:
                 arm = minus3(row3(solids.corners, m), row3(solids.corners, k))
-                length = dot3(arm, arm)
+                length = dot(arm, arm)
                 if length > longest:
                     start, end, longest = k, m, length
     return start, end
@@ -241,8 +236,8 @@ def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
     t2 = cross3(n, t1)
     count = _flatten(solids, face, origin, t1, t2, work, 0, False)
     arm, arm_end = minus3(row3(solids.corners, start), origin), minus3(row3(solids.corners, end), origin)
-    x0, y0, dx, dy = dot3(arm, t1), dot3(arm, t2), 0.0, 0.0
-    dx, dy = dot3(arm_end, t1) - x0, dot3(arm_end, t2) - y0
+    x0, y0, dx, dy = dot(arm, t1), dot(arm, t2), 0.0, 0.0
+    dx, dy = dot(arm_end, t1) - x0, dot(arm_end, t2) - y0
     low, high = 0.0, 1.0
     for k in range(count):  # Cyrus and Beck 1978
         m = k + 1 if k + 1 < count else 0
@@ -259,14 +254,14 @@ def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
         return 0
     middle = 0.5 * (low + high)
     measures[joint, MARGIN] = _inside(work, 0, count, x0 + middle * dx, y0 + middle * dy)
-    height, rise = dot3(arm, n), dot3(arm_end, n) - dot3(arm, n)
+    height, rise = dot(arm, n), dot(arm_end, n) - dot(arm, n)
     n_points = 2 if (high - low) * math.sqrt(dx * dx + dy * dy) > SAME * size else 1
     nearest = height + (low if rise > 0.0 else high) * rise
     for k in range(n_points):
         share = middle if n_points == 1 else (low if k == 0 else high)
         gaps[first + k], features[first + k], weights[first + k] = height + share * rise, k, 1.0
-        place = add3(add3(origin, t1, x0 + share * dx), t2, y0 + share * dy)
-        _put(places, first + k, add3(place, n, 0.5 * nearest))
+        place = axpy(y0 + share * dy, t2, axpy(x0 + share * dx, t1, origin))
+        _put(places, first + k, axpy(0.5 * nearest, n, place))
     measures[joint, GAP] = nearest
     normal = (sign * n[0], sign * n[1], sign * n[2])
     _put_frame(frames, joint, normal, first_tangent(solids, face, normal))
@@ -276,9 +271,9 @@ def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
 @inline
 def _nearest_on(p, u, q, v):
     """Shares along two segments p + s u and q + t v where they are nearest to each other; Ericson 2005, 5.1.9."""
-    uu, vv, uv = dot3(u, u), dot3(v, v), dot3(u, v)
+    uu, vv, uv = dot(u, u), dot(v, v), dot(u, v)
     arm = minus3(p, q)
-    c, f = dot3(u, arm), dot3(v, arm)
+    c, f = dot(u, arm), dot(v, arm)
     det = uu * vv - uv * uv
     s = min(max((uv * f - c * vv) / det, 0.0), 1.0) if det > 1e-12 * uu * vv else 0.5
     t = (uv * s + f) / vv
@@ -305,9 +300,9 @@ def _nearest_edges(solids, a, b):
         for k in range(solids.part_edges[b], solids.part_edges[b + 1]):
             q, v = _segment(solids, k)
             s, t = _nearest_on(p, u, q, v)
-            arm = minus3(add3(q, v, t), add3(p, u, s))
-            if dot3(arm, arm) < best:
-                best, edge_a, edge_b = dot3(arm, arm), i, k
+            arm = minus3(axpy(t, v, q), axpy(s, u, p))
+            if dot(arm, arm) < best:
+                best, edge_a, edge_b = dot(arm, arm), i, k
     return edge_a, edge_b
 
 
@@ -318,18 +313,18 @@ def _edge_joint(solids, face_a, edges, axis, crossing, out, joint, first):
     p, u = _segment(solids, edges[0])
     q, v = _segment(solids, edges[1])
     s, t = _nearest_on(p, u, q, v)
-    on_a, on_b = add3(p, u, s), add3(q, v, t)
-    long_u, long_v, c = math.sqrt(dot3(u, u)), math.sqrt(dot3(v, v)), cross3(u, v)
+    on_a, on_b = axpy(s, u, p), axpy(t, v, q)
+    long_u, long_v, c = math.sqrt(dot(u, u)), math.sqrt(dot(v, v)), cross3(u, v)
     margin = min(min(s, 1.0 - s) * long_u, min(t, 1.0 - t) * long_v)
-    if not crossing or math.sqrt(dot3(c, c)) < PARALLEL * long_u * long_v:
+    if not crossing or math.sqrt(dot(c, c)) < PARALLEL * long_u * long_v:
         margin = 0.0
-    gap = dot3(minus3(on_b, on_a), axis)
-    _put(places, first, add3(on_a, minus3(on_b, on_a), 0.5))
+    gap = dot(minus3(on_b, on_a), axis)
+    _put(places, first, axpy(0.5, minus3(on_b, on_a), on_a))
     gaps[first], features[first], weights[first] = gap, 0, 1.0
     measures[joint, MARGIN], measures[joint, GAP] = margin, gap
     along = unit3(u)
-    t1 = add3(along, axis, -dot3(along, axis))
-    length = math.sqrt(dot3(t1, t1))
+    t1 = axpy(-dot(along, axis), axis, along)
+    length = math.sqrt(dot(t1, t1))
     _put_frame(frames, joint, axis, unit3(t1) if length > PARALLEL else first_tangent(solids, face_a, axis))
     return 1
 
@@ -341,8 +336,8 @@ def describe_pair(solids, a, b, pair_of_faces, work, out, joint, first):
     size = min(solids.sizes[a], solids.sizes[b])
     _, axis, edge_a, edge_b = separate(solids, a, b, math.inf)
     normal_a, normal_b = row3(solids.normals, face_a), row3(solids.normals, face_b)
-    along_a, along_b = dot3(normal_a, axis), -dot3(normal_b, axis)
-    if min(along_a, along_b) >= STEEP and -dot3(normal_a, normal_b) >= STEEP:
+    along_a, along_b = dot(normal_a, axis), -dot(normal_b, axis)
+    if min(along_a, along_b) >= STEEP and -dot(normal_a, normal_b) >= STEEP:
         count = _face_joint(solids, face_a, face_b, size, work, out, joint, first)
         if count:
             return FACES, count
