@@ -30,6 +30,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         _leaning_automatically(case, sims[0])
         + _weightless(sims[0])
         + _shear(sims[0])
+        + _cracking(case, sims[0])
         + _leaning(case, sims[0], found.get("displacement_at_failure"))
     )
     if found.get("status") == "not converged":
@@ -58,6 +59,21 @@ def _shear(sim: Simulation) -> list[str]:
         "lowered the load by some per cent"
         for name, ratio in zip(properties.names, ratios)
         if not low * (1 - 1e-9) <= ratio <= high * (1 + 1e-9)
+    ]
+
+
+def _cracking(case: Case, sim: Simulation) -> list[str]:
+    """Joints in space that crack: their finest layout has but the corners and the centre of their area.
+
+    Once the far corners of a rectangle under ft have cracked, the centre holds 2/3 ft A at half its width b, ft A b/3,
+    where a brittle joint that cracks bit by bit ends at ft A b/6; corners alone hold ft A b/2.
+    """
+    strong = [f"'{name}'" for name, joint in case.joints.items() if getattr(joint, "tension", 0.0) > 0.0]
+    if not strong or sim.contacts.shear.shape[1] < 2:
+        return []
+    return [
+        f"tension of joint {', '.join(strong)} acts at a few points of each joint in 3D: where joints crack in bending "
+        "the load may be up to twice (points = 'vertices': three times) that of joints that crack bit by bit"
     ]
 
 
