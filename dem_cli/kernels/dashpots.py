@@ -10,33 +10,117 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.jit import always_inline, inline, overload
+from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, sweep, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
-from dem_cli.kernels.vec import (
-    add_at,
-    add_torques,
-    axpy,
-    components,
-    compose,
-    dot,
-    load,
-    load_frame,
-    load_levers,
-    scale,
-    store,
-    turn,
-)
+from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
 
 OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
+def put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    """How far an impulse goes in one turn to where its error is none: (1 + C K)⁻¹, row by row.
+
+    viscous: C, half of damping × step across and along the joint [kg]; K: rates by impulses of the point [1/kg], in 2D
+    its diagonal alone. masses: sum of both inverse masses. What slips has no dashpot along the joint.
+    """
+    if len(frame) == 2:
+        for k in range(2):
+            inverse = masses
+            for reach, mobility in zip(reaches, mobilities, strict=True):
+                inverse += mobility[0][0] * dot(reach[k], reach[k])
+            gains[point, k] = 1.0 / (1.0 + viscous[min(k, 1)] * inverse)
+    else:
+        put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips)
+
+
+@overload(put_gains)
+def _put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    if len(frame) == 2:
+
+        def planar(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+            levers_a, levers_b = reaches
+            turning_a, turning_b = mobilities[0][0][0], mobilities[1][0][0]
+            for k in range(2):
+                inverse = masses
+                inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
+                gains[point, k] = 1.0 / (1.0 + viscous[k] * inverse)
+
+        return planar
+
+    def spatial(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+        put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips)
+
+    return spatial
+
+
+@inline
+def put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    """The same in 3D, all of (1 + C K)⁻¹: (n_points, 9)."""
+    n, s, t = frame
+    c, f = viscous
+    a_n, a_s, a_t = sweep(reaches[0], n), sweep(reaches[0], s), sweep(reaches[0], t)
+    b_n, b_s, b_t = sweep(reaches[1], n), sweep(reaches[1], s), sweep(reaches[1], t)
+    by_a, by_b = spun(mobilities[0], a_n), spun(mobilities[1], b_n)
+    nn = 1.0 + c * (masses + dot(by_a, a_n) + dot(by_b, b_n))
+    if slips:
+        gains[point, 0] = 1.0 / nn
+        for k in range(1, 9):
+            gains[point, k] = 0.0
+        return
+    ns, nt = dot(by_a, a_s) + dot(by_b, b_s), dot(by_a, a_t) + dot(by_b, b_t)
+    by_a, by_b = spun(mobilities[0], a_s), spun(mobilities[1], b_s)
+    ss, st = 1.0 + f * (masses + dot(by_a, a_s) + dot(by_b, b_s)), f * (dot(by_a, a_t) + dot(by_b, b_t))
+    tt = 1.0 + f * (masses + dot(spun(mobilities[0], a_t), a_t) + dot(spun(mobilities[1], b_t), b_t))
+    # Rows (nn, c ns, c nt), (f ns, ss, st), (f nt, st, tt); its inverse by cofactors.
+    low, left, right = ss * tt - st * st, ns * tt - st * nt, ns * st - ss * nt
+    share = 1.0 / (nn * low - c * f * (ns * left - nt * right))
+    gains[point, 0], gains[point, 1], gains[point, 2] = share * low, -share * c * left, share * c * right
+    gains[point, 3], gains[point, 6] = -share * f * left, share * f * right
+    gains[point, 4], gains[point, 8] = share * (nn * tt - c * f * nt * nt), share * (nn * ss - c * f * ns * ns)
+    gains[point, 5] = gains[point, 7] = share * (c * f * ns * nt - nn * st)
+
+
+def gained(gains, point, push, along, error, error_along, least):
+    """Impulses across and along the joint after they gave up their errors; across it not below `least`."""
+    if len(along) == 1:
+        return max(push - error * gains[point, 0], least), axpy(-gains[point, 1], error_along, along)
+    x, y, z = error, error_along[0], error_along[1]
+    g = gains[point]
+    free = push - (g[0] * x + g[1] * y + g[2] * z)
+    new = max(free, least)
+    given = (new - free) / g[0]  # what the bound gives back goes on to the others
+    return new, (
+        along[0] - (g[3] * x + g[4] * y + g[5] * z) + given * g[3],
+        along[1] - (g[6] * x + g[7] * y + g[8] * z) + given * g[6],
+    )
+
+
+@overload(gained)
+def _gained(gains, point, push, along, error, error_along, least):
+    if len(along) == 1:
+        return lambda gains, point, push, along, error, error_along, least: (
+            max(push - error * gains[point, 0], least),
+            axpy(-gains[point, 1], error_along, along),
+        )
+
+    def spatial(gains, point, push, along, error, error_along, least):
+        x, y, z = error, error_along[0], error_along[1]
+        free = push - (gains[point, 0] * x + gains[point, 1] * y + gains[point, 2] * z)
+        s = along[0] - (gains[point, 3] * x + gains[point, 4] * y + gains[point, 5] * z)
+        t = along[1] - (gains[point, 6] * x + gains[point, 7] * y + gains[point, 8] * z)
+        if free >= least:
+            return free, (s, t)
+        given = (least - free) / gains[point, 0]  # what the bound gives back goes on to the others
+        return least, (s + given * gains[point, 3], t + given * gains[point, 6])
+
+    return spatial
+
+
 @always_inline
-def _rates(frame, levers_a, levers_b, relative, spin_a, spin_b):
-    """Speed of opening and sliding of a point [m/s]."""
-    normal, along = components(frame, relative)
-    normal_a, along_a = turn(levers_a, spin_a)
-    normal_b, along_b = turn(levers_b, spin_b)
-    return normal + normal_b - normal_a, axpy(-1.0, along_a, axpy(1.0, along_b, along))
+def _least(normal, dt):
+    """The least impulse across a joint: spring and dashpot together do not pull, but for what is bonded."""
+    return -normal * dt if normal >= 0.0 else -np.inf
 
 
 @inline
