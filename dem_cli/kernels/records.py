@@ -17,13 +17,16 @@ class Bodies(NamedTuple):
     """Changing state of the blocks."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, d)
-    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3): they add up where
-    # geometry is that of the start
-    velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
+    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3), that add up where
+    # geometry is that of the start, or where it moves unit quaternions from the start to now, (n_blocks, 4)
+    velocities: np.ndarray  # half a step behind the positions; spins along the axes of the world, (n_blocks, n_dof)
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
     unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)
     corners: np.ndarray  # world coordinates of all corners [m], (n_vertices, d); kept only by moving geometry
-    turns: np.ndarray  # cosine and sine of the orientations, 2D; kept only by moving geometry, (n_blocks, 2)
+    turns: np.ndarray  # cosine and sine of the orientations, (n_blocks, 2), in space rotation matrices, row by row,
+    # (n_blocks, 9); kept only by moving geometry
+    mobilities: np.ndarray  # inverse tensors of inertia along the axes of the world, real ones, 0 of supports: those of
+    # now in time histories [1/(kg m²)], (n_blocks, r·r)
     means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
     drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
     pulled: np.ndarray  # velocities before the dashpots of the last step, (n_blocks·n_dof,)
@@ -36,6 +39,8 @@ class BlockShapes(NamedTuple):
     corner_blocks: np.ndarray  # block of each corner, (n_vertices,)
     corner_arms: np.ndarray  # corner relative to the centroid, undeformed [m], (n_vertices, d)
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
+    inertias: np.ndarray  # moments of inertia, principal ones in space; 0 of supports [kg m²], (n_blocks, r)
+    axes: np.ndarray  # from the principal axes to those of the block, matrices row by row, (n_blocks, 9); 2D (0, 9)
 
 
 class MovingJoints(NamedTuple):
