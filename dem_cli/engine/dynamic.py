@@ -102,7 +102,7 @@ class DynamicSimulation(Simulation):
             viscosity=self.damping.viscosities(self.model, joints),
             elements=self._decays(),
             rates=np.zeros((n, d)),
-            gains=np.ones((n, d)),
+            gains=np.ones((n, d * self.model.inertias.shape[1])),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),

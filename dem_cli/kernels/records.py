@@ -143,11 +143,15 @@ class SpatialMotion(NamedTuple):
     tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
     scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 8)
-    edges: np.ndarray  # of joints of two edges: corners of the edge of a and of that of b, sign of the normal; −1: none,
+    edges: (
+        np.ndarray
+    )  # of joints of two edges: corners of the edge of a and of that of b, sign of the normal; −1: none,
     # (n_joints, 5)
     types: np.ndarray  # CORNER_OF_B, CORNER_OF_A, CROSSING or FIXED_TO_B, (n_points,) int8
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
-    shares: np.ndarray  # of crossings: place along the edge of a where they began; lone: sign of the normal, (n_points,)
+    shares: (
+        np.ndarray
+    )  # of crossings: place along the edge of a where they began; lone: sign of the normal, (n_points,)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
     face_starts: np.ndarray  # as Polyhedra, and the next four
     face_corners: np.ndarray
@@ -185,7 +189,9 @@ class Contacts(NamedTuple):
     closure: np.ndarray  # overlap that a point needs for the force that it was last at rest with: the normal force is
     # kn × (closure − gap) [m], (n_points,); 0: kn × −gap, an elastic joint (engine/rigid_joints.py)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
-    exchanged: np.ndarray  # elastic energy that went with areas of points that changed [J]: net (negative: it was made),
+    exchanged: (
+        np.ndarray
+    )  # elastic energy that went with areas of points that changed [J]: net (negative: it was made),
     # and the sum of all amounts, (2,)
 
 
@@ -218,7 +224,8 @@ class Dampers(NamedTuple):
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
     elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
     rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
-    gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
+    gains: np.ndarray  # what impulses give up of their errors in one turn: shares in 2D, blocks row by row in 3D,
+    # (n_points, d·r)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8

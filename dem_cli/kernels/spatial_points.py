@@ -214,7 +214,9 @@ def on_rim(geometry, bodies, joint, frame, room, out):
     outwards = frame[0] if on_a else (-n[0], -n[1], -n[2])
     reach, size, count = scales[joint, REACH], scales[joint, SIZE], 0
     for corner in range(geometry.part_starts[other], geometry.part_starts[other + 1]):
-        inside, height = _height_inside(geometry, vertices, face, outwards, row3(vertices, corner), ROUND_OFF * size * size)
+        inside, height = _height_inside(
+            geometry, vertices, face, outwards, row3(vertices, corner), ROUND_OFF * size * size
+        )
         if inside and abs(height) <= reach and count < room:
             for m in range(5):
                 found[count, m] = NONE
