@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracle.contact_in_space import BOTH, CROSSING, FACE_OF_A, FACE_OF_B, ContactPoint
 
-from dem_cli.dynamics.spatial_stiffness import cross_matrices, second_derivatives
+from dem_cli.dynamics.spatial_stiffness import Attachment, cross_matrices, second_derivatives
 
 
 def unit(values) -> np.ndarray:
@@ -52,6 +52,8 @@ def test_second_derivatives_are_those_of_the_forces(kind):
     rows = np.hstack([-along, np.cross(along, arms[0]), along, -np.cross(along, arms[1])])
     springs = rows.T @ np.diag([kn, ks, ks]) @ rows
     force = kn * pressed * NORMAL - ks * slip @ along[1:]
-    geometric = -second_derivatives(force[None], arms[None], spins_of(kind)[None], follows_of(kind)[None])[0]
+    geometric = -second_derivatives(force[None], arms[None], Attachment(spins_of(kind)[None], follows_of(kind)[None]))[
+        0
+    ]
     assert np.abs(geometric).max() > 0.1
     assert 0.5 * (found + found.T) == pytest.approx(springs + geometric, abs=1e-8 * np.abs(geometric).max())
