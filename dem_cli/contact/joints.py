@@ -81,6 +81,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         memory=np.zeros((n_points, n_memory)),
         closure=np.zeros(n_points),
         stale=np.zeros(n_joints + 1, np.int8),
+        exchanged=np.zeros(2),
     )
 
 
@@ -106,6 +107,11 @@ def joints_of(
         ks=(properties.ks[named] * areas)[owners] * shares,
         law=np.ascontiguousarray(properties.law[named]),
     )
+
+
+def points_in_use(joints: Joints) -> np.ndarray:
+    """Points that can carry a force, (n_points,) bool; in space joints that move have room for more than they have."""
+    return joints.kn > 0.0
 
 
 def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ def carry_memory(narrow: NarrowPhase, old: JointArrays, new: JointArrays) -> Non
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
     that is nearest takes over.
     """
+    new.contacts.exchanged[:] += old.contacts.exchanged
     points = same_rows(point_keys(old), point_keys(new))
     target = np.flatnonzero(points >= 0)
     _copy(old, new, target, points[target])

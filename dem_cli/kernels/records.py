@@ -134,6 +134,7 @@ class Contacts(NamedTuple):
     closure: np.ndarray  # overlap that a point needs for the force that it was last at rest with: the normal force is
     # kn × (closure − gap) [m], (n_points,); 0: kn × −gap, an elastic joint (engine/rigid_joints.py)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
+    exchanged: np.ndarray  # energy that went as areas of points changed (net; minus: made), and all amounts [J], (2,)
 
 
 class Loads(NamedTuple):
