@@ -32,7 +32,10 @@ if TYPE_CHECKING:
     from dem_cli.kernels.records import Bodies, Contacts, Joints
     from dem_cli.model.model import Model
 
-SMALL = 1e-6  # rad, and shares of the radii of blocks: between round-off of places and what is of second order
+SMALL = (
+    1e-5  # rad, and shares of the radii of blocks: what is of second order is nothing yet, and a place that goes with
+)
+# one block on one side of a rim and with the other one beyond it is half way between, as in a vibration
 
 
 class Attachment(NamedTuple):

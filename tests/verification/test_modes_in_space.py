@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 import scipy.linalg
-from engine import block, real_masses, rectangle, simulation, steps, tables
+from engine import block, real_masses, simulation, steps, tables
 
-from dem_cli.analyses.modes import closed_points, touching_points
+from dem_cli.analyses.modes import closed_points
 from dem_cli.contact.detect import world_corners
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.time_step import time_step
@@ -32,13 +32,16 @@ STONES = {
 }
 
 
+SHORT = np.array([5e-4, -5e-4])  # head joints are 1 mm open: stones that just touch would be half of a spring
+
+
 def wall() -> list[dict]:
     """Three courses in running bond, one stone thick."""
     stones = []
     for course in range(3):
         cuts = [0.0, 0.6, 1.2, 1.8] if course % 2 == 0 else [0.0, 0.3, 0.9, 1.5, 1.8]
         for i, ends in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
-            stones.append(box(f"b{course}-{i}", ends, (0, 0.3), (0.25 * course, 0.25 * course + 0.25)))
+            stones.append(box(f"b{course}-{i}", tuple(ends + SHORT), (0, 0.3), (0.25 * course, 0.25 * course + 0.25)))
     return stones
 
 
@@ -51,7 +54,8 @@ def house() -> list[dict]:
             across = (side, side + 0.4)
             for along, cuts in ((0, outer if course == 0 else inner), (1, inner if course == 0 else outer)):
                 for i, ends in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
-                    place = (ends, across) if along == 0 else (across, ends)
+                    length = tuple(ends + SHORT)
+                    place = (length, across) if along == 0 else (across, length)
                     stones.append(box(f"c{course}-{along}-{side:g}-{i}", *place, z))
     return stones
 
@@ -71,7 +75,7 @@ def settled(stones: list[dict], kn: float = KN):
     return sim
 
 
-def stiffness_of_forces(sim, small: float = 1e-7) -> np.ndarray:
+def stiffness_of_forces(sim, small: float = 1e-5) -> np.ndarray:
     """−∂(forces)/∂(places and rotation vectors) of the free blocks, as the compiled loop answers to small motions."""
     kept, bodies = sim.save(), sim.bodies
 
@@ -123,7 +127,10 @@ def test_geometric_stiffness_is_that_of_the_contact_loop(name, error):
 
 @pytest.mark.parametrize("stones", [wall(), house()], ids=["wall", "house"])
 def test_modes_are_those_of_dense_eigenvalues(stones):
-    """Frequencies, shapes and effective masses of scipy.linalg.eigh, from differences of forces and masses by hand."""
+    """Of scipy.linalg.eigh, from differences of forces and masses by hand: frequencies within 2.5e-5, the others 1e-4.
+
+    What is not symmetric of the forces moves a frequency by less than 4e-6.
+    """
     sim = settled(stones)
     forces = stiffness_of_forces(sim)
     matrix, masses = 0.5 * (forces + forces.T), masses_of(ordered(sim, stones))
@@ -132,12 +139,37 @@ def test_modes_are_those_of_dense_eigenvalues(stones):
     n = len(values) // 6
     found = modes(system(sim, closed_points(sim), geometric=True), 10, 3, sim.model.n_blocks)
     frequencies = np.sqrt(values[:10]) / (2 * math.pi)
-    print(found.frequencies / frequencies - 1, np.sqrt(unsymmetric[:10] / values[:10]) - 1)
-    assert found.frequencies == pytest.approx(frequencies, rel=1e-6)
-    assert np.sqrt(unsymmetric[:10]) / (2 * math.pi) == pytest.approx(frequencies, rel=1e-4)
+    assert found.frequencies == pytest.approx(frequencies, rel=5e-5)
+    assert np.sqrt(unsymmetric[:10]) / (2 * math.pi) == pytest.approx(frequencies, rel=1e-5)
     base = np.tile(np.eye(6)[:, :3], (n, 1))
-    assert found.effective_masses == pytest.approx(((vectors.T @ masses @ base)[:10]) ** 2, abs=1e-4 * masses[0, 0])
+    total = masses[::6, ::6].sum()
+    assert found.effective_masses == pytest.approx((vectors.T @ masses @ base)[:10] ** 2, abs=1e-4 * total)
     likeness = np.abs(found.shapes[:, ~sim.model.fixed].reshape(10, -1) @ masses @ vectors[:, :10])
-    assert np.diag(likeness) == pytest.approx(np.ones(10), abs=1e-6)
+    assert np.diag(likeness) == pytest.approx(np.ones(10), abs=1e-3)
     without = modes(system(sim, closed_points(sim)), 1, 3, sim.model.n_blocks).frequencies[0]
     assert without / frequencies[0] > 1.001  # what gravity takes away
+
+
+@pytest.mark.parametrize("name", list(STONES))
+def test_the_engine_vibrates_at_the_frequency(name):
+    """Started along each of the first two modes, so gently that nothing opens: the period of 20 cycles."""
+    sim = settled(STONES[name])
+    found = modes(system(sim, closed_points(sim), geometric=True), 2, 3, sim.model.n_blocks)
+    kept, dt = sim.save(), 0.2 * time_step(sim).limit
+    for frequency, shape in zip(found.frequencies, found.shapes, strict=True):
+        sim.restore(kept)
+        real_masses(sim)
+        sim.loads.inverse_masses[:, 3:] = sim.bodies.mobilities[:, ::4]  # upright boxes: nothing beside the diagonal
+        omega = 2 * math.pi * frequency
+        sim.bodies.velocities[:] = 1e-4 * omega * shape / np.abs(shape).max()
+        before, weights = sim.bodies.positions.copy(), shape[:, :3] * sim.model.masses[:, None]
+        places = []
+        for _ in range(int(20.5 / frequency / dt)):
+            steps(sim, 1, dt=dt)
+            places.append(float((weights * (sim.bodies.positions - before)).sum()))
+        values = np.array(places) - np.mean(places)
+        ups = np.flatnonzero((values[:-1] < 0.0) & (values[1:] >= 0.0))
+        exact = ups + values[ups] / (values[ups] - values[ups + 1])
+        period = dt * (exact[-1] - exact[0]) / (len(exact) - 1)
+        assert len(exact) >= 19
+        assert period * frequency == pytest.approx(1.0 - (omega * dt) ** 2 / 24.0, abs=5e-5)
