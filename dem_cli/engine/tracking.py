@@ -37,7 +37,7 @@ class JointTracking:
     @property
     def narrow(self) -> NarrowPhase:
         """Who finds and places contact points; a module, which no copy of a simulation could take along."""
-        return geometry_of(self.model.dimension)
+        return geometry_of(self.model.dimension, self.moves)
 
     def take(self, arrays: JointArrays) -> None:
         """From here on these are the joints."""
@@ -81,8 +81,8 @@ class JointTracking:
         carry_memory(self.narrow, old, new)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
-            asked = old.geometry.faces[old.contacts.stale[:-1] == 1]
-            new.contacts.stale[:-1] |= same_rows(asked, new.geometry.faces) >= 0
+            asked = old.geometry.keys[old.contacts.stale[:-1] == 1]
+            new.contacts.stale[:-1] |= same_rows(asked, new.geometry.keys) >= 0
         self.take(new)
         self.detections += 1
 
