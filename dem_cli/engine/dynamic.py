@@ -71,6 +71,7 @@ class DynamicSimulation(Simulation):
         self.ledger[:] = 0.0
         self.ledger[slot.EXTERNAL] = self.elastic_energy()  # what the springs hold was given before
         self.centred = self.ledger.copy()
+        self.contacts.exchanged[:] = 0.0
         self.bodies.means[:] = 0.0
 
     def start_moving(self) -> None:
