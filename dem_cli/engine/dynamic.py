@@ -78,6 +78,7 @@ class DynamicSimulation(Simulation):
         bodies.means[:] = 0.0
         bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
         self.turns_of_means = bodies.turns.copy()
+        self.contacts.exchanged[:] = 0.0
 
     def start_moving(self) -> None:
         """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""

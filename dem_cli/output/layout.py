@@ -233,6 +233,11 @@ ENERGY = {
     "dashpots": Described("lost to viscous joints, since the start", "J", _ROW),
     "mass_damping": Described("lost to damping by mass, since the start", "J", _ROW),
     "maxwell": Described("lost to Maxwell elements of joints, since the start", "J", _ROW),
+    "reweighting": Described(
+        "gone with the areas of contact points that change where blocks move in 3D, net since the start; minus: made",
+        "J",
+        _ROW,
+    ),
 }
 _SAMPLE = ("sample", "coordinate")
 SERIES = {
