@@ -1,4 +1,4 @@
-"""Modes of structures in space: against dense eigenvalues of differences of the engine's forces, closed forms, twins."""
+"""Modes of structures in space against dense eigenvalues of differences of the engine's forces, and its vibrations."""
 
 from __future__ import annotations
 
