@@ -134,8 +134,8 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
     for j in np.unique(new.joints.owners[~known]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
-        was, now = was[loaded[was]], now[new.geometry.features[now] >= 0]
-        now = now[~np.isin(new.geometry.features[now], old.geometry.features[was])]
+        now = now[~np.isin(new.geometry.features[now], [-1, *old.geometry.features[was]])]
+        was = was[loaded[was]]
         if len(was) and len(now):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]
