@@ -153,9 +153,10 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
     joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
-    owner = joints.owners
+    owner, used = joints.owners, points_in_use(joints)
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
-    limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
+    kn = np.where(used, joints.kn, 1.0)
+    limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, kn)
     slides = friction >= limit * (1 - sim.settings.mechanism.slides)
     state = np.where(contacts.normal == 0.0, 0, np.where(slides, 2, 1))
     record = ContactRecord(
@@ -170,7 +171,6 @@ def contact_record(sim: Simulation) -> ContactRecord:
         state=state.astype(np.int8),
         tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
-    used = points_in_use(joints)
     return record if used.all() else ContactRecord(*(values[used] for values in record))
 
 
