@@ -110,7 +110,7 @@ class DynamicSimulation(Simulation):
             viscosity=self.damping.viscosities(self.model, joints),
             elements=self._decays(),
             rates=np.zeros((n, d)),
-            gains=np.ones((n, d)),
+            gains=np.ones((n, d * self.model.inertias.shape[1])),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),
@@ -207,11 +207,12 @@ class DynamicSimulation(Simulation):
     def _held_by_elements(self) -> float:
         """Energy in the springs of Maxwell elements [J]."""
         joints, d, held = self.joints, self.model.dimension, 0.0
+        used = joints.kn > 0.0
         for e, (share, _) in enumerate(self.damping.elements):
             column = self.dampers.first + d * (e + 1)
             forces = self.contacts.memory[:, column : column + d]
-            held += float((forces[:, 0] ** 2 / (share * joints.kn)).sum())
-            held += float(((forces[:, 1:] ** 2).sum(axis=1) / (share * joints.ks)).sum())
+            held += float((forces[used, 0] ** 2 / (share * joints.kn[used])).sum())
+            held += float(((forces[used, 1:] ** 2).sum(axis=1) / (share * joints.ks[used])).sum())
         return 0.5 * held
 
     @property

@@ -126,6 +126,13 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
     return 2.0 * np.arctan2(np.linalg.norm(orientations[:, 1:], axis=1), np.abs(orientations[:, 0]))
 
 
+def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """By how much each block has turned from one orientation to another [rad], (n,): in space from 0 to π."""
+    if one.shape[1] == 4:
+        return 2.0 * np.arccos(np.clip(np.abs((one * other).sum(axis=1)), 0.0, 1.0))
+    return np.linalg.norm(one - other, axis=1)
+
+
 def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
     """Axis times angle of each rotation [rad], (n, r): in the plane the angle, in space the shorter way round."""
     if orientations.shape[1] < 4:

@@ -305,6 +305,12 @@ BLOCK_FIELDS = {
     "CellData/rotation": Described(
         _TURNED, "rad", in_space=Described("angle that the block has turned by, from 0 to π", "rad")
     ),
+    "CellData/orientation": Described(
+        "unit quaternion w, x, y, z of how the block has turned since it was drawn", spatial=True
+    ),
+    "CellData/angular_velocity": Described(
+        "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
+    ),
 }
 CONTACT_FIELDS = {
     "PointData/joint": CONTACTS["joint"],
