@@ -6,13 +6,16 @@ import numpy as np
 
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import Faces
+from dem_cli.geometry.rotation import matrices
 from dem_cli.kernels.records import BlockShapes
 from dem_cli.model.model import Model
 
 
 def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
-    return BlockShapes(model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii)
+    inertias = np.where(model.fixed[:, None], 0.0, model.inertias)
+    axes = matrices(model.principal_axes).reshape(-1, 9)
+    return BlockShapes(model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii, inertias, axes)
 
 
 def world_corners(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:

@@ -81,6 +81,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         memory=np.zeros((n_points, n_memory)),
         closure=np.zeros(n_points),
         stale=np.zeros(n_joints + 1, np.int8),
+        exchanged=np.zeros(2),
     )
 
 

@@ -65,7 +65,7 @@ def points(
     joints = joints_of(model, faces, properties, starts, areas, shares)
     scales = [lengths[:, 0], 1.0 / lengths, 0.25 / (BLEND * shortest), _cotangents(model)[edges]]
     geometry = PlanarGeometry(
-        faces=faces.faces,
+        keys=faces.faces,
         features=np.arange(len(joints.kn)) - starts[joints.owners],
         edges=edges,
         scales=np.ascontiguousarray(np.column_stack(scales)),

@@ -70,7 +70,7 @@ def points(
         found, shares = _with_centres(found, shares, centred)
     joints = joints_of(model, faces, properties, found.starts, areas, shares)
     geometry = SpatialGeometry(
-        faces=faces.faces,
+        keys=faces.faces,
         features=found.features,
         kinds=found.kinds,
         corners=outline,

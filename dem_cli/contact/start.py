@@ -9,20 +9,27 @@ from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joint_planes import in_planes
 from dem_cli.contact.joints import JointProperties
+from dem_cli.geometry.inertia import mobilities
+from dem_cli.geometry.rotation import turns_of, unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.model.model import Model
 
 TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 
 
-def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0) -> Bodies:
-    """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,)."""
+def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool = False) -> Bodies:
+    """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,).
+
+    moves: whether geometry does; orientations in space are quaternions then, else rotation vectors that add up.
+    """
     n, n_dof = model.dead_loads.shape
-    positions, orientations = model.centroids - origin, np.zeros_like(model.inertias)
-    corners = world_corners(block_shape(model), positions, orientations)
+    shape, positions = block_shape(model), model.centroids - origin
+    orientations = unturned(n, model.dimension) if moves else np.zeros_like(model.inertias)
+    turns = turns_of(orientations)
     return Bodies(
-        positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)), corners,
-        np.zeros((n, 2)), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+        positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)),
+        world_corners(shape, positions, orientations), turns, mobilities(shape.inertias, shape.axes, turns),
+        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
     )  # fmt: skip
 
 

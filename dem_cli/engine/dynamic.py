@@ -160,7 +160,7 @@ class DynamicSimulation(Simulation):
         return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
 
     def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
-        run = compiled_shake(self.law, self.properties.profiled, self.damping.in_joints)
+        run = compiled_shake(self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension)
         return run(
             first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.geometry,
             self.contacts, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,

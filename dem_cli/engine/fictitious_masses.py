@@ -22,7 +22,8 @@ def fictitious_masses(
     """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks.
 
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
-    (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety).
+    (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety). Where blocks turn in space, all three
+    rotations of one have the largest of their masses.
     """
     rows = np.abs(relative_motion(joints, model.dimension))
     blocks = joints.blocks[joints.owners]
@@ -37,6 +38,8 @@ def fictitious_masses(
     for side in (0, 1):
         share = (rows[:, :, side] * (stiffness * reach)[:, :, None]).sum(axis=1)
         np.add.at(masses, blocks[:, side], share / weights[blocks[:, side]])
+    if bodies.orientations.shape[1] > model.inertias.shape[1]:  # quaternions: the block turns under its axes
+        masses[:, model.rotations] = masses[:, model.rotations].max(axis=1, keepdims=True)
     masses /= 4.0 * safety**2
     # Blocks that touch nothing now: as heavy as a typical block that does, or falling slowly.
     for k in range(masses.shape[1]):

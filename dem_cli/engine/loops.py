@@ -1,29 +1,43 @@
-"""Stepping loops, compiled for what a scene needs: one kinematics, one law, one kind of joints."""
+"""Stepping loops, compiled for what a scene needs: one kinematics, one law, one kind of joints, one dimension."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.drift import drift_centroids, drift_corners
+from dem_cli.kernels.drift import drift_centroids, drift_corners, drift_solids, drift_tumbling
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.shake import make_shake
 from dem_cli.laws.law import Law
 
 
+class Drifts(NamedTuple):
+    """What moves blocks, with their corners."""
+
+    in_pseudo_time: Callable
+    in_time: Callable  # with real masses, in seconds
+
+
+# Where geometry moves, by dimension: what makes the loop of a law over plane joints and over those with profiles.
+FORCES = {2: (make_planar_forces, make_profiled_forces)}
+DRIFTS = {2: Drifts(drift_corners, drift_corners), 3: Drifts(drift_solids, drift_tumbling)}
+
+
 @cache
-def compiled_advance(kinematics: str, law: Law, profiled: bool = False):
+def compiled_advance(kinematics: str, law: Law, profiled: bool = False, dimension: int = 2):
     """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
     if kinematics == "fixed":
         return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids)
-    make = make_profiled_forces if profiled else make_planar_forces
-    return make_advance(make(law.function, law.bonded, rigid=True), drift_corners)
+    make = FORCES[dimension][profiled]
+    return make_advance(make(law.function, law.bonded, rigid=True), DRIFTS[dimension].in_pseudo_time)
 
 
 @cache
-def compiled_shake(law: Law, profiled: bool, damped: bool):
+def compiled_shake(law: Law, profiled: bool, damped: bool, dimension: int = 2):
     """The stepping loop of time histories for one law and one kind of joints; compiled at its first call."""
-    make = make_profiled_forces if profiled else make_planar_forces
-    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), drift_corners, damped)
+    make = FORCES[dimension][profiled]
+    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), DRIFTS[dimension].in_time, damped)

@@ -16,7 +16,8 @@ from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
-from dem_cli.geometry.rotation import turned_as_one
+from dem_cli.geometry.inertia import mobilities
+from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
@@ -50,7 +51,7 @@ class Simulation:
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
         self.shape = block_shape(model)
         self.origin = origin_of(model)
-        self.bodies = bodies_at_rest(model, self.origin)
+        self.bodies = bodies_at_rest(model, self.origin, kinematics == "large")
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
@@ -170,7 +171,7 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled)
+        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled, self.model.dimension)
         done: int = loop(
             n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
@@ -263,20 +264,21 @@ class Simulation:
         """Moves blocks where they are put [m], (d,); `find_faces` when all are in place."""
         self.bodies.positions[blocks] += displacement
 
-    def turn(self, blocks: np.ndarray, angle: float, about: np.ndarray) -> None:
-        """Turns blocks as one about a point (d,), counter-clockwise [rad]; 2D."""
-        arms = self.bodies.positions[blocks] - about
-        self.bodies.positions[blocks] = about + turned_as_one(arms, angle)
-        self.bodies.orientations[blocks] += angle
+    def turn(self, blocks: np.ndarray, rotation: np.ndarray | float, about: np.ndarray) -> None:
+        """Turns blocks as one about a point (d,): counter-clockwise, in space by axis times angle (3,) [rad]."""
+        bodies = self.bodies
+        bodies.positions[blocks] = about + turned_as_one(bodies.positions[blocks] - about, rotation)
+        bodies.orientations[blocks] = turned_further(bodies.orientations[blocks], rotation)
 
     def shift(self, motion: np.ndarray) -> None:
-        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]; 2D. Forces stay."""
-        bodies, d = self.bodies, self.model.dimension
+        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces stay."""
+        bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
-        bodies.orientations[:] += motion[:, self.model.rotations]
-        bodies.corners[:] = world_corners(self.shape, bodies.positions, bodies.orientations)
+        bodies.orientations[:] = turned_further(bodies.orientations, spins)
+        self._follow()
         self.taken_back += motion
-        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * np.abs(motion[:, d])
+        angles = np.sqrt((spins**2).sum(axis=1))
+        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
 
     def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
         """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""
@@ -284,10 +286,16 @@ class Simulation:
 
     def find_faces(self) -> None:
         """Corners and joints of blocks that were displaced or turned."""
-        bodies = self.bodies
-        bodies.corners[:] = world_corners(self.shape, bodies.positions, bodies.orientations)
-        bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
+        self._follow()
+        self.bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
         self.detect()
+
+    def _follow(self) -> None:
+        """Takes along what goes with the blocks to where they were put: corners, turns, mobilities."""
+        bodies, shape = self.bodies, self.shape
+        bodies.corners[:] = world_corners(shape, bodies.positions, bodies.orientations)
+        bodies.turns[:] = turns_of(bodies.orientations)
+        bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
 
     def place(self, normal: np.ndarray, shear: np.ndarray, gaps: np.ndarray, displacements: np.ndarray) -> None:
         """A state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all blocks.
@@ -297,8 +305,10 @@ class Simulation:
         d = self.model.dimension
         self.contacts.normal[:], self.contacts.shear[:], self.contacts.gaps[:] = normal, shear, gaps
         self.bodies.positions[:] = self.reference_positions + displacements[:, :d]
-        self.bodies.orientations[:] = displacements[:, self.model.rotations]
+        self.bodies.orientations[:] = oriented_as(self.bodies.orientations, displacements[:, self.model.rotations])
         self.bodies.velocities[:] = 0.0
+        if self.kinematics == "large":
+            self._follow()
 
     def open_books(self, friction: float) -> None:
         """A new ledger, in which the springs' energy and what friction took [J] were given from outside."""
@@ -357,4 +367,5 @@ class Simulation:
 
     def places(self) -> np.ndarray:
         """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
-        return np.column_stack([self.bodies.positions, self.bodies.orientations * self.shape.radii[:, None]])
+        turned = rotation_vectors(self.bodies.orientations)
+        return np.column_stack([self.bodies.positions, turned * self.shape.radii[:, None]])

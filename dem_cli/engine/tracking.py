@@ -81,8 +81,8 @@ class JointTracking:
         carry_memory(self.narrow, old, new)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
-            asked = old.geometry.faces[old.contacts.stale[:-1] == 1]
-            new.contacts.stale[:-1] |= same_rows(asked, new.geometry.faces) >= 0
+            asked = old.geometry.keys[old.contacts.stale[:-1] == 1]
+            new.contacts.stale[:-1] |= same_rows(asked, new.geometry.keys) >= 0
         self.take(new)
         self.detections += 1
 

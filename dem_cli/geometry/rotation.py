@@ -23,9 +23,11 @@ def turned(vectors: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
     return turned_by(vectors, np.cos(angles), np.sin(angles))
 
 
-def turned_as_one(vectors: np.ndarray, angle: float) -> np.ndarray:
-    """Vectors (n, 2) turned about the origin by one angle [rad], as a product of matrices."""
-    c, s = np.cos(angle), np.sin(angle)
+def turned_as_one(vectors: np.ndarray, rotation: np.ndarray | float) -> np.ndarray:
+    """Vectors (n, d) turned about the origin as one, by an angle or a rotation vector (3,) [rad], with matrices."""
+    if vectors.shape[1] == 3:
+        return vectors @ matrices(np.reshape(rotation, (1, 3)))[0].T
+    c, s = np.cos(rotation), np.sin(rotation)
     return vectors @ np.array([[c, s], [-s, c]])
 
 
@@ -87,6 +89,33 @@ def unturned(n: int, dimension: int) -> np.ndarray:
     return np.zeros((n, 1)) if dimension == 2 else np.tile((1.0, 0.0, 0.0, 0.0), (n, 1))
 
 
+def oriented_as(others: np.ndarray, rotations: np.ndarray) -> np.ndarray:
+    """Orientations of these rotations (n, r) from the start [rad], kept as others are."""
+    return rotations if others.shape[1] == rotations.shape[1] else quaternions(rotations)
+
+
+def turned_further(orientations: np.ndarray, rotations: np.ndarray | float) -> np.ndarray:
+    """Orientations after another turn along the axes of the world: angles, or rotation vectors (3,) or (n, 3) [rad]."""
+    if orientations.shape[1] < 4:
+        return orientations + rotations
+    return _after(quaternions(np.reshape(rotations, (-1, 3))), orientations)
+
+
+def turned_since(orientations: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """From orientations before to those of now, (n, r): in space rotation vectors along the axes of the world [rad]."""
+    if orientations.shape[1] < 4:
+        return orientations - before
+    return rotation_vectors(_after(orientations, before * (1.0, -1.0, -1.0, -1.0)))
+
+
+def _after(second: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Products of unit quaternions: the first turn, then the second, (n, 4)."""
+    scalar, vector, start, arm = second[:, :1], second[:, 1:], first[:, :1], first[:, 1:]
+    real = scalar * start - (vector * arm).sum(axis=1, keepdims=True)
+    found = np.column_stack([real, scalar * arm + start * vector + np.cross(vector, arm)])
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
 def angles_of(orientations: np.ndarray) -> np.ndarray:
     """How far each block has turned [rad], (n,): with its sign in the plane, from 0 to π in space."""
     if orientations.shape[1] == 1:
@@ -113,6 +142,13 @@ def quaternions(orientations: np.ndarray) -> np.ndarray:
     angles = np.linalg.norm(orientations, axis=1, keepdims=True)
     half = 0.5 * np.sinc(angles / (2.0 * np.pi))  # sin(θ/2)/θ
     return np.column_stack([np.cos(0.5 * angles), half * orientations])
+
+
+def turns_of(orientations: np.ndarray) -> np.ndarray:
+    """Orientations as kernels read them: cosine and sine in the plane (n, 2), matrices row by row in space (n, 9)."""
+    if orientations.shape[1] == 1:
+        return np.column_stack([np.cos(orientations[:, 0]), np.sin(orientations[:, 0])])
+    return matrices(orientations).reshape(-1, 9)
 
 
 def matrices(orientations: np.ndarray) -> np.ndarray:

@@ -7,6 +7,18 @@ import math
 import numpy as np
 
 from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.spin import (
+    along,
+    combined,
+    half_turn,
+    midpoint,
+    principal_axes,
+    store_mobility,
+    store_turn,
+    turn_further,
+    turned,
+)
+from dem_cli.kernels.vec import axpy, load, norm, scale, store
 
 
 @always_inline
@@ -53,7 +65,7 @@ def drift_centroids(bodies, shape, dt, like):
 
 @inline
 def drift_corners(bodies, shape, dt, like):
-    """Positions and corners from velocities; returns the largest travel of a corner since detection [m]."""
+    """Positions and corners from velocities, 2D; returns the largest travel of a corner since detection [m]."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
     corners, travel, radii, turns = bodies.corners, bodies.travel, shape.radii, bodies.turns
     corner_blocks, arms = shape.corner_blocks, shape.corner_arms
@@ -77,4 +89,73 @@ def drift_corners(bodies, shape, dt, like):
         x, y = arms[i, 0], arms[i, 1]
         corners[i, 0] = positions[block, 0] + c * x - s * y
         corners[i, 1] = positions[block, 1] + s * x + c * y
+    return largest
+
+
+@inline
+def _go(bodies, shape, i, dt, like, spin):
+    """Moves a centroid in space and adds to its travel; returns the travel of the farthest corner [m]."""
+    speed = load(bodies.velocities, i, 0, like)
+    store(bodies.positions, i, 0, axpy(dt, speed, load(bodies.positions, i, 0, like)))
+    moved = bodies.travel[i] + dt * (norm(speed) + shape.radii[i] * norm(spin))
+    bodies.travel[i] = moved
+    return moved
+
+
+@inline
+def _take_corners(bodies, shape):
+    """Corners of blocks in space where these have gone to."""
+    corners, positions, turns = bodies.corners, bodies.positions, bodies.turns
+    corner_blocks, arms = shape.corner_blocks, shape.corner_arms
+    for number in range(corners.shape[0]):
+        i = np.uint64(number)
+        block = np.uint64(corner_blocks[i])
+        x, y, z = arms[i, 0], arms[i, 1], arms[i, 2]
+        corners[i, 0] = positions[block, 0] + (turns[block, 0] * x + turns[block, 1] * y + turns[block, 2] * z)
+        corners[i, 1] = positions[block, 1] + (turns[block, 3] * x + turns[block, 4] * y + turns[block, 5] * z)
+        corners[i, 2] = positions[block, 2] + (turns[block, 6] * x + turns[block, 7] * y + turns[block, 8] * z)
+
+
+@inline
+def drift_solids(bodies, shape, dt, like):
+    """Positions, quaternions and corners in space, in pseudo-time, where velocities stay; returns as drift_corners."""
+    velocities, orientations, largest = bodies.velocities, bodies.orientations, 0.0
+    for number in range(velocities.shape[0]):
+        i = np.uint64(number)
+        spin = load(velocities, i, 3, like)
+        largest = max(largest, _go(bodies, shape, i, dt, like, spin))
+        turn_further(orientations, i, half_turn(spin, dt))
+        store_turn(bodies.turns, i, orientations)
+    _take_corners(bodies, shape)
+    return largest
+
+
+@inline
+def drift_tumbling(bodies, shape, dt, like):
+    """As drift_solids in real time: spins change as blocks turn that no torque acts on, mobilities follow; supports
+    keep the velocities that they are given."""
+    velocities, orientations, turns, mobilities = (
+        bodies.velocities, bodies.orientations, bodies.turns, bodies.mobilities
+    )  # fmt: skip
+    inertias, axes, largest = shape.inertias, shape.axes, 0.0
+    for number in range(velocities.shape[0]):
+        i = np.uint64(number)
+        spin, moments = load(velocities, i, 3, like), load(inertias, i, 0, like)
+        largest = max(largest, _go(bodies, shape, i, dt, like, spin))
+        if moments[0] == 0.0:
+            turn_further(orientations, i, half_turn(spin, dt))
+            store_turn(turns, i, orientations)
+            continue
+        principal = principal_axes(turns, axes, i)
+        before = along(principal, spin)
+        mean, turn = midpoint(before, moments, dt)
+        turn = combined(principal, turn)
+        turn_further(orientations, i, turn)
+        store_turn(turns, i, orientations)
+        principal = principal_axes(turns, axes, i)
+        # By what has changed alone: axes that are not quite square, to round-off, would gain or lose in each step.
+        change = combined(principal, scale(2.0, axpy(-1.0, before, mean)))
+        store(velocities, i, 3, axpy(1.0, change, turned(spin, turn)))
+        store_mobility(mobilities, i, principal, moments)
+    _take_corners(bodies, shape)
     return largest

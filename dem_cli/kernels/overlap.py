@@ -8,6 +8,9 @@ from dem_cli.kernels.jit import inline
 
 ROUND_OFF = 1e-13  # of the size: a corner so close to an edge is on it
 SAME = 1e-6  # of the size: corners closer to each other, or to the line between their neighbours, are none
+SHARE = 3  # column of row 2: area that belongs to a corner of an overlap that moves
+FADES = 0.05  # sine of the turn of an outline below which a corner gives area to its neighbours
+HANDS = 4  # rounds in which corners that fade and lie side by side hand on what they got
 
 
 @inline
@@ -142,3 +145,72 @@ def share_area(work, count, area, gx, gy, weights, first):
     for k in range(count):
         x, y = work[2, k, 0] - cx, work[2, k, 1] - cy
         weights[first + k] *= area / own + lx * x + ly * y
+
+
+@inline
+def _turn_at(work, i, k, j):
+    """Sine of the turn of the outline in row 2 at corner k, from i and on to j, and the lengths of both sides."""
+    ax, ay = work[2, k, 0] - work[2, i, 0], work[2, k, 1] - work[2, i, 1]
+    bx, by = work[2, j, 0] - work[2, k, 0], work[2, j, 1] - work[2, k, 1]
+    before, after = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
+    return abs(ax * by - ay * bx) / (before * after), before, after
+
+
+@inline
+def fading_areas(work, count, area, gx, gy):
+    """Area of each corner of the polygon in row 2, into column SHARE of that row; rows 5 and 6 are its own.
+
+    area, gx, gy: of the polygon before it was simplified; area and first moment of what is shared out are those.
+    """
+    _, cx, cy, _ = area_of(work, count)
+    for k in range(count):
+        work[5, k, 0] = 0.0
+    for k in range(count):
+        m = k + 1 if k + 1 < count else 0
+        ax, ay = work[2, k, 0] - cx, work[2, k, 1] - cy
+        bx, by = work[2, m, 0] - cx, work[2, m, 1] - cy
+        quarter = 0.25 * (ax * by - ay * bx)
+        work[5, k, 0] += quarter
+        work[5, m, 0] += quarter
+    n_fading = 0
+    for k in range(count):
+        i, j = k - 1 if k else count - 1, k + 1 if k + 1 < count else 0
+        sine, before, after = _turn_at(work, i, k, j)
+        work[5, k, 1] = min(sine / FADES, 1.0)
+        work[5, k, 2] = after / (before + after)  # of what it gives, to the corner before it
+        if sine < FADES:
+            n_fading += 1
+    if 0 < n_fading < count:
+        for _ in range(HANDS if n_fading > 1 else 1):
+            for k in range(count):
+                given = (1.0 - work[5, k, 1]) * work[5, k, 0]
+                if given > 0.0:
+                    i, j = k - 1 if k else count - 1, k + 1 if k + 1 < count else 0
+                    work[5, k, 0] -= given
+                    work[5, i, 0] += work[5, k, 2] * given
+                    work[5, j, 0] += (1.0 - work[5, k, 2]) * given
+    _restore(work, count, area, gx, gy)
+
+
+@inline
+def _restore(work, count, area, gx, gy):
+    """Areas w in row 5 times 1 + λ0 + λ·r, so that their sum is `area` and their centroid (gx, gy)."""
+    s0, sx, sy, sxx, sxy, syy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(count):
+        x, y, w = work[2, k, 0] - gx, work[2, k, 1] - gy, work[5, k, 0]
+        s0 += w
+        sx += w * x
+        sy += w * y
+        sxx += w * x * x
+        sxy += w * x * y
+        syy += w * y * y
+    # Of the unknowns about (gx, gy): s0 (1 + λ0) + s·λ = area, s (1 + λ0) + S λ = 0.
+    det = sxx * syy - sxy * sxy
+    lx, ly, level = 0.0, 0.0, area / s0
+    if det > 1e-9 * (sxx + syy) * (sxx + syy):
+        px, py = (sx * syy - sy * sxy) / det, (sy * sxx - sx * sxy) / det  # S⁻¹ s
+        level = area / (s0 - sx * px - sy * py)
+        lx, ly = -level * px, -level * py
+    for k in range(count):
+        x, y = work[2, k, 0] - gx, work[2, k, 1] - gy
+        work[2, k, SHARE] = work[5, k, 0] * max(level + lx * x + ly * y, 0.0)

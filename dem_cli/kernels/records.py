@@ -17,13 +17,16 @@ class Bodies(NamedTuple):
     """Changing state of the blocks."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, d)
-    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3): they add up where
-    # geometry is that of the start
-    velocities: np.ndarray  # half a step behind the positions, (n_blocks, n_dof)
+    orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3), that add up where
+    # geometry is that of the start, or where it moves unit quaternions from the start to now, (n_blocks, 4)
+    velocities: np.ndarray  # half a step behind the positions; spins along the axes of the world, (n_blocks, n_dof)
     forces: np.ndarray  # sum of contact forces and moments [N, N m], (n_blocks, n_dof)
     unbalanced: np.ndarray  # contact forces and loads of the last step [N, N m], (n_blocks, n_dof)
     corners: np.ndarray  # world coordinates of all corners [m], (n_vertices, d); kept only by moving geometry
-    turns: np.ndarray  # cosine and sine of the orientations, 2D; kept only by moving geometry, (n_blocks, 2)
+    turns: np.ndarray  # cosine and sine of the orientations, (n_blocks, 2), in space rotation matrices, row by row,
+    # (n_blocks, 9); kept only by moving geometry
+    mobilities: np.ndarray  # inverse tensors of inertia along the axes of the world, real ones, 0 of supports: those of
+    # now in time histories [1/(kg m²)], (n_blocks, r·r)
     means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
     drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
     pulled: np.ndarray  # velocities before the dashpots of the last step, (n_blocks·n_dof,)
@@ -36,6 +39,8 @@ class BlockShapes(NamedTuple):
     corner_blocks: np.ndarray  # block of each corner, (n_vertices,)
     corner_arms: np.ndarray  # corner relative to the centroid, undeformed [m], (n_vertices, d)
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
+    inertias: np.ndarray  # moments of inertia, principal ones in space; 0 of supports [kg m²], (n_blocks, r)
+    axes: np.ndarray  # from the principal axes to those of the block, matrices row by row, (n_blocks, 9); 2D (0, 9)
 
 
 class MovingJoints(NamedTuple):
@@ -63,7 +68,7 @@ Joints = MovingJoints | FixedJoints
 class PlanarGeometry(NamedTuple):
     """What the two edges of each joint are in the plane, row by row as `Joints`; all of it constant but `sunk`."""
 
-    faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
+    keys: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
     features: np.ndarray  # place of each point among those of its joint, by which it is known again, (n_points,)
     edges: np.ndarray  # corners (a0, a1, b0, b1) of the two edges, (n_joints, 4)
     scales: np.ndarray  # length of edge a [m]; 1/length of a, of b, `blend` of share_of [1/m]; cotangents of the inner
@@ -100,7 +105,7 @@ class SpatialGeometry(NamedTuple):
     All points of a joint lie in one plane, across its normal.
     """
 
-    faces: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
+    keys: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
     features: np.ndarray  # corners or edges that make each point, by which it is known again, (n_points,)
     kinds: np.ndarray  # FACES, RIM_OF_A, RIM_OF_B or EDGES, (n_joints,) int8
     corners: (
@@ -123,6 +128,52 @@ class SpatialGeometry(NamedTuple):
 FACES, RIM_OF_A, RIM_OF_B, EDGES = 0, 1, 2, 3  # of SpatialGeometry.kinds
 
 
+class SpatialMotion(NamedTuple):
+    """What the contact points of blocks that move in space are, row by row as `Joints`.
+
+    A joint has room for more points than there are now: a slot without a point has no stiffness. Renewal (renewal.py)
+    changes what a slot holds; what goes on being a point keeps its slot.
+    """
+
+    keys: np.ndarray  # the two parts of each joint, by which it is known again, (n_joints, 2)
+    features: np.ndarray  # what makes the point of each slot, by which it is known again; −1: none, (n_points,)
+    kinds: np.ndarray  # as SpatialGeometry.kinds, (n_joints,) int8
+    faces: np.ndarray  # the faces that look at each other, (n_joints, 2)
+    normals: np.ndarray  # outward unit normals of both, each in the frame of its block, (n_joints, 6)
+    tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
+    markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
+    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 8)
+    edges: np.ndarray  # of joints of two edges: corners of the edge of a and of that of b, sign of the normal; −1: none,
+    # (n_joints, 5)
+    types: np.ndarray  # CORNER_OF_B, CORNER_OF_A, CROSSING or FIXED_TO_B, (n_points,) int8
+    corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
+    shares: np.ndarray  # of crossings: place along the edge of a where they began; lone: sign of the normal, (n_points,)
+    arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
+    face_starts: np.ndarray  # as Polyhedra, and the next four
+    face_corners: np.ndarray
+    part_starts: np.ndarray
+    part_edges: np.ndarray
+    part_sides: np.ndarray  # the corners of each edge, (n_edges, 2)
+    work: np.ndarray  # of renewal: outlines, (6, room, 4)
+    found: np.ndarray  # points that were found: as `corners`, (room, 5)
+    labels: np.ndarray  # feature and type of each, (room, 2)
+    numbers: np.ndarray  # area, share, arm of each, and what it has from the nearest point before, (room, 10 + memory)
+    taken: np.ndarray  # slot that each has, (room,)
+    heirs: np.ndarray  # and the slot that is nearest to each new one, (room,)
+
+    def settled(self) -> SpatialMotion:
+        """What is still asked for when points stay where they were placed: all of it."""
+        return self
+
+    def kept(self) -> SpatialMotion:
+        """The same with a copy of what changes."""
+        changing = ("features", "markers", "types", "corners", "shares", "arms")
+        return self._replace(**{name: getattr(self, name).copy() for name in changing})
+
+
+CORNER_OF_B, CORNER_OF_A, CROSSING, FIXED_TO_B = 0, 1, 2, 3  # of SpatialMotion.types
+
+
 class Contacts(NamedTuple):
     """Changing state of the contact points."""
 
@@ -134,6 +185,8 @@ class Contacts(NamedTuple):
     closure: np.ndarray  # overlap that a point needs for the force that it was last at rest with: the normal force is
     # kn × (closure − gap) [m], (n_points,); 0: kn × −gap, an elastic joint (engine/rigid_joints.py)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
+    exchanged: np.ndarray  # elastic energy that went with areas of points that changed [J]: net (negative: it was made),
+    # and the sum of all amounts, (2,)
 
 
 class Loads(NamedTuple):

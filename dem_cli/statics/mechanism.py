@@ -27,7 +27,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
     external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
     released = max(external, 0.0) + max(-lifted, 0.0)
-    same = np.array_equal(held.geometry.faces, sim.geometry.faces)
+    same = np.array_equal(held.geometry.keys, sim.geometry.keys)
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
     if sim.law.bonded:  # the ledger holds what bonds lost as well
         slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip

@@ -47,6 +47,7 @@ def twin(sim: Simulation, layers: Sequence[float] = (0.0,)) -> Twin:
         unbalanced=in_space(bodies.unbalanced),
         corners=bodies.corners.copy(),
         turns=bodies.turns.copy(),
+        mobilities=np.zeros((n, 9)),
         means=np.zeros(6 * n),
         drags=np.zeros(6 * n),
         pulled=np.zeros(6 * n),

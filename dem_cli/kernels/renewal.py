@@ -1,0 +1,216 @@
+"""Renewal of the contact points of joints in space that move: what goes on keeps its slot, what is new finds memory.
+
+Elastic slip and overlap are what a point remembers: where its area changes its forces go with it, and the energy that
+is made or lost by that is booked (Contacts.exchanged). A new point has the traction of the nearest one before.
+"""
+
+from __future__ import annotations
+
+import math
+
+from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
+from dem_cli.kernels.separation import minus3, row3
+from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, turned3, turned_back3
+from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
+from dem_cli.kernels.vec import axpy, dot
+
+
+@inline
+def marks_of(geometry, bodies, joint, a):
+    """Two corners of face b as block a sees them."""
+    face = geometry.faces[joint, 1]
+    first = geometry.face_starts[face]
+    half = (geometry.face_starts[face + 1] - first) // 2
+    centre = row3(bodies.positions, a)
+    one = minus3(row3(bodies.corners, geometry.face_corners[first]), centre)
+    two = minus3(row3(bodies.corners, geometry.face_corners[first + half]), centre)
+    return turned_back3(bodies.turns, a, one), turned_back3(bodies.turns, a, two)
+
+
+@inline
+def is_due(geometry, bodies, joint, a):
+    """Whether one block has moved along or turned against the other since the joint was renewed."""
+    one, two = marks_of(geometry, bodies, joint, a)
+    m = geometry.markers
+    far = MOVED * geometry.scales[joint, SIZE]
+    first = minus3(one, (m[joint, 0], m[joint, 1], m[joint, 2]))
+    second = minus3(two, (m[joint, 3], m[joint, 4], m[joint, 5]))
+    return not (dot(first, first) <= far * far and dot(second, second) <= far * far)
+
+
+@inline
+def _energy(joints, contacts, point):
+    """In the springs of a point [J]."""
+    if joints.kn[point] == 0.0:
+        return 0.0
+    normal, along = contacts.normal[point], contacts.shear[point, 0] ** 2 + contacts.shear[point, 1] ** 2
+    return 0.5 * (normal * normal / joints.kn[point] + along / joints.ks[point])
+
+
+@inline
+def _place_of(geometry, bodies, point, b):
+    """About where the point of a slot is."""
+    if geometry.types[point] == CROSSING:
+        start = row3(bodies.corners, geometry.corners[point, 0])
+        return axpy(geometry.shares[point], minus3(row3(bodies.corners, geometry.corners[point, 1]), start), start)
+    if geometry.types[point] == FIXED_TO_B:
+        arm = turned3(bodies.turns, b, geometry.arms[point, 0], geometry.arms[point, 1], geometry.arms[point, 2])
+        return axpy(1.0, arm, row3(bodies.positions, b))
+    return row3(bodies.corners, geometry.corners[point, 0])
+
+
+@inline
+def _put(geometry, point, k):
+    """What a slot holds from now on."""
+    found, labels, numbers = geometry.found, geometry.labels, geometry.numbers
+    geometry.features[point], geometry.types[point] = labels[k, 0], labels[k, 1]
+    for m in range(5):
+        geometry.corners[point, m] = found[k, m]
+    geometry.shares[point] = numbers[k, 1]
+    for m in range(3):
+        geometry.arms[point, m] = numbers[k, 2 + m]
+
+
+@inline
+def _resize(joints, contacts, geometry, joint, point, area):
+    """Stiffness of a point by its area; forces go with it."""
+    kn, ks = area * geometry.scales[joint, KN], area * geometry.scales[joint, KS]
+    if joints.kn[point] > 0.0:
+        contacts.normal[point] *= kn / joints.kn[point]
+        contacts.shear[point, 0] *= ks / joints.ks[point]
+        contacts.shear[point, 1] *= ks / joints.ks[point]
+    joints.kn[point], joints.ks[point] = kn, ks
+
+
+@inline
+def _forget(joints, contacts, geometry, point):
+    """A slot without a point."""
+    geometry.features[point], joints.kn[point], joints.ks[point] = NONE, 0.0, 0.0
+    contacts.normal[point], contacts.gaps[point], contacts.slip[point], contacts.closure[point] = 0.0, 0.0, 0.0, 0.0
+    contacts.shear[point, 0], contacts.shear[point, 1] = 0.0, 0.0
+    for k in range(contacts.memory.shape[1]):
+        contacts.memory[point, k] = 0.0
+
+
+@inline
+def _look_up(joints, geometry, bodies, joint, count, b):
+    """For each found point its slot, into `taken`, and for new ones the nearest slot before, into `heirs`."""
+    first, last = joints.starts[joint], joints.starts[joint + 1]
+    for k in range(count):
+        geometry.taken[k], geometry.heirs[k] = NONE, NONE
+        for point in range(first, last):
+            if geometry.features[point] == geometry.labels[k, 0]:
+                geometry.taken[k] = point
+        if geometry.taken[k] != NONE:
+            continue
+        nearest = math.inf
+        here = _found_place(geometry, bodies, k, b)
+        for point in range(first, last):
+            if joints.kn[point] > 0.0:
+                arm = minus3(_place_of(geometry, bodies, point, b), here)
+                if dot(arm, arm) < nearest:
+                    geometry.heirs[k], nearest = point, dot(arm, arm)
+
+
+@inline
+def _found_place(geometry, bodies, k, b):
+    """About where a found point is."""
+    found, numbers = geometry.found, geometry.numbers
+    if geometry.labels[k, 1] == CROSSING:
+        start = row3(bodies.corners, found[k, 0])
+        return axpy(max(numbers[k, 1], 0.0), minus3(row3(bodies.corners, found[k, 1]), start), start)
+    if geometry.labels[k, 1] == FIXED_TO_B:
+        arm = turned3(bodies.turns, b, numbers[k, 2], numbers[k, 3], numbers[k, 4])
+        return axpy(1.0, arm, row3(bodies.positions, b))
+    return row3(bodies.corners, found[k, 0])
+
+
+@inline
+def _bequeath(joints, contacts, geometry, k, remembers):
+    """What a new point gets from the nearest one: tractions over stiffness, slip, closure, memory of the law."""
+    numbers, heir = geometry.numbers, geometry.heirs[k]
+    for m in range(5, 10 + remembers):
+        numbers[k, m] = 0.0
+    if heir == NONE:
+        return
+    numbers[k, 5] = contacts.normal[heir] / joints.kn[heir]
+    numbers[k, 6], numbers[k, 7] = contacts.shear[heir, 0] / joints.ks[heir], contacts.shear[heir, 1] / joints.ks[heir]
+    numbers[k, 8], numbers[k, 9] = contacts.slip[heir], contacts.closure[heir]
+    for m in range(remembers):
+        numbers[k, 10 + m] = contacts.memory[heir, m]
+
+
+@inline
+def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remembers, bonded, fresh):
+    """A new point in its slot: its own gap, and what the nearest one left it."""
+    numbers, a, b = geometry.numbers, joints.blocks[joint, 0], joints.blocks[joint, 1]
+    _put(geometry, point, k)
+    _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
+    gap = feature_of(geometry, bodies, joint, point, a, b, frame)[1]
+    contacts.gaps[point] = gap
+    if fresh:
+        return
+    contacts.slip[point], contacts.closure[point] = numbers[k, 8], numbers[k, 9]
+    for m in range(remembers):
+        contacts.memory[point, m] = numbers[k, 10 + m]
+    deep = numbers[k, 5] if bonded else max(numbers[k, 9] - gap, 0.0)
+    contacts.normal[point] = joints.kn[point] * deep
+    if deep != 0.0:
+        contacts.shear[point, 0] = joints.ks[point] * numbers[k, 6]
+        contacts.shear[point, 1] = joints.ks[point] * numbers[k, 7]
+
+
+@inline
+def _found(geometry, bodies, joint, pair, frame, along, room):
+    """The contact points that there are now: how many."""
+    out = (geometry.work, geometry.found, geometry.labels, geometry.numbers)
+    if geometry.kinds[joint] == FACES:
+        return in_faces(geometry, bodies, joint, pair, frame, along, out)
+    if geometry.kinds[joint] == EDGES:
+        return of_edges(geometry, joint, out)
+    return on_rim(geometry, bodies, joint, frame, room, out)
+
+
+@kernel
+def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
+    """Finds the contact points of a joint anew; returns how many there are.
+
+    remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
+    """
+    a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
+    frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+    first, last = joints.starts[joint], joints.starts[joint + 1]
+    count = min(_found(geometry, bodies, joint, (a, b), frame, along, last - first), last - first)
+    before, after = 0.0, 0.0
+    for point in range(first, last):
+        before += _energy(joints, contacts, point)
+    _look_up(joints, geometry, bodies, joint, count, b)
+    for k in range(count):
+        if geometry.taken[k] == NONE:
+            _bequeath(joints, contacts, geometry, k, remembers)
+    for point in range(first, last):
+        stays = False
+        for k in range(count):
+            stays = stays or geometry.taken[k] == point
+        if not stays:
+            _forget(joints, contacts, geometry, point)
+    free = first
+    for k in range(count):
+        if geometry.taken[k] != NONE:
+            _put(geometry, geometry.taken[k], k)
+            _resize(joints, contacts, geometry, joint, geometry.taken[k], geometry.numbers[k, 0])
+    for k in range(count):
+        if geometry.taken[k] == NONE:
+            while geometry.features[free] != NONE:
+                free += 1
+            _settle(joints, contacts, geometry, bodies, joint, free, k, frame, remembers, bonded, fresh)
+    for point in range(first, last):
+        after += _energy(joints, contacts, point)
+    if not fresh:
+        contacts.exchanged[0] += before - after
+        contacts.exchanged[1] += abs(before - after)
+    one, two = marks_of(geometry, bodies, joint, a)
+    for m in range(3):
+        geometry.markers[joint, m], geometry.markers[joint, 3 + m] = one[m], two[m]
+    return count

@@ -1,0 +1,126 @@
+"""The loop over joints in space whose geometry moves: points renewed where they are due, gaps first, then forces.
+
+Each point has the normal of its feature (spatial_features.py); shear is counted along a direction fixed in block a, so
+that two blocks that turn together keep their forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from dem_cli.kernels.contact_point import make_press, meeting, push_apart
+from dem_cli.kernels.jit import inline, kernel, named
+from dem_cli.kernels.joint_plane import moment, sweep
+from dem_cli.kernels.renewal import is_due, renew
+from dem_cli.kernels.spatial_features import feature_of, frame_of, tangents3
+from dem_cli.kernels.vec import axpy, compose, dot, load, scale
+
+
+def make_spatial_forces(
+    law: Callable,
+    bonded: bool = False,
+    keeps: bool = False,
+    meets: bool = False,
+    rigid: bool = False,
+    remembers: int = 0,
+) -> Callable:
+    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+
+    keeps: frames and places of the points that touch are kept up to date, for dampers. meets, rigid: as in
+    planar_forces.py. remembers: numbers of a point's memory that belong to the law.
+    """
+    press = make_press(law, bonded)
+
+    @inline
+    def spatial_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
+        """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
+        blocks, starts, stiffness = joints.blocks, joints.starts, joints.kn
+        frames, places = joints.frames, joints.points
+        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
+        velocities, forces, positions = bodies.velocities, bodies.forces, bodies.positions
+        d = len(like)
+        lost = 0.0
+        for number in range(blocks.shape[0]):
+            joint = np.uint64(number)
+            a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+            if is_due(geometry, bodies, joint, a):
+                loaded = False
+                for point in range(starts[joint], starts[number + 1]):
+                    loaded = loaded or normals[point] != 0.0
+                if renew(joint, joints, geometry, contacts, bodies, remembers, bonded, False) == 0 and loaded:
+                    stale[joint] = 1
+                    stale[-1] = 1
+            frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+            spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
+            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
+            force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
+            loaded = False
+            for p in range(starts[joint], starts[number + 1]):
+                point = np.uint64(p)
+                if stiffness[point] == 0.0:
+                    continue
+                normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+                opened = gap - gaps[point]
+                gaps[point] = gap
+                if meets and not bonded:
+                    gap = meeting(gap, opened)
+                if rigid:
+                    gap -= closures[point]
+                if not bonded and gap >= 0.0 and normals[point] == 0.0:
+                    continue
+                loaded = True
+                t1, t2 = tangents3(normal, along)
+                arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
+                slide = (dt * dot(moved, t1), dt * dot(moved, t2))
+                if keeps:
+                    for k in range(3):
+                        frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
+                        places[point, k] = place[k]
+                pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                lost += work
+                pushed = compose((normal, t1, t2), pressed, shear, scale(0.0, like))
+                force = axpy(1.0, pushed, force)
+                torque_a = axpy(1.0, moment(arm_a, pushed), torque_a)
+                torque_b = axpy(1.0, moment(arm_b, pushed), torque_b)
+            if loaded:
+                push_apart(forces, a, b, force, torque_a, torque_b)
+        return lost
+
+    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid}
+    return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
+
+
+@kernel
+def renew_fresh(joints, geometry, contacts, bodies):
+    """Contact points of joints that have none yet: nothing acts on them."""
+    for joint in range(joints.blocks.shape[0]):
+        renew(joint, joints, geometry, contacts, bodies, 0, False, True)
+
+
+@kernel
+def measure_spatial(joints, geometry, contacts, bodies):
+    """Frames, levers, places and gaps of all points where the blocks are now, for detection and records."""
+    frames, levers, places = joints.frames, joints.levers, joints.points
+    for joint in range(joints.blocks.shape[0]):
+        a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
+        frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+        xa, xb = load(bodies.positions, a, 0, (0.0, 0.0, 0.0)), load(bodies.positions, b, 0, (0.0, 0.0, 0.0))
+        for point in range(joints.starts[joint], joints.starts[joint + 1]):
+            if joints.kn[point] == 0.0:
+                frames[point, :], levers[point, :], places[point, :] = 0.0, 0.0, 0.0
+                continue
+            normal, contacts.gaps[point], place = feature_of(geometry, bodies, joint, point, a, b, frame)
+            t1, t2 = tangents3(normal, along)
+            arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+            k = 0
+            for axis in (normal, t1, t2):
+                on_a, on_b = moment(arm_a, axis), moment(arm_b, axis)
+                for m in range(3):
+                    frames[point, k], levers[point, k], levers[point, 9 + k] = axis[m], on_a[m], on_b[m]
+                    k += 1
+            for m in range(3):
+                places[point, m] = place[m]
