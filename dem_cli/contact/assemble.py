@@ -19,13 +19,20 @@ class JointArrays(NamedTuple):
 
 
 def build_joints(
-    model: Model, faces: Faces, bodies: Bodies, properties: JointProperties, n_memory: int, chains: Any = None
+    model: Model,
+    faces: Faces,
+    bodies: Bodies,
+    properties: JointProperties,
+    n_memory: int,
+    chains: Any = None,
+    moves: bool = True,
 ) -> JointArrays:
     """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing.
 
-    chains: what comes back of the joints of the start (NarrowPhase.chains_of); None: these are they.
+    chains: what comes back of the joints of the start (NarrowPhase.chains_of); None: these are they. moves: whether
+    geometry does, else it is that of the start.
     """
-    narrow = geometry_of(model.dimension)
+    narrow = geometry_of(model.dimension, moves)
     joints, geometry = narrow.points(model, faces, bodies.corners, properties, chains)
     contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, n_memory)
     narrow.place(joints, geometry, contacts, bodies)

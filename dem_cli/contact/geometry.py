@@ -6,23 +6,26 @@ Everything else in the package asks for it by `geometry_of` and does not know ho
 
 from __future__ import annotations
 
-from typing import Any, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-from dem_cli.contact import planar, spatial
+from dem_cli.contact import planar, spatial, spatial_motion
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.contact.assemble import JointArrays
 
 
 class JointGeometry(Protocol):
     """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
 
     @property
-    def faces(self) -> np.ndarray:
-        """The two faces of each joint, (n_joints, 2): with the features, the key of a contact point."""
+    def keys(self) -> np.ndarray:
+        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
 
     @property
     def features(self) -> np.ndarray:
@@ -70,8 +73,14 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     ) -> Returning | None:
         """What of the joints of the start comes back wherever the same faces meet again; None: nothing."""
 
-    def take_over(self, old: Geometry, new: Geometry, match: np.ndarray) -> None:
+    def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
         """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
+
+    def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+        """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""
+
+    def book(self, old: JointArrays, new: JointArrays) -> None:
+        """Books the elastic energy that came or went with other points (Contacts.exchanged)."""
 
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""
@@ -85,13 +94,13 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
-GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}
-MOVING = (2,)  # dimensions in which joints are placed where the blocks are; else they are those of the start
+GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}  # of the start
+MOVING: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial_motion}  # that moves
 
 
-def geometry_of(dimension: int) -> AnyNarrowPhase:
-    """The narrow phase for blocks in so many dimensions. Raises UsageError where there is none."""
+def geometry_of(dimension: int, moves: bool = False) -> AnyNarrowPhase:
+    """The narrow phase for blocks in so many dimensions, that move or not. Raises UsageError where there is none."""
     if dimension not in GEOMETRY:
         known = " or ".join(map(str, sorted(GEOMETRY)))
         raise UsageError(f"blocks in {dimension} dimensions cannot touch: contact is known in {known} dimensions")
-    return GEOMETRY[dimension]
+    return (MOVING if moves else GEOMETRY)[dimension]

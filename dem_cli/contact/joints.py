@@ -17,10 +17,11 @@ class Faces(NamedTuple):
     parts: np.ndarray  # the two parts a < b, (n, 2) int64
     faces: np.ndarray  # the two faces, as Model.topology numbers them, (n, 2) int64
     separation: np.ndarray  # distance along the best separating axis [m], negative: overlap, (n,)
+    reach: float = 0.0  # within which they were looked for [m]
 
     def where(self, kept: np.ndarray) -> Faces:
         """Those of a mask (n,) bool."""
-        return Faces(*(field[kept] for field in self))
+        return Faces(self.parts[kept], self.faces[kept], self.separation[kept], self.reach)
 
 
 class DrawnFaces(NamedTuple):

@@ -1,4 +1,4 @@
-"""Memory of contact points across a detection, carried by key: (face of a, face of b, feature)."""
+"""Memory of contact points across a detection, carried by key: joint and feature."""
 
 from __future__ import annotations
 
@@ -16,20 +16,30 @@ def carry_memory(narrow: NarrowPhase, old: JointArrays, new: JointArrays) -> Non
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
     that is nearest takes over.
     """
-    points = same_rows(point_keys(old), point_keys(new))
+    match = same_rows(old.geometry.keys, new.geometry.keys)
+    points = _same_points(old, new, match)
     target = np.flatnonzero(points >= 0)
-    _copy(old, new, target, points[target])
-    match = same_rows(old.geometry.faces, new.geometry.faces)
-    narrow.take_over(old.geometry, new.geometry, match)
+    _copy(narrow, old, new, target, points[target])
+    narrow.take_over(old, new, match)
     orphans = np.setdiff1d(np.flatnonzero(_loaded(old)), match[match >= 0])
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)
+    new.contacts.exchanged[:] = old.contacts.exchanged
+    narrow.book(old, new)
 
 
-def point_keys(of: JointArrays) -> np.ndarray:
-    """Face of a, face of b and feature of every point, (n_points, 3) int64."""
-    return np.column_stack([of.geometry.faces[of.joints.owners], of.geometry.features])
+def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:
+    """The old point that each new one is, −1: none, (n_points,). match: of joints, as `same_rows`."""
+    before, now = old.joints.owners, match[new.joints.owners]
+    features = new.geometry.features
+    here, there = np.flatnonzero((now >= 0) & (features >= 0)), np.flatnonzero(old.geometry.features >= 0)
+    found = same_rows(
+        np.column_stack([before[there], old.geometry.features[there]]), np.column_stack([now[here], features[here]])
+    )
+    points = np.full(len(features), -1)
+    points[here] = np.where(found >= 0, there[found], -1) if len(there) else -1
+    return points
 
 
 def _loaded(of: JointArrays) -> np.ndarray:
@@ -38,10 +48,10 @@ def _loaded(of: JointArrays) -> np.ndarray:
     return np.maximum.reduceat(np.abs(of.contacts.normal), of.joints.starts[:-1]) > 0.0
 
 
-def _copy(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
-    for name in ("shear", "normal", "slip", "memory", "closure"):
+def _copy(narrow: NarrowPhase, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+    narrow.carry(old, new, target, source)
+    for name in ("slip", "memory", "closure"):
         getattr(new.contacts, name)[target] = getattr(old.contacts, name)[source]
-    new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
 
 def _adopt(narrow: NarrowPhase, old: JointArrays, new: JointArrays, orphans: np.ndarray, newborn: np.ndarray) -> None:
@@ -56,7 +66,7 @@ def _adopt(narrow: NarrowPhase, old: JointArrays, new: JointArrays, orphans: np.
             if memory.normal[source] != 0.0:
                 distance = ((joints.points[candidates] - old.joints.points[source]) ** 2).sum(axis=1)
                 heir = candidates[[distance.argmin()]]
-                _copy(old, new, heir, np.array([source]))
+                _copy(narrow, old, new, heir, np.array([source]))
                 carries = memory.normal[source] / old.joints.kn[source] - memory.closure[source]
                 deeper = max(-contacts.gaps[heir[0]] - carries, 0.0)
                 joint = int(np.searchsorted(joints.starts, heir[0], side="right")) - 1

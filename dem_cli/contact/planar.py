@@ -4,6 +4,8 @@ these are when the blocks move. One of the modules of contact/geometry.py.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from dem_cli.contact.chains import Chains, come_back, made_chains
@@ -15,6 +17,9 @@ from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.contact.assemble import JointArrays
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 NARROWEST = 0.1  # of the shorter edge: the overlap that a joint has stiffness for at least
@@ -145,11 +150,21 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
     return made_chains(model, faces, corners, properties) if properties.profiled else None
 
 
-def take_over(old: PlanarGeometry, new: PlanarGeometry, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
     known = np.flatnonzero(match >= 0)
-    new.sunk[:] = np.inf
-    new.sunk[known] = old.sunk[match[known]]
+    new.geometry.sunk[:] = np.inf
+    new.geometry.sunk[known] = old.geometry.sunk[match[known]]
+
+
+def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+    """Points that go on keep stiffness and forces."""
+    new.contacts.normal[target], new.contacts.shear[target] = old.contacts.normal[source], old.contacts.shear[source]
+    new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
+
+
+def book(old: JointArrays, new: JointArrays) -> None:
+    """Nothing: points keep their stiffness."""
 
 
 def sink(geometry: PlanarGeometry, joint: int, depth: float) -> None:

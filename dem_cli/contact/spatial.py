@@ -43,7 +43,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
     near = separation <= reach
     # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
     near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
-    return Faces(pairs[near], faces[near], separation[near])
+    return Faces(pairs[near], faces[near], separation[near], reach)
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
@@ -105,7 +105,7 @@ def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> t
 
 def _areas(model: Model, found: Meetings) -> np.ndarray:
     """Of overlaps their own; of lone contacts LONE of the median face for each point [m²], (n,)."""
-    lone = LONE * _median_face(model) * np.diff(found.starts)
+    lone = LONE * median_face(model) * np.diff(found.starts)
     return np.where(found.kinds != FACES, lone, found.measures[:, AREA])
 
 
@@ -114,7 +114,7 @@ def _shares(found: Meetings) -> np.ndarray:
     return found.weights / np.bincount(found.owners, found.weights, len(found.kinds))[found.owners]
 
 
-def _median_face(model: Model) -> float:
+def median_face(model: Model) -> float:
     """Median area of all faces that can be touched [m²]."""
     areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
     return float(np.median(areas[~model.inner_faces])) if len(areas) else 0.0
@@ -161,10 +161,6 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:
     """Nothing comes back: joints in space have no profile."""
-
-
-def take_over(old: SpatialGeometry, new: SpatialGeometry, match: np.ndarray) -> None:
-    """Nothing: what a joint is follows from where its parts are."""
 
 
 def sink(geometry: SpatialGeometry, joint: int, depth: float) -> None:

@@ -56,7 +56,7 @@ def joints_of_start(
     """
     narrow, reach = geometry_of(model.dimension), TOUCHING_GAP * smallest
     faces = narrow.touching(model, narrow.find(model, bodies.corners, reach), bodies.corners, reach)
-    built = build_joints(model, faces, bodies, properties, n_memory)
+    built = build_joints(model, faces, bodies, properties, n_memory, moves=False)
     close_touching(built.contacts, smallest)
     bond_touching(model, built.joints, built.contacts, properties)
     planes = in_planes(built.joints, built.contacts.gaps, bodies.positions)

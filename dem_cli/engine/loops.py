@@ -12,6 +12,7 @@ from dem_cli.kernels.drift import drift_centroids, drift_corners, drift_solids, 
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.shake import make_shake
+from dem_cli.kernels.spatial_forces import make_spatial_forces
 from dem_cli.laws.law import Law
 
 
@@ -22,8 +23,15 @@ class Drifts(NamedTuple):
     in_time: Callable  # with real masses, in seconds
 
 
-# Where geometry moves, by dimension: what makes the loop of a law over plane joints and over those with profiles.
-FORCES = {2: (make_planar_forces, make_profiled_forces)}
+def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
+    return (make_profiled_forces if profiled else make_planar_forces)(law.function, law.bonded, **flags)
+
+
+def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
+    return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), **flags)
+
+
+FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law
 DRIFTS = {2: Drifts(drift_corners, drift_corners), 3: Drifts(drift_solids, drift_tumbling)}
 
 
@@ -32,12 +40,12 @@ def compiled_advance(kinematics: str, law: Law, profiled: bool = False, dimensio
     """The stepping loop for one kinematics, one law and one kind of joints; compiled at its first call."""
     if kinematics == "fixed":
         return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids)
-    make = FORCES[dimension][profiled]
-    return make_advance(make(law.function, law.bonded, rigid=True), DRIFTS[dimension].in_pseudo_time)
+    forces = FORCES[dimension](law, profiled, rigid=True)
+    return make_advance(forces, DRIFTS[dimension].in_pseudo_time)
 
 
 @cache
 def compiled_shake(law: Law, profiled: bool, damped: bool, dimension: int = 2):
     """The stepping loop of time histories for one law and one kind of joints; compiled at its first call."""
-    make = FORCES[dimension][profiled]
-    return make_shake(make(law.function, law.bonded, keeps=damped, meets=True), DRIFTS[dimension].in_time, damped)
+    forces = FORCES[dimension](law, profiled, keeps=damped, meets=True)
+    return make_shake(forces, DRIFTS[dimension].in_time, damped)

@@ -328,7 +328,7 @@ class Simulation:
         return SavedState(
             Bodies(*(a.copy() for a in self.bodies)),
             Contacts(*(a.copy() for a in self.contacts)),
-            self.joints,
+            self.joints.kept(),
             self.geometry.kept(),
             self.control.copy(),
             self.ledger.copy(),
@@ -341,7 +341,7 @@ class Simulation:
         for target, source in zip(self.bodies, saved.bodies, strict=True):
             target[...] = source
         contacts = Contacts(*(a.copy() for a in saved.contacts))
-        self.tracking.take(JointArrays(saved.joints, saved.geometry.kept(), contacts))
+        self.tracking.take(JointArrays(saved.joints.kept(), saved.geometry.kept(), contacts))
         self.control[:], self.ledger[:] = saved.control, saved.ledger
         self.loads.inverse_masses[:] = saved.inverse_masses
         self.safety = saved.safety

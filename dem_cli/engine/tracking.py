@@ -37,7 +37,7 @@ class JointTracking:
     @property
     def narrow(self) -> NarrowPhase:
         """Who finds and places contact points; a module, which no copy of a simulation could take along."""
-        return geometry_of(self.model.dimension)
+        return geometry_of(self.model.dimension, self.moves)
 
     def take(self, arrays: JointArrays) -> None:
         """From here on these are the joints."""

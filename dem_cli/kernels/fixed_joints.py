@@ -58,6 +58,10 @@ class FixedJoints(NamedTuple):
         levers = arms[..., 0] * along[..., 1] - arms[..., 1] * along[..., 0] if r == 1 else np.cross(arms, along)
         return levers.reshape(-1, 2 * d * r)
 
+    def kept(self) -> FixedJoints:
+        """The same: nothing of it changes."""
+        return self
+
     def _from_anchor(self) -> np.ndarray:
         """Places of the points from the anchors, in space [m], (n_points, d)."""
         tangents = self.directions[self.owners, 1:]

@@ -60,6 +60,10 @@ class MovingJoints(NamedTuple):
         """Joint of each point, (n_points,)."""
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
+    def kept(self) -> MovingJoints:
+        """The same with a copy of what changes as blocks move in space: the stiffness of points."""
+        return self._replace(kn=self.kn.copy(), ks=self.ks.copy())
+
 
 # What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
 Joints = MovingJoints | FixedJoints
@@ -143,11 +147,12 @@ class SpatialMotion(NamedTuple):
     tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
     scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 8)
-    edges: np.ndarray  # of joints of two edges: corners of the edge of a and of that of b, sign of the normal; −1: none,
-    # (n_joints, 5)
+    edges: (
+        np.ndarray
+    )  # of joints of two edges: corners of that of a and of that of b, sign of the normal; −1: none, (n, 5)
     types: np.ndarray  # CORNER_OF_B, CORNER_OF_A, CROSSING or FIXED_TO_B, (n_points,) int8
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
-    shares: np.ndarray  # of crossings: place along the edge of a where they began; lone: sign of the normal, (n_points,)
+    shares: np.ndarray  # of crossings: place along the edge of a when renewed; lone: sign of the normal, (n_points,)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
     face_starts: np.ndarray  # as Polyhedra, and the next four
     face_corners: np.ndarray
@@ -185,8 +190,9 @@ class Contacts(NamedTuple):
     closure: np.ndarray  # overlap that a point needs for the force that it was last at rest with: the normal force is
     # kn × (closure − gap) [m], (n_points,); 0: kn × −gap, an elastic joint (engine/rigid_joints.py)
     stale: np.ndarray  # 1: no longer the touching faces; the last entry asks for detection, (n_joints + 1,) int8
-    exchanged: np.ndarray  # elastic energy that went with areas of points that changed [J]: net (negative: it was made),
-    # and the sum of all amounts, (2,)
+    exchanged: (
+        np.ndarray
+    )  # elastic energy that went with areas that changed [J]: net (negative: made), sum of amounts, (2,)
 
 
 class Loads(NamedTuple):

@@ -17,7 +17,10 @@ from dem_cli.kernels.separation import cross3, minus3, row3, unit3
 from dem_cli.kernels.vec import axpy, dot
 
 SKEW, APART = 0.05, 0.1  # sine between two edges, seen along the joint: up to where they are parallel, from where not
-LEAST, ENOUGH = 0.8, 0.9  # cosine between the normals of a crossing and of the joint: up to where it has no own, from where
+LEAST, ENOUGH = (
+    0.8,
+    0.9,
+)  # cosine between the normals of a crossing and of the joint: up to where it has no own, from where
 NONE = -1
 
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline
+from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, simplify
-from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, FIXED_TO_B, RIM_OF_A
-from dem_cli.kernels.separation import cross3, minus3, row3, unit3
+from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
+from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
 from dem_cli.kernels.spatial_features import NONE, tangents3, turned_back3
+from dem_cli.kernels.spatial_geometry import STEEP
 from dem_cli.kernels.vec import axpy, dot
 
 # Columns of SpatialMotion.scales.
@@ -214,7 +215,8 @@ def on_rim(geometry, bodies, joint, frame, room, out):
     outwards = frame[0] if on_a else (-n[0], -n[1], -n[2])
     reach, size, count = scales[joint, REACH], scales[joint, SIZE], 0
     for corner in range(geometry.part_starts[other], geometry.part_starts[other + 1]):
-        inside, height = _height_inside(geometry, vertices, face, outwards, row3(vertices, corner), ROUND_OFF * size * size)
+        place = row3(vertices, corner)
+        inside, height = _height_inside(geometry, vertices, face, outwards, place, ROUND_OFF * size * size)
         if inside and abs(height) <= reach and count < room:
             for m in range(5):
                 found[count, m] = NONE
@@ -273,3 +275,46 @@ def of_edges(geometry, joint, out):
     labels[0, 1] = CROSSING
     numbers[0, 0], numbers[0, 1] = geometry.scales[joint, LONE], float(geometry.edges[joint, 4])
     return 1
+
+
+@inline
+def _overlap_anywhere(geometry, vertices, face_a, face_b, normals, work):
+    """Whether two faces have anything in common, seen along the joint."""
+    middle = unit3(minus3(normals[0], normals[1]))
+    t1, t2 = tangents3(middle, (0.6, 0.64, 0.48))
+    origin = row3(vertices, geometry.face_corners[geometry.face_starts[face_a]])
+    n_a = _flatten(geometry, vertices, face_a, origin, t1, t2, work, 0, False)
+    n_b = _flatten(geometry, vertices, face_b, origin, t1, t2, work, 1, True)
+    return clip(work, n_a, n_b, 1.0) >= 3
+
+
+@kernel
+def classify(solids, parts, faces, separations, work, kinds_out, edges_out):
+    """What joints of pairs of parts are now (n,), as SpatialMotion.kinds, and the edges that cross, as its `edges`.
+
+    Faces within 30° of the separating axis and of each other look at each other; else a face within 30° of it has what
+    lies on it; else two edges cross. Parts inside each other always have something in common there.
+    """
+    for number in range(parts.shape[0]):
+        a, b = parts[number, 0], parts[number, 1]
+        _, axis, edge_a, edge_b = separate(solids, a, b, math.inf)
+        normal_a, normal_b = row3(solids.normals, faces[number, 0]), row3(solids.normals, faces[number, 1])
+        along_a, along_b = dot(normal_a, axis), -dot(normal_b, axis)
+        kind = EDGES
+        if max(along_a, along_b) >= STEEP:
+            kind = RIM_OF_A if along_a >= along_b else RIM_OF_B
+        if min(along_a, along_b) >= STEEP and -dot(normal_a, normal_b) >= STEEP:
+            if separations[number] >= 0.0 or _overlap_anywhere(
+                solids, solids.corners, faces[number, 0], faces[number, 1], (normal_a, normal_b), work
+            ):
+                kind = FACES
+        kinds_out[number] = kind
+        for m in range(5):
+            edges_out[number, m] = NONE
+        if kind == EDGES and edge_a != NO_EDGE:
+            a0, a1 = solids.edges[edge_a, 0], solids.edges[edge_a, 1]
+            b0, b1 = solids.edges[edge_b, 0], solids.edges[edge_b, 1]
+            d = minus3(row3(solids.corners, a1), row3(solids.corners, a0))
+            e = minus3(row3(solids.corners, b1), row3(solids.corners, b0))
+            edges_out[number, 0], edges_out[number, 1], edges_out[number, 2], edges_out[number, 3] = a0, a1, b0, b1
+            edges_out[number, 4] = 1 if dot(cross3(d, e), axis) > 0.0 else -1

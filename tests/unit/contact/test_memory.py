@@ -29,7 +29,7 @@ def settled(sim: Simulation, load: float = 0.0) -> Simulation:
 def memory(sim: Simulation) -> dict[tuple, tuple]:
     """What each loaded point carries, by its joint's edges and its end."""
     rows = {}
-    for j, edges in enumerate(sim.geometry.faces.tolist()):
+    for j, edges in enumerate(sim.geometry.keys.tolist()):
         for end in (0, 1):
             p = 2 * j + end
             if sim.contacts.normal[p] > 0:

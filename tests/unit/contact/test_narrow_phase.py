@@ -44,7 +44,7 @@ def test_find_points_place():
 def test_edges_of_a_pair_are_the_ends_of_its_faces():
     sim = simulation(tables(*running_wall(3, 3)), "large")
     ends = sim.model.topology.ends
-    assert np.array_equal(sim.geometry.edges, ends[sim.geometry.faces].reshape(-1, 4))
+    assert np.array_equal(sim.geometry.edges, ends[sim.geometry.keys].reshape(-1, 4))
 
 
 def test_no_two_points_have_one_key():

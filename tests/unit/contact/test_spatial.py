@@ -183,7 +183,7 @@ def test_faces_of_a_cube_on_a_cube_do_not_alternate():
     for _ in range(40):
         other = turned(shifted(box([0, 0, 1], [1, 1, 2]), random.normal(size=3) * 1e-12), random, 1e-13)
         built = start_joints(spatial_model([cube, other]))
-        found.add((*built.geometry.faces[0], len(built.joints.kn), *built.joints.frames[0, :6].round(9) + 0.0))
+        found.add((*built.geometry.keys[0], len(built.joints.kn), *built.joints.frames[0, :6].round(9) + 0.0))
     assert len(found) == 1
     assert next(iter(found))[2] == 4
 
@@ -399,4 +399,4 @@ def test_pieces_of_one_block_share_no_joint_and_do_not_touch_from_inside():
     built = start_joints(model)
     assert built.joints.blocks.tolist() == [[0, 1], [0, 1], [1, 2], [1, 2]]
     assert sorted((built.joints.kn / KN).tolist()) == pytest.approx([0.125] * 4 + [0.25] * 12)
-    assert not model.inner_faces[built.geometry.faces].any()
+    assert not model.inner_faces[built.geometry.keys].any()

@@ -1,0 +1,174 @@
+"""Narrow phase in space where blocks move: contact points of polyhedra that know what they are, renewed on the way.
+
+Between two detections the compiled loop renews the points of each joint itself (kernels/renewal.py). One of the modules
+of contact/geometry.py; what does not depend on motion is that of contact/spatial.py.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.joints import Faces, JointProperties, joints_of
+from dem_cli.contact.meetings import polyhedra
+from dem_cli.contact.spatial import LONE, chains_of, corners_of, drawn, facing, find, median_face, touching
+from dem_cli.geometry.solids import face_areas
+from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
+from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
+from dem_cli.kernels.spatial_points import classify
+from dem_cli.model.model import Model
+
+if TYPE_CHECKING:
+    from dem_cli.contact.assemble import JointArrays
+
+__all__ = [
+    "book", "carry", "chains_of", "corner_shares", "corners_of", "drawn", "facing", "find", "microrotations", "place",
+    "points", "sink", "take_over", "touching",
+]  # fmt: skip
+
+BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
+FLOOR = 0.05  # of the median face: area of a face joint, at least
+SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
+SPARE = 4  # slots of a joint beside one for each corner of both faces
+REMEMBERED = 32  # numbers of memory of a law, at most
+
+
+def points(
+    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
+) -> tuple[MovingJoints, SpatialMotion]:
+    """Joints with room for contact points, and what is known of their geometry; points come when they are placed."""
+    solids, n = polyhedra(model, corners), len(faces.parts)
+    counts = np.diff(solids.face_starts)
+    slots = counts[faces.faces].sum(axis=1) + SPARE
+    starts = np.concatenate([[0], np.cumsum(slots)]).astype(np.int64)
+    most = int(slots.max(initial=0))
+    work = np.zeros((7, 2 * most + 2, 4))
+    kinds, edges = np.zeros(n, np.int8), np.full((n, 5), -1)
+    classify(solids, faces.parts, faces.faces, faces.separation, work, kinds, edges)
+    n_points = int(starts[-1])
+    joints = joints_of(model, faces, properties, starts, np.zeros(n), np.zeros(n_points))
+    normals = _normals(model)[faces.faces]
+    geometry = SpatialMotion(
+        keys=faces.parts,
+        features=np.full(n_points, -1),
+        kinds=kinds,
+        faces=faces.faces,
+        normals=np.ascontiguousarray(normals.reshape(-1, 6)),
+        tangents=_tangents(model, faces.faces[:, 0]),
+        markers=np.full((n, 6), np.nan),
+        scales=_scales(model, faces, properties),
+        edges=edges,
+        types=np.zeros(n_points, np.int8),
+        corners=np.full((n_points, 5), -1),
+        shares=np.zeros(n_points),
+        arms=np.zeros((n_points, 3)),
+        face_starts=solids.face_starts,
+        face_corners=solids.face_corners,
+        part_starts=solids.part_starts,
+        part_edges=solids.part_edges,
+        part_sides=np.ascontiguousarray(solids.edges[:, :2]),
+        work=work,
+        found=np.full((2 * most + 2, 5), -1),
+        labels=np.zeros((2 * most + 2, 2), np.int64),
+        numbers=np.zeros((2 * most + 2, 10 + REMEMBERED)),
+        taken=np.zeros(2 * most + 2, np.int64),
+        heirs=np.zeros(2 * most + 2, np.int64),
+    )
+    return joints, geometry
+
+
+def _normals(model: Model) -> np.ndarray:
+    """Outward unit normals of all faces in the frames of their blocks, (n_faces, 3)."""
+    areas = face_areas(model.vertices, model.topology)
+    return areas / np.linalg.norm(areas, axis=1)[:, None]
+
+
+def _tangents(model: Model, faces: np.ndarray) -> np.ndarray:
+    """Direction of the first side of each of these faces in the frame of its block, (n, 3)."""
+    topology = model.topology
+    first = topology.face_starts[faces]
+    along = model.vertices[topology.face_corners[first + 1]] - model.vertices[topology.face_corners[first]]
+    return along / np.linalg.norm(along, axis=1)[:, None]
+
+
+def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarray:
+    """SpatialMotion.scales of pairs of faces, (n, 8)."""
+    topology, median = model.topology, median_face(model)
+    areas = np.linalg.norm(face_areas(model.vertices, topology), axis=1)
+    sides = topology.sides
+    lengths = np.linalg.norm(model.vertices[sides[:, 1]] - model.vertices[sides[:, 0]], axis=1)
+    shortest = np.minimum.reduceat(lengths, topology.face_starts[:-1])
+    blocks = model.part_blocks[faces.parts]
+    named = properties.between(model, blocks)
+    centred = np.array([layout is not None for layout in properties.layouts], float)[named]
+    n = len(faces.parts)
+    reach = SKINS * np.maximum(faces.reach, 0.0)
+    return np.column_stack([
+        np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
+        properties.ks[named], np.full(n, LONE * median), np.full(n, FLOOR * median), np.full(n, reach), centred,
+    ])  # fmt: skip
+
+
+def place(joints: Joints, geometry: SpatialMotion, contacts: Contacts, bodies: Bodies) -> None:
+    """Gaps, frames, levers and points where the blocks are now; joints that have no points yet get them."""
+    if np.isnan(geometry.markers).any():
+        renew_fresh(joints, geometry, contacts, bodies)
+    measure_spatial(joints, geometry, contacts, bodies)
+
+
+def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+    """Forces of points that go on: by their areas, along the tangents that they have now."""
+    grown = new.joints.kn[target] / old.joints.kn[source]
+    new.contacts.normal[target] = grown * old.contacts.normal[source]
+    before, now = (of.joints.frames[at, 3:].reshape(-1, 2, 3) for of, at in ((old, source), (new, target)))
+    along = np.einsum("nij,ni->nj", before, old.contacts.shear[source])
+    grown = new.joints.ks[target] / old.joints.ks[source]
+    new.contacts.shear[target] = grown[:, None] * np.einsum("nij,nj->ni", now, along)
+
+
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+    """New points of a joint that goes on have traction, slip and memory of the nearest one that was loaded."""
+    loaded = old.contacts.normal != 0.0
+    known = np.isin(new.geometry.features, -1) | (match[new.joints.owners] < 0)
+    for j in np.unique(new.joints.owners[~known]):
+        was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
+        now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
+        was, now = was[loaded[was]], now[new.geometry.features[now] >= 0]
+        now = now[~np.isin(new.geometry.features[now], old.geometry.features[was])]
+        if len(was) and len(now):
+            arms = new.joints.points[now][:, None] - old.joints.points[was]
+            source = was[(arms**2).sum(axis=2).argmin(axis=1)]
+            carry(old, new, now, source)
+            for name in ("slip", "memory", "closure"):
+                getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
+
+
+def book(old: JointArrays, new: JointArrays) -> None:
+    """Energy that went or came with other points: those that press already hold what their overlap says."""
+    contacts, joints = new.contacts, new.joints
+    fresh = (contacts.normal == 0.0) & (contacts.gaps < 0.0)
+    contacts.normal[fresh] = joints.kn[fresh] * np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    change = _held(old) - _held(new)
+    contacts.exchanged[:] += change, abs(change)
+
+
+def _held(of: JointArrays) -> float:
+    """In the springs of all points [J]."""
+    used = of.joints.kn > 0.0
+    normal, shear = of.contacts.normal[used], of.contacts.shear[used]
+    return 0.5 * float((normal**2 / of.joints.kn[used]).sum() + ((shear**2).sum(axis=1) / of.joints.ks[used]).sum())
+
+
+def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:
+    """Nothing: only profiles have a recess."""
+
+
+def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
+    """None: joints in space have no profile, (n_joints,)."""
+    return np.zeros(len(joints.blocks))
+
+
+def corner_shares(joints: Joints, geometry: SpatialMotion, corners: np.ndarray) -> np.ndarray:
+    """Not known yet."""
+    raise NotImplementedError
