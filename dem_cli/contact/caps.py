@@ -11,7 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.joints import Faces, JointProperties, points_of
+from dem_cli.contact.keys import face_names, same_rows
 from dem_cli.contact.layout import SAMPLES, PointLayout, draw
+from dem_cli.contact.meetings import meetings
+from dem_cli.kernels.records import FACES
+from dem_cli.model.model import Model
 
 STEEP = np.cos(np.pi / 4) - 1e-9  # a bed joint has its normal within 45° of the vertical
 
@@ -22,6 +27,67 @@ class JointCap(NamedTuple):
     places: np.ndarray  # on b at the start [m], (n, 3)
     rises: np.ndarray  # above the plane of a, 0: in contact at the start [m], (n,)
     shares: np.ndarray  # of the area of the joint, (n,)
+
+
+class Caps(NamedTuple):
+    """The caps of the joints of the start, which come back wherever the same two faces meet again."""
+
+    parts: np.ndarray  # the two parts of each, (n, 2)
+    faces: np.ndarray  # and their faces, (n, 2)
+    rises: np.ndarray  # of the outline [m], (n,)
+    slopes: np.ndarray  # of the steepest side, (n,)
+    starts: np.ndarray  # each has the points starts[i]:starts[i + 1] within its outline, (n + 1,)
+    arms: np.ndarray  # of these, from the centroid of block b as it stands at the start [m], (n_points, 3)
+    areas: np.ndarray  # of the joint that belong to each [m²], (n_points,)
+
+
+def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
+    """Caps of the joints of the start, by the layout of their named joint; None: no joint may have one."""
+    if not any(layout is not None and layout.sides is not None for layout in properties.layouts):
+        return None
+    found, named = meetings(model, faces, corners), properties.between(model, model.part_blocks[faces.parts])
+    names = face_names(model)
+    made, rows, inner = [], [], [np.zeros((0, 4))]
+    for i in np.flatnonzero(found.kinds == FACES):
+        layout, normal = properties.layouts[named[i]], found.frames[i, :3]
+        if layout is None or not has_cap(layout, normal):
+            continue
+        points = slice(found.starts[i], found.starts[i + 1])
+        outline, area = found.places[points], found.weights[points].sum()
+        key = (names[faces.faces[i, 1]], names[faces.faces[i, 0]])
+        cap = cap_over(outline, found.weights[points] / area, normal, layout, key)
+        steep = slopes(outline, *half_profile(layout, key, outline)).max(initial=0.0)
+        vertex = model.topology.face_corners[model.topology.face_starts[faces.faces[i, 1]]]
+        arms = cap.places - (corners[vertex] - model.vertices[vertex])
+        made.append(i)
+        rows.append((cap.rises[0], steep))
+        inner.append(np.column_stack([arms, area * cap.shares])[len(outline) :])
+    starts = np.cumsum([len(each) for each in inner]).astype(np.int64)
+    sizes, points_inside = np.array(rows).reshape(-1, 2), np.concatenate(inner)
+    return Caps(
+        faces.parts[made], faces.faces[made], sizes[:, 0].copy(), sizes[:, 1].copy(), starts,
+        points_inside[:, :3].copy(), points_inside[:, 3].copy(),
+    )  # fmt: skip
+
+
+def caps_of(caps: Caps | None, faces: Faces) -> Caps:
+    """The caps of these pairs of faces, row by row: none but where the faces of one meet.
+
+    Two parts that meet by other faces keep the rise alone: the outline of their cap is higher than the faces drawn.
+    """
+    n = len(faces.parts)
+    if caps is None:
+        none = np.zeros(n)
+        return Caps(faces.parts, faces.faces, none, none, np.zeros(n + 1, np.int64), np.zeros((0, 3)), np.zeros(0))
+    by_parts, by_faces = same_rows(caps.parts, faces.parts), same_rows(caps.faces, faces.faces)
+    rises = np.where(by_parts >= 0, caps.rises[by_parts], 0.0) if len(caps.rises) else np.zeros(n)
+    slope = np.where(by_faces >= 0, caps.slopes[by_faces], 0.0) if len(caps.rises) else np.zeros(n)
+    here = by_faces[by_faces >= 0]
+    counts = np.zeros(n, np.int64)
+    counts[by_faces >= 0] = np.diff(caps.starts)[here]
+    points = points_of(caps.starts, here)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    return Caps(faces.parts, faces.faces, rises, slope, starts, caps.arms[points], caps.areas[points])
 
 
 def cap_over(

@@ -81,7 +81,7 @@ def play(
     positions: np.ndarray,
     clearance: ClearanceSettings = DEFAULT.clearance,
 ) -> Play:
-    """Of every block on the way from the supports on which it can move least; joints: those of the start, 2D.
+    """Of every block on the way from the supports on which it can move least; joints: those of the start.
 
     A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
     """
@@ -101,7 +101,7 @@ def play(
         for i in np.flatnonzero(reached[:, 0] != reached[:, 1]):
             side = 1 if reached[i, 0] else 0
             a, b = joints.blocks[i, 1 - side], joints.blocks[i, side]
-            far = np.hypot(*(positions[b] - positions[a]))
+            far = np.hypot.reduce(positions[b] - positions[a])
             moved = found.moved[a] + found.turned[a] * far + clearance.margin * angles[i] * reach[i, side]
             if moved < found.moved[b]:
                 found.moved[b], found.turned[b] = moved, found.turned[a] + clearance.margin * angles[i]

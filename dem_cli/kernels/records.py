@@ -154,6 +154,11 @@ class SpatialMotion(NamedTuple):
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
     shares: np.ndarray  # of crossings: place along the edge of a when renewed; lone: sign of the normal, (n_points,)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
+    rises: np.ndarray  # of joints with a cap (contact/caps.py): how high the outline of b lies above it [m], (n_joints,)
+    slopes: np.ndarray  # of a cap, of its steepest side, (n_joints,)
+    cap_starts: np.ndarray  # a joint has the inner points cap_starts[j]:cap_starts[j + 1] of a cap, (n_joints + 1,)
+    cap_arms: np.ndarray  # of these, as `arms`, (n, 3)
+    cap_areas: np.ndarray  # [m²], (n,)
     face_starts: np.ndarray  # as Polyhedra, and the next four
     face_corners: np.ndarray
     part_starts: np.ndarray

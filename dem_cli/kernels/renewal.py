@@ -11,7 +11,7 @@ import math
 from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
-from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, turned3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap, turned3, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
 from dem_cli.kernels.vec import axpy, dot
 
@@ -147,7 +147,8 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
     numbers, a, b = geometry.numbers, joints.blocks[joint, 0], joints.blocks[joint, 1]
     _put(geometry, point, k)
     _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
-    gap = feature_of(geometry, bodies, joint, point, a, b, frame)[1]
+    _, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+    gap = on_cap(geometry, bodies, joint, point, gap, place, frame[0])
     contacts.gaps[point] = gap
     if fresh:
         return
