@@ -202,7 +202,7 @@ def on_cap(geometry, bodies, joint, point, gap, place, normal_a):
 
 @always_inline
 def frame_of(geometry, turns, joint, a, b):
-    """Normals from a to b: of the face of a, of the face of b, half way between; and the direction of shear, in space."""
+    """Normals from a to b (of the face of a, of that of b, half way) and the direction of shear, in space."""
     n, t = geometry.normals, geometry.tangents
     normal_a = turned3(turns, a, n[joint, 0], n[joint, 1], n[joint, 2])
     normal_b = turned3(turns, b, -n[joint, 3], -n[joint, 4], -n[joint, 5])

@@ -280,8 +280,9 @@ def of_edges(geometry, joint, out):
 
 
 @inline
-def _overlap_anywhere(geometry, vertices, face_a, face_b, normals, work):
+def _overlap_anywhere(geometry, vertices, faces, normals, work):
     """Whether two faces have anything in common, seen along the joint."""
+    face_a, face_b = faces[0], faces[1]
     middle = unit3(minus3(normals[0], normals[1]))
     t1, t2 = tangents3(middle, (0.6, 0.64, 0.48))
     origin = row3(vertices, geometry.face_corners[geometry.face_starts[face_a]])
@@ -305,11 +306,12 @@ def classify(solids, parts, faces, separations, work, kinds_out, edges_out):
         kind = EDGES
         if max(along_a, along_b) >= STEEP:
             kind = RIM_OF_A if along_a >= along_b else RIM_OF_B
-        if min(along_a, along_b) >= STEEP and -dot(normal_a, normal_b) >= STEEP:
-            if separations[number] >= 0.0 or _overlap_anywhere(
-                solids, solids.corners, faces[number, 0], faces[number, 1], (normal_a, normal_b), work
-            ):
-                kind = FACES
+        facing = min(along_a, along_b) >= STEEP and -dot(normal_a, normal_b) >= STEEP
+        if facing and (
+            separations[number] >= 0.0
+            or _overlap_anywhere(solids, solids.corners, faces[number], (normal_a, normal_b), work)
+        ):
+            kind = FACES
         kinds_out[number] = kind
         for m in range(5):
             edges_out[number, m] = NONE
