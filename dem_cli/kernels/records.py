@@ -29,7 +29,8 @@ class Bodies(NamedTuple):
     # now in time histories [1/(kg m²)], (n_blocks, r·r)
     means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
     drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
-    pulled: np.ndarray  # velocities before the dashpots of the last step, (n_blocks·n_dof,)
+    pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
+    # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
 
@@ -233,7 +234,8 @@ class Dampers(NamedTuple):
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8
-    masses: np.ndarray  # and moments of inertia; 0 of supports, (n_blocks, n_dof)
+    masses: np.ndarray  # and moments of inertia in the plane; 0 of supports, and where inertia is a tensor (in
+    # space: BlockShapes.inertias), (n_blocks, n_dof)
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 
 
