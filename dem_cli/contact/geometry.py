@@ -79,8 +79,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
         """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""
 
-    def book(self, old: JointArrays, new: JointArrays) -> None:
-        """Books the elastic energy that came or went with other points (Contacts.exchanged)."""
+    def book(self, old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+        """Books the elastic energy that came or went with other points (Contacts.exchanged); known: those that were
+        there before, (n_points,) bool."""
 
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""

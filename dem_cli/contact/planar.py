@@ -163,7 +163,7 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
     new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
 
-def book(old: JointArrays, new: JointArrays) -> None:
+def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
     """Nothing: points keep their stiffness."""
 
 

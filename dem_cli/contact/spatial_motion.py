@@ -144,8 +144,8 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
     for j in np.unique(new.joints.owners[~known]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
-        was, now = was[loaded[was]], now[new.geometry.features[now] >= 0]
-        now = now[~np.isin(new.geometry.features[now], old.geometry.features[was])]
+        features = new.geometry.features[now]
+        now, was = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])], was[loaded[was]]
         if len(was) and len(now):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]
@@ -154,10 +154,10 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
                 getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
 
 
-def book(old: JointArrays, new: JointArrays) -> None:
-    """Energy that went or came with other points: those that press already hold what their overlap says."""
+def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+    """Energy that went or came with other points: new ones that press already hold what their overlap says."""
     contacts, joints = new.contacts, new.joints
-    fresh = (contacts.normal == 0.0) & (contacts.gaps < 0.0)
+    fresh = ~known & (contacts.normal == 0.0) & (contacts.gaps < 0.0)
     contacts.normal[fresh] = joints.kn[fresh] * np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
     change = _held(old) - _held(new)
     contacts.exchanged[:] += change, abs(change)
