@@ -16,6 +16,7 @@ from dem_cli.contact.meetings import polyhedra
 from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, touching
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
+from dem_cli.kernels.renewal import LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
@@ -81,7 +82,7 @@ def points(
         work=work,
         found=np.full((2 * most + 2, 5), -1),
         labels=np.zeros((2 * most + 2, 2), np.int64),
-        numbers=np.zeros((2 * most + 2, 10 + REMEMBERED)),
+        numbers=np.zeros((2 * most + 2, LEFT + REMEMBERED)),
         taken=np.zeros(2 * most + 2, np.int64),
         heirs=np.zeros(2 * most + 2, np.int64),
     )
@@ -111,7 +112,7 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     shortest = np.minimum.reduceat(lengths, topology.face_starts[:-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
-    centred = np.array([layout is not None and layout.sides is None for layout in properties.layouts], float)[named]
+    centred = properties.centred[named].astype(float)
     n = len(faces.parts)
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([

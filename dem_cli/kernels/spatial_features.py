@@ -190,7 +190,7 @@ def height_inside(geometry, vertices, face, outwards, corner, slack):
 
 @always_inline
 def on_cap(geometry, bodies, joint, point, gap, place, normal_a):
-    """Gap of a point of a joint whose block b has a cap: its outline lies higher, its inner points carry over a alone."""
+    """Gap of a point where block b has a cap: its outline lies higher, its inner points carry over face a alone."""
     rise = geometry.rises[joint]
     if rise == 0.0:
         return gap

@@ -88,7 +88,7 @@ def _in_space(known: dict[str, Any], path: str, turning: set[str]) -> Any:
     if not any(f".{name}." in path for name in turning):
         return known.get(path)
     found = known.get(f"{head}.{ENDS.get(last, last)}")
-    signed = last in ("min", "max", "value", "residual", "end")
+    signed = last in ("min", "max", "peak", "value", "residual", "end")
     return -found if signed and isinstance(found, float) else found
 
 
