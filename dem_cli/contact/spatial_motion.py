@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, chains_of, corners_of, drawn, facing, find, median_face, touching
+from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, touching
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
+from dem_cli.kernels.renewal import LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
@@ -35,12 +37,16 @@ REMEMBERED = 32  # numbers of memory of a law, at most
 
 
 def points(
-    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
+    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Caps | None = None
 ) -> tuple[MovingJoints, SpatialMotion]:
-    """Joints with room for contact points, and what is known of their geometry; points come when they are placed."""
+    """Joints with room for contact points, and what is known of their geometry; points come when they are placed.
+
+    chains: caps of the joints of the start, which alone have one; None: these are they, or there are none.
+    """
+    caps = caps_of(chains or made_caps(model, faces, corners, properties), faces)
     solids, n = polyhedra(model, corners), len(faces.parts)
     counts = np.diff(solids.face_starts)
-    slots = counts[faces.faces].sum(axis=1) + SPARE
+    slots = counts[faces.faces].sum(axis=1) + np.diff(caps.starts) + SPARE
     starts = np.concatenate([[0], np.cumsum(slots)]).astype(np.int64)
     most = int(slots.max(initial=0))
     work = np.zeros((7, 2 * most + 2, 4))
@@ -63,6 +69,11 @@ def points(
         corners=np.full((n_points, 5), -1),
         shares=np.zeros(n_points),
         arms=np.zeros((n_points, 3)),
+        rises=caps.rises,
+        slopes=caps.slopes,
+        cap_starts=caps.starts,
+        cap_arms=caps.arms,
+        cap_areas=caps.areas,
         face_starts=solids.face_starts,
         face_corners=solids.face_corners,
         part_starts=solids.part_starts,
@@ -71,7 +82,7 @@ def points(
         work=work,
         found=np.full((2 * most + 2, 5), -1),
         labels=np.zeros((2 * most + 2, 2), np.int64),
-        numbers=np.zeros((2 * most + 2, 10 + REMEMBERED)),
+        numbers=np.zeros((2 * most + 2, LEFT + REMEMBERED)),
         taken=np.zeros(2 * most + 2, np.int64),
         heirs=np.zeros(2 * most + 2, np.int64),
     )
@@ -101,7 +112,7 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     shortest = np.minimum.reduceat(lengths, topology.face_starts[:-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
-    centred = np.array([layout is not None for layout in properties.layouts], float)[named]
+    centred = properties.centred[named].astype(float)
     n = len(faces.parts)
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
@@ -164,9 +175,14 @@ def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:
     """Nothing: only profiles have a recess."""
 
 
+def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
+    """Caps, which come back wherever the same faces meet again; None: all joints are plane."""
+    return made_caps(model, faces, corners, properties)
+
+
 def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
-    """None: joints in space have no profile, (n_joints,)."""
-    return np.zeros(len(joints.blocks))
+    """Largest microrotation of each joint from the plane that it rests on at the start [rad], (n_joints,)."""
+    return geometry.slopes
 
 
 def corner_shares(joints: Joints, geometry: SpatialMotion, corners: np.ndarray) -> np.ndarray:
