@@ -117,7 +117,7 @@ def _joints(case: Case, sim: Simulation) -> Rows:
     """How many joints there are, and of what kind; a joint is a pair of faces."""
     number = len(sim.joints.blocks)
     near = "" if sim.kinematics == "fixed" else " (with faces that may meet)"
-    rows = [("joints", f"{number:,}{near}, {len(sim.joints.kn):,} contact points")]
+    rows = [("joints", f"{number:,}{near}, {sim.first_points:,} contact points")]
     materials = sim.model.block_material[sim.joints.blocks]
     named = sim.properties.by_material[materials[:, 0], materials[:, 1]]
     bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], sim.model.dimension - 1]) > BED
@@ -188,7 +188,7 @@ def _runs(case: Case) -> Rows:
 
 def _cost(case: Case, sim: Simulation) -> str:
     """Seconds of one core, from the steps that such an analysis took elsewhere."""
-    kind, points = case.analysis.kind, len(sim.joints.kn)
+    kind, points = case.analysis.kind, sim.first_points
     few, many = STEPS[kind]
     few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
     if kind == "safety":

@@ -57,7 +57,7 @@ def _first(sim: DynamicSimulation) -> str:
 
 def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str, str]]:
     analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
-    length, points = analysis.duration or ground.duration, len(sim.joints.kn)
+    length, points = analysis.duration or ground.duration, sim.first_points
     if length <= 0.0:
         return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
     runs, said = _runs(case)

@@ -65,6 +65,12 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
         """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""
 
+    def open_gaps(self, model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
+        """Largest gap of each pair of faces that look at each other [m], (n,); 0 where they do not, or overlap.
+
+        steepest: slope of one against the other; bare: share of the smaller one that they have to face each other over.
+        """
+
     def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
         """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 

@@ -115,6 +115,11 @@ def joints_of(
     )
 
 
+def points_in_use(joints: Joints) -> np.ndarray:
+    """Points that can carry a force, (n_points,) bool; in space joints that move have room for more than they have."""
+    return joints.kn > 0.0
+
+
 def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
     """All points of these joints, joint by joint."""
     counts = starts[joints + 1] - starts[joints]

@@ -1,8 +1,8 @@
 """Snapshots of a time history: enough frames per second for the motion, and always the one where it went farthest.
 
 Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
-the ground would be lost, or when a block has moved by a part of its swings; beside these, a swing that goes farther
-than all before it leaves the frame of its turning point.
+the ground would be lost, or when a block has moved by a part of its swings, or turned by much; beside these, a swing
+that goes farther than all before it leaves the frame of its turning point.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.engine import measures
+from dem_cli.geometry.rotation import angles_between
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.ground import GroundMotion
@@ -66,7 +67,7 @@ class Snapshots:
         """
         settings, sim = self.settings, self.sim
         self.every = sampled * max(1, round(settings.look / (sampled * sim.dt)))
-        self.last, self.last_step = self._places(), sim.steps  # of the last one kept
+        self.last, self.last_turns, self.last_step = self._places(), self._turns(), sim.steps  # of the last one kept
         self.farthest = _largest(self.last)  # [m]
         of_ground = settings.per_cycle * frequency_of(self.ground, duration)
         self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
@@ -94,7 +95,7 @@ class Snapshots:
         if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt) or self._swung(places):
             if self.ahead is not None and not record:
                 self._keep(self.ahead)
-            self.ahead, self.last, self.last_step = None, places, sim.steps
+            self.ahead, self.last, self.last_turns, self.last_step = None, places, self._turns(), sim.steps
             self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
@@ -102,10 +103,16 @@ class Snapshots:
     def _places(self) -> np.ndarray:
         return measures.displacements(self.sim)[self.sim.free]
 
+    def _turns(self) -> np.ndarray:
+        return self.sim.bodies.orientations[self.sim.free]
+
     def _swung(self, places: np.ndarray) -> bool:
-        """Whether a block moved so far since the last snapshot that its swings would be lost between even times."""
+        """Whether a block moved or turned so far since the last snapshot that it would be lost between even times."""
+        if self.wanted is not None or self.room <= 0:
+            return False
         limit = self.settings.swing * max(self.farthest, self.visible)
-        return self.wanted is None and self.room > 0 and _largest(places - self.last) > limit
+        turned = angles_between(self._turns(), self.last_turns).max(initial=0.0)
+        return _largest(places - self.last) > limit or turned > self.settings.turn
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)

@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.engine.automatic_stiffness import ratio_of
-from dem_cli.engine.measures import closure, free_falls
+from dem_cli.engine.measures import closure, free_falls, reweighting_shares
 from dem_cli.model.scales import WEIGHTLESS, own_weights
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > doubts.overlap:
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: the joints are too soft")
+    said += _reweighted(case, sims)
     said += (
         _leaning_automatically(case, sims[0])
         + _weightless(sims[0])
@@ -36,6 +37,26 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
     if found.get("status") == "not converged":
         said.append(_advice(case, sims[0], found.get("failure_load_bracket", [None, None])))
     return said
+
+
+def _reweighted(case: Case, sims: list[Simulation]) -> list[str]:
+    """Energy that came or went as blocks that slide over each other changed the areas of contact points."""
+    net, total = max((reweighting_shares(sim) for sim in sims), key=max_of)
+    allowed = sims[0].settings.doubts.reweighted
+    if max_of((net, total)) <= allowed:
+        return []
+    way = "made" if net < 0.0 else "took"
+    of = "largest kinetic energy" if sims[0].most_kinetic > 0.0 else "energy that moved"
+    advice = "lower analysis.margin, or stiffen joints" if hasattr(case.analysis, "margin") else "stiffen joints"
+    return [
+        f"the areas of contact points {way} {abs(net):.1%} of the {of} as they changed, all amounts together "
+        f"{total:.1%}: {advice}"
+    ]
+
+
+def max_of(shares: tuple[float, float]) -> float:
+    """The larger of a net amount by size and of the sum of all amounts."""
+    return max(abs(shares[0]), shares[1])
 
 
 def _weightless(sim: Simulation) -> list[str]:

@@ -78,6 +78,7 @@ class DynamicSimulation(Simulation):
         bodies.means[:] = 0.0
         bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
         self.turns_of_means = bodies.turns.copy()
+        self.contacts.exchanged[:] = 0.0
 
     def start_moving(self) -> None:
         """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
@@ -109,7 +110,7 @@ class DynamicSimulation(Simulation):
             viscosity=self.damping.viscosities(self.model, joints),
             elements=self._decays(),
             rates=np.zeros((n, d)),
-            gains=np.ones((n, d)),
+            gains=np.ones((n, d * self.model.inertias.shape[1])),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),
@@ -206,11 +207,12 @@ class DynamicSimulation(Simulation):
     def _held_by_elements(self) -> float:
         """Energy in the springs of Maxwell elements [J]."""
         joints, d, held = self.joints, self.model.dimension, 0.0
+        used = joints.kn > 0.0
         for e, (share, _) in enumerate(self.damping.elements):
             column = self.dampers.first + d * (e + 1)
             forces = self.contacts.memory[:, column : column + d]
-            held += float((forces[:, 0] ** 2 / (share * joints.kn)).sum())
-            held += float(((forces[:, 1:] ** 2).sum(axis=1) / (share * joints.ks)).sum())
+            held += float((forces[used, 0] ** 2 / (share * joints.kn[used])).sum())
+            held += float(((forces[used, 1:] ** 2).sum(axis=1) / (share * joints.ks[used])).sum())
         return 0.5 * held
 
     @property

@@ -62,6 +62,7 @@ class SnapshotSettings:
     per_second_of_collapse: float = 25.0  # [1/s]
     most_per_second: float = 100.0  # [1/s]
     swing: float = 0.25  # of the largest displacement so far: who moves by it asks for one (16 in a cycle of that size)
+    turn: float = 0.5  # rad: who turned by it since the last one asks for one
     visible: float = 2e-3  # of the size of the structure: a displacement that counts as such, at least
     look: float = 2.5e-3  # s between two looks, at least
     bytes: int = 100_000_000  # on disk, about: more of them are not kept ...

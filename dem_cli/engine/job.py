@@ -120,6 +120,7 @@ class Job:
             "solve_seconds": self.clock.seconds(),
             "compile_seconds": self.clock.compiling,
             "energy_closure": worst,
+            **measures.reweighting(sims),
             "largest_overlap": overlap * sims[0].smallest,
             "unbalanced_force": sims[0].unbalanced,
             "skipped": self.skipped,

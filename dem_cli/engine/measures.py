@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.contact.geometry import MOVING
+from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turning
 from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
+
+NET, ALL = 0, 1  # of Contacts.exchanged
 
 
 class EnergySums(NamedTuple):
@@ -51,7 +55,7 @@ def dead_scale(sim: Simulation) -> float:
     if not len(joints.kn):
         return sim.smallest
     stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
-    return float(total / stiffness.min())
+    return float(total / stiffness[stiffness > 0.0].min())
 
 
 def largest_overlap(sim: Simulation) -> float:
@@ -92,16 +96,47 @@ def energy(sim: Simulation) -> Energy:
         dashpots=float(books.ledger[slot.DASHPOT]),
         mass_damping=float(books.ledger[slot.MASS]),
         maxwell=float(books.ledger[slot.MAXWELL]) - books.in_dampers,
+        reweighting=float(sim.contacts.exchanged[NET]),
     )
 
 
 def closure(sim: Simulation) -> float:
     """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance."""
     e = energy(sim)
-    taken = e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
-    error = e.kinetic + e.elastic + e.gravity + taken - e.external - e.supports
-    largest = max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken, sim.most_kinetic)
+    error = e.kinetic + e.elastic + e.gravity + _taken(e) + e.reweighting - e.external - e.supports
+    largest = _largest(sim, e)
     return float(error / largest) if largest > 0.0 else 0.0
+
+
+def reweighting(sims: Sequence[Simulation]) -> dict[str, dict[str, float]]:
+    """Key of the summary where geometry moves in space: of the simulation in which most energy changed so [J]."""
+    moved = [sim.contacts for sim in sims if sim.kinematics == "large" and sim.contacts.shear.shape[1] > 1]
+    if not moved:
+        return {}
+    net, total = max((contacts.exchanged for contacts in moved), key=lambda found: found[ALL]).tolist()
+    return {"reweighting": {"net": net, "sum": total}}
+
+
+def reweighting_shares(sim: Simulation) -> tuple[float, float]:
+    """Energy that changed with the areas of contact points, net (minus: made) and the sum of all amounts.
+
+    Over the largest kinetic energy of a time history, or its elastic one where it hardly moves; in pseudo-time over the
+    largest energy in the ledger.
+    """
+    e = energy(sim)
+    largest = max(sim.most_kinetic, e.elastic) if sim.most_kinetic > 0.0 else _largest(sim, e)
+    net, total = sim.contacts.exchanged / largest if largest > 0.0 else np.zeros(2)
+    return float(net), float(total)
+
+
+def _taken(e: Energy) -> float:
+    """What is lost for good [J]."""
+    return e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
+
+
+def _largest(sim: Simulation, e: Energy) -> float:
+    """The largest energy in the ledger, or kinetic so far [J]."""
+    return max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, _taken(e), sim.most_kinetic)
 
 
 def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
@@ -109,7 +144,7 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
 
     Geometry that cannot move keeps its points where they were, however far its blocks go: these take them along.
     """
-    if sim.model.dimension in MOVING:
+    if sim.kinematics == "large" or sim.model.dimension in MOVING:
         return sim.joints.points
     bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
@@ -123,7 +158,7 @@ def contact_record(sim: Simulation) -> ContactRecord:
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
     slides = friction >= limit * (1 - sim.settings.mechanism.slides)
     state = np.where(contacts.normal == 0.0, 0, np.where(slides, 2, 1))
-    return ContactRecord(
+    record = ContactRecord(
         joint=owner,
         blocks=joints.blocks[owner],
         points=contact_points(sim, joints.blocks[owner, 0]) + sim.origin,
@@ -135,6 +170,8 @@ def contact_record(sim: Simulation) -> ContactRecord:
         state=state.astype(np.int8),
         tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
+    used = points_in_use(joints)
+    return record if used.all() else ContactRecord(*(values[used] for values in record))
 
 
 def frame(sim: Simulation, stage: str) -> Frame:

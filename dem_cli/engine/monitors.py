@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import angles_of, beside, swept, tangents_of, turning
+from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -141,7 +141,7 @@ class Monitors:
         if not self.tables:
             return ()
         bodies, watched = sim.bodies, self.watched
-        places = np.column_stack([bodies.positions[watched], bodies.orientations[watched]])
+        places = np.column_stack([bodies.positions[watched], rotation_vectors(bodies.orientations[watched])])
         sample = np.stack([places, bodies.velocities[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
         return tuple(self.series(sample[np.newaxis], still)[0].tolist())

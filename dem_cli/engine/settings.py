@@ -29,7 +29,7 @@ from dem_cli.engine.static_settings import (
     WarmStartSettings,
 )
 from dem_cli.limit.settings import LimitSettings
-from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP
+from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,7 @@ class DoubtSettings:
     uneven: float = 1e3  # how much faster than another a block may fall in pseudo-time
     closure: float = DOUBTFUL_CLOSURE  # energy error over the largest energy
     overlap: float = DOUBTFUL_OVERLAP  # in smallest edges
+    reweighted: float = DOUBTFUL_REWEIGHTING  # of the energy, that went or came as the areas of contact points changed
     off_the_load: float = 0.02  # of the failure load, that the curve of the collapse may peak above or below it
     above: float = 0.005  # of the associated load, that a failure load may lie above it
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by

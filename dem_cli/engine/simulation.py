@@ -7,7 +7,7 @@ import numpy as np
 from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import JointGeometry
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.joints import JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses
@@ -67,7 +67,8 @@ class Simulation:
         self.tracking = self._track(law.n_memory(model.dimension) + self.n_damped, self.skin * self.smallest)
         self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
-        self.first_joints, self.first_points = len(self.joints.blocks), len(self.joints.kn)  # of the start
+        self.first_joints = len(self.joints.blocks)  # of the start
+        self.first_points = int(points_in_use(self.joints).sum())
         self.first_gaps = self.contacts.gaps.copy()
         self.depth = depth(self.joints.blocks, model.fixed)
         self.play = play_of_start(self.tracking, self.bodies, settings.clearance)
@@ -316,6 +317,7 @@ class Simulation:
         self.ledger[slot.FRICTION] = friction
         self.ledger[slot.EXTERNAL] = friction + self.elastic_energy()
         self.ledger[slot.CONTACT] = -self.ledger[slot.EXTERNAL]
+        self.contacts.exchanged[:] = 0.0
 
     def count_from(self, steps: int) -> None:
         """Steps that were done before this simulation took over."""

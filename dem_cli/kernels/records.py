@@ -230,7 +230,8 @@ class Dampers(NamedTuple):
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
     elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
     rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
-    gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
+    gains: np.ndarray  # what impulses give up of their errors in one turn: shares in 2D, blocks row by row in 3D,
+    # (n_points, d·r)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8

@@ -127,7 +127,7 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
             forces[:] = 0.0
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if damped:
-                met = meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
+                met = meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
                 velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, bodies.mobilities, means,
                 drags, pulled, ground.accelerations[step], damp, rate, dt, like, like_rotation,
@@ -137,13 +137,13 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
-                resist(joints, contacts, velocities, inverse_masses, dampers, dt, turns, like, like_rotation)
+                resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
                 if dampers.elements.shape[0] > 0:
-                    book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation)
+                    book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
                 if n_moving > 0:
                     old = means.reshape(velocities.shape)
                     book_supports(
-                        joints, contacts, velocities, old, inverse_masses, dampers, ledger, like, like_rotation
+                        joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip
             _book(
                 velocities, forces, unbalanced, inverse_masses, dampers.masses, shape, bodies.turns, means, pulled,

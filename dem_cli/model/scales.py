@@ -9,6 +9,7 @@ from dem_cli.model.model import Model
 REMOTE_BLOCKS = 1e3  # times the extent of the blocks that can move: from there on coordinates count from among them
 DOUBTFUL_CLOSURE = 0.01  # energy error over the largest energy above which a run is to be doubted
 DOUBTFUL_OVERLAP = 0.01  # the same, of the largest overlap in smallest edges
+DOUBTFUL_REWEIGHTING = 0.01  # the same, of energy that changed with the areas of contact points
 WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are lost in round-off
 
 

@@ -233,6 +233,11 @@ ENERGY = {
     "dashpots": Described("lost to viscous joints, since the start", "J", _ROW),
     "mass_damping": Described("lost to damping by mass, since the start", "J", _ROW),
     "maxwell": Described("lost to Maxwell elements of joints, since the start", "J", _ROW),
+    "reweighting": Described(
+        "gone with the areas of contact points that change where blocks move in 3D, net since the start; minus: made",
+        "J",
+        _ROW,
+    ),
 }
 _SAMPLE = ("sample", "coordinate")
 SERIES = {
@@ -299,6 +304,12 @@ BLOCK_FIELDS = {
     "CellData/fixed": Described("1: the block cannot move"),
     "CellData/rotation": Described(
         _TURNED, "rad", in_space=Described("angle that the block has turned by, from 0 to π", "rad")
+    ),
+    "CellData/orientation": Described(
+        "unit quaternion w, x, y, z of how the block has turned since it was drawn", spatial=True
+    ),
+    "CellData/angular_velocity": Described(
+        "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
     ),
 }
 CONTACT_FIELDS = {

@@ -123,6 +123,7 @@ class Energy(NamedTuple):
     dashpots: float = 0.0  # taken by viscous joints
     mass_damping: float = 0.0
     maxwell: float = 0.0  # taken by Maxwell elements of joints
+    reweighting: float = 0.0  # taken as the areas of contact points changed in space; minus: made
 
 
 class HistoryRow(NamedTuple):

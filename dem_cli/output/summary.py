@@ -52,6 +52,7 @@ ORDER = (
     "solve_seconds",
     "wall_seconds",
     "energy_closure",
+    "reweighting",
     "warnings",
 )
 

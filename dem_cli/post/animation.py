@@ -15,6 +15,7 @@ from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style, view_box
+from dem_cli.post.histories import base_colours
 from dem_cli.post.playback import milliseconds, playback
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import drawing_of
@@ -24,7 +25,7 @@ _DPI = 100
 _WHITE = "#ffffff"
 _SHADES = 7  # of each pair of colours that meet at a smooth edge
 _MOST_LIT = 96  # colours of stone, and of ground
-_EDGES = ((_WHITE, style.INK), (_WHITE, style.GREY), (_WHITE, style.COLLAPSE), (_WHITE, style.STONE_EDGE))
+_EDGES = tuple((_WHITE, ink) for ink in (style.INK, style.GREY, style.COLLAPSE, style.STONE_EDGE, style.THRUST))
 
 
 def draw_animation(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
@@ -119,7 +120,12 @@ class _Scene:
             self.axis.plot(middle, low[1], "^", ms=9, color=style.INK, clip_on=False)
 
     def _draw_strip(self, axis: Any, series: HistorySeries) -> None:
-        axis.plot(series.time, series.base[:, 0], lw=0.8, color=style.GREY)
+        moved = [k for k, path in enumerate(series.base[:, 0].T) if path.any()]
+        for k in moved:
+            colour = style.GREY if len(moved) == 1 else base_colours(series)[k]
+            axis.plot(series.time, series.base[:, 0, k], lw=0.8, color=colour, label="xyz"[k])
+        if len(moved) > 1:
+            axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, handlelength=1.0, borderpad=0.1)
         axis.set_xlim(0.0, series.time[-1] or 1.0)
         axis.set_ylabel("base\n[m/s2]")
         axis.set_xlabel("time [s]")

@@ -22,8 +22,10 @@ _COLOURS = {
     "elastic": "#2a8c5b",
     "kinetic": "#8250a8",
     "supports": "#7c7c86",
+    "reweighting": "#404048",
 }
-_IN_TIME = {"damping": "local damping", "external": "base and loads"}  # what these are in time histories
+_WORDS = {"reweighting": "areas of contacts", "mass_damping": "mass damping"}
+_IN_TIME = _WORDS | {"damping": "local damping", "external": "base and loads"}  # what these are in time histories
 _SPARE = "#404048"
 _BY_DISPLACEMENT = ("pushover", "settlement")  # kinds whose structures go on and on, not to and fro
 
@@ -48,7 +50,7 @@ def draw_energy(results: Results, path: Path) -> None:
         for name, values in _in_order(results):
             values = values[rows]
             if (values != 0.0).any():
-                word = _IN_TIME.get(name, name.replace("_", " ")) if shaken.any() else name
+                word = (_IN_TIME if shaken.any() else _WORDS).get(name, name)
                 axis.plot(*with_breaks(history["step"][rows], x, values), color=_COLOURS.get(name, _SPARE), label=word)
         collapse = results.summary.get("collapse_time")
         if collapse is not None:

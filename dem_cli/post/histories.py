@@ -54,13 +54,17 @@ def of_quantity(series: HistorySeries, quantity: str) -> dict[str, np.ndarray]:
     return {name: values for name, values in series.monitors.items() if series.quantities[name] == quantity}
 
 
+def base_colours(series: HistorySeries) -> list[str]:
+    """Of the components of the base: x, in space y as well, and what is upwards."""
+    return [*(style.INK, style.THRUST)[: series.base.shape[2] - 1], style.GREY]
+
+
 def _draw_base(axis: Any, series: HistorySeries) -> None:
     """Acceleration in every direction that has one."""
     for i, name in enumerate("xyz"[: series.base.shape[2]]):
         values = series.base[:, 0, i]
         if (values != 0.0).any():
-            colour = style.INK if i == 0 else style.GREY
-            axis.plot(*thinned(series.time, values), color=colour, lw=0.9, label=name)
+            axis.plot(*thinned(series.time, values), color=base_colours(series)[i], lw=0.9, label=name)
     axis.set_ylabel("base\n[m/s2]")
     if len(axis.get_lines()) > 1:
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

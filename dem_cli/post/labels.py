@@ -53,6 +53,8 @@ KNOWN_QUANTITIES = {
     "steps": Quantity("number of steps"),
     "time_step": Quantity("time step", "s"),
     "energy_closure": Quantity("error of the energy balance over the energy moved"),
+    "reweighting.net": Quantity("energy that changed with the areas of contact points", "J"),
+    "reweighting.sum": Quantity("all amounts of energy that changed with the areas of contact points", "J"),
     "onset_of_displacements": Quantity("load at the onset of displacements λ"),
     "peak_of_curve": Quantity("largest load of the curve λ"),
     "settlement_at_collapse.share": Quantity("share of the settlement at collapse"),

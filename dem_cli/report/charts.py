@@ -22,7 +22,7 @@ _ZOOM_FROM = 6.0  # the collapse goes this many times farther than failure: the 
 _MOST_MONITORS = 6
 _ENERGY = {  # the colour of each entry, as energy.png has them
     "external": "0", "gravity": "5", "friction": "1", "dashpots": "6", "mass_damping": "4", "maxwell": "8",
-    "damping": "9", "elastic": "2", "kinetic": "3", "supports": "7",
+    "damping": "9", "elastic": "2", "kinetic": "3", "supports": "7", "reweighting": "ink",
 }  # fmt: skip
 _PALETTE = 10  # colours in assets/page.css: --line-0 and on
 

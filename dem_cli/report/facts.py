@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, smallest_edge
+from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
 from dem_cli.output.ending import ending_words
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.reader import Results
@@ -144,6 +144,7 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
         words = "What the loads put in is stored, moving or lost to friction and damping; "
         words += f"good below {DOUBTFUL_CLOSURE:.0%}."
         checks.append(SoundnessCheck("energy that is missing", f"{abs(closure):.2g} of the largest entry", tone, words))
+    checks += _reweighting(summary, results)
     overlap = summary.get("largest_overlap")
     if overlap is not None and results is not None:
         share = overlap / smallest_edge(results.model)
@@ -155,6 +156,23 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
         )
         checks.append(SoundnessCheck("largest overlap", text, tone, words))
     return checks + _balance(summary, results)
+
+
+def _reweighting(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
+    """Energy that changed with the areas of contact points, where blocks move in space."""
+    found = summary.get("reweighting")
+    if not found or results is None or not len(results.history.get("step", ())):
+        return []
+    entries = ["kinetic"] if summary.get("kind") in IN_SECONDS else list(results.energy)
+    largest = max(float(np.abs(results.energy[name]).max()) for name in entries)
+    if largest <= 0.0:
+        return []
+    share = max(abs(found["net"]), found["sum"]) / largest
+    of = "the largest kinetic energy" if entries == ["kinetic"] else "the largest entry"
+    words = "Blocks that slide over each other change the areas of their contact points, which takes or makes energy; "
+    text = f"{share:.2g} of {of}, net {found['net'] / largest:.2g}".replace("-", "−")
+    tone = GOOD if share <= DOUBTFUL_REWEIGHTING else LOOK
+    return [SoundnessCheck("energy of changing areas", text, tone, f"{words}good below {DOUBTFUL_REWEIGHTING:.0%}.")]
 
 
 def _balance(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:

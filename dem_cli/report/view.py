@@ -42,9 +42,12 @@ def view(results: Results) -> dict[str, Any]:
     kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
     chosen = [frames[i] for i in kept]
     scales = [1.0 if frame.stage == MODE else frame_measures.visible_scale(model, frame) for frame in chosen]
+    carried, grounds = stage.carried(results, min(scales)), [stage.ground(series, frame) for frame in chosen]
+    moved = grounds if carried else [0.0 * each for each in grounds]
     return {
         "dimension": model.dimension,
         **STANDPOINTS[model.dimension](model, chosen, skin),
+        **WINDOWS[model.dimension](model, chosen, moved),
         "size": frame_measures.size(model),
         "ids": list(model.block_ids),
         "materials": [model.material_names[i] for i in model.block_material],
@@ -66,10 +69,11 @@ def view(results: Results) -> dict[str, Any]:
         "modes": chosen[0].stage == MODE,
         "of_any_size": results.kind in SHAPE_KINDS,
         "still": chosen[0].stage == AS_BUILT,
-        "ground": in_space(np.stack([stage.ground(series, frame) for frame in chosen])).tolist(),
+        "ground": in_space(np.stack(grounds)).tolist(),
         "ground_moves": series is not None and bool(series.base[:, 2].any()),
         "has_joints": any(len(frame.contacts.joint) for frame in chosen),
-        "carried": stage.carried(results, min(scales)),
+        "carried": carried,
+        "follows": results.kind not in SHAPE_KINDS,
     }
 
 
@@ -200,8 +204,18 @@ def _in_space(model: Model, frames: Sequence[Frame], skin: Surface) -> dict[str,
     }
 
 
+def _window(model: Model, frames: Sequence[Frame], moved: Sequence[np.ndarray]) -> dict[str, Any]:
+    """The box that all frames need at true scale, carried along by the ground as it `moved`."""
+    corners = [stage.corners(model, frame, 1.0, shift) for frame, shift in zip(frames, moved, strict=True)]
+    return {"window": [end.tolist() for end in stage.window(model, corners, 0.0)]}
+
+
 SKINS: dict[int, Callable[[Model], Surface]] = {2: prisms, 3: sharp}  # chamfers show joints where no edges are drawn
 STANDPOINTS: dict[int, Callable[[Model, Sequence[Frame], Surface], dict[str, Any]]] = {
     2: lambda model, frames, skin: {},
     3: _in_space,
+}
+WINDOWS: dict[int, Callable[[Model, Sequence[Frame], Sequence[np.ndarray]], dict[str, Any]]] = {
+    2: lambda model, frames, moved: {},
+    3: _window,
 }

@@ -13,11 +13,13 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.spatial.transform import Rotation, Slerp
 from shown.browser import chromium
 from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.pages import HOSTILE, evil, sweep, wall
 from synthetic.shaking import write_shaking
 from synthetic.solid_runs import DEPTH, HEIGHT, solid_frames, solid_wall, write_solid_run
+from synthetic.tumbling import DURATION, column, frame_at, write_shaken_column
 
 from dem_cli.cli.main import main
 from dem_cli.output.scalars import scalars
@@ -55,6 +57,7 @@ def pages(tmp_path_factory):
         "sweep": sweep(root / "sweep"),
         "shaken": write_shaking(root / "shaken"),
         "solid": write_solid_run(root / "solid", SOLID, solid_frames(SOLID)),
+        "tumbling": write_shaken_column(root / "tumbling", 60),
     }
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)  # still pictures are not the point here
@@ -129,7 +132,7 @@ def near(found, wanted, tolerance=3):
     return max(abs(a - b) for a, b in zip(found, wanted, strict=True)) <= tolerance
 
 
-@pytest.mark.parametrize("name", ["wall", "evil", "sweep", "shaken"])
+@pytest.mark.parametrize("name", ["wall", "evil", "sweep", "shaken", "tumbling"])
 def test_no_page_complains_or_asks_for_anything(opened, name):
     page = opened(name)
     page.screen()
@@ -207,8 +210,6 @@ def test_every_corner_is_where_the_results_have_it(opened):
 
 def test_rotations_in_space(opened):
     """The view places 2D blocks with the rotations of 3D."""
-    from scipy.spatial.transform import Rotation
-
     page = opened("wall")
     for vector in ([0.0, 0.0, 0.3], [0.4, -1.2, 2.0], [1e-9, 0.0, 0.0], [0.0, 0.0, 0.0]):
         found = np.reshape(page.run("return rotation(...arguments[0])", vector), (3, 3))
@@ -435,6 +436,66 @@ def test_one_walks_around_a_structure_in_space(opened):
     z = np.array(page.run(arrows))[2]
     assert z[0] == pytest.approx(0.0, abs=1e-4)
     assert z[1] < -5.0  # upwards
+
+
+def test_blocks_that_tumble_turn_evenly_between_frames(opened):
+    """Half way between two frames: about one axis, and no block changes its shape; the ground goes along."""
+    page, model = opened("tumbling"), column()
+    times = np.linspace(0.0, DURATION, 60)
+    at, share = 45, 0.375
+    before, after = (frame_at(model, "collapse", 0, times[k]) for k in (at, at + 1))
+    page.run("dem.player.scene.show.carried = true; dem.player.scene.set(arguments[0], 1, arguments[1])", at, share)
+    drawn = np.array(page.run("return Array.from(dem.player.scene.places)")).reshape(-1, 3)
+    corners = page.run("return dem.player.scene.vertexCorners")
+    ground = np.array(page.run("return dem.player.data.ground"))
+    moved = ground[at] + share * (ground[at + 1] - ground[at])
+    skin, expected = sharp(model), np.zeros((len(drawn), 3))
+    for block in range(model.n_blocks):
+        turns = Rotation.from_quat([f.orientations[block] for f in (before, after)], scalar_first=True)
+        middle = (1.0 - share) * before.positions[block] + share * after.positions[block]
+        own = skin.owners[corners] == block
+        expected[own] = middle + Slerp([0.0, 1.0], turns)(share).apply(skin.points[corners][own])
+    np.testing.assert_allclose(drawn, expected + moved, atol=2e-6)
+    assert np.linalg.norm(after.positions - before.positions, axis=1).max() > 0.05
+    for one, other in (((0.0, 0.0, 3.0), (0.0, 0.0, -3.0)), ((0.0, 0.0, 0.0), (0.4, -1.2, 2.0))):  # the shorter way
+        found = page.run("return between(...arguments)", one, other, 0.5)
+        wanted = Slerp([0.0, 1.0], Rotation.from_rotvec([one, other]))(0.5)
+        np.testing.assert_allclose(Rotation.from_rotvec(found).as_matrix(), wanted.as_matrix(), atol=1e-12)
+
+
+def test_light_stays_where_it_is_when_blocks_turn(opened):
+    """A face that looks upwards is the lightest, whatever face it was."""
+    page = opened("tumbling")
+    script = """dem.player.scene.set(arguments[0], 1);
+        const {rings, shades, poses} = dem.player.scene;
+        return rings.map(({first, block, normal: {x, y, z}}) => {
+          const {turn} = poses[block];
+          return [shades[first], turn[6] * x + turn[7] * y + turn[8] * z];
+        })"""
+    for at in (0, 50):
+        shades, upwards = np.array(page.run(script, at)).T
+        order = np.argsort(upwards)
+        assert upwards[order[-1]] > 0.7
+        assert shades[upwards > 0.7].min() > shades[np.abs(upwards) < 0.3].max()
+
+
+def test_the_picture_shows_where_blocks_come(opened):
+    """It opens at the collapse; what falls later is on the canvas too, and plays."""
+    page = opened("tumbling")
+    left, top, width, height = page.box("canvas")
+    for at in (0, 30, 59):
+        page.run("dem.player.go(arguments[0])", at)
+        places = np.array([page.place(block) for block in range(1, 7)])
+        assert (places > (left, top)).all()
+        assert (places < (left + width, top + height)).all()
+    page.run("dem.player.go(40); dem.player.part('speed').value = '0.1'; dem.player.play()")
+    assert until(lambda: page.run("return dem.player.at > 40"), True)
+    page.run("dem.player.play()")
+    frame = page.run("return dem.player.at")
+    shifts = np.array(page.run("return Array.from(dem.player.scene.poses, ({place}) => place)"))
+    base = np.array(page.run("return dem.player.scene.ground()"))
+    wanted = frame_at(column(), "collapse", 0, np.linspace(0.0, DURATION, 60)[frame]).positions
+    np.testing.assert_allclose(shifts - base, wanted, atol=1e-5)  # where it stands, it is a computed state
 
 
 def test_a_cut_shows_sections_and_takes_what_is_beyond(opened):

@@ -80,6 +80,8 @@ def _joints(joints: FixedJoints, layers: np.ndarray) -> FixedJoints:
 
 
 def _contacts(contacts: Contacts, m: int) -> Contacts:
-    each = Contacts(*(field.repeat(m, axis=0) for field in contacts[:-1]), contacts.stale.copy())
+    as_wholes = {name: getattr(contacts, name).copy() for name in ("stale", "exchanged")}
+    points = {name: values for name, values in contacts._asdict().items() if name not in as_wholes}
+    each = Contacts(**{name: values.repeat(m, axis=0) for name, values in points.items()}, **as_wholes)
     shear = np.column_stack([each.shear / m, np.zeros(len(each.gaps))])
     return each._replace(shear=np.ascontiguousarray(shear), normal=each.normal / m)

@@ -78,6 +78,16 @@ def test_frames_follow_what_moves_faster_than_the_ground():
     assert off_evenly > 1.0
 
 
+def test_frames_follow_what_turns():
+    """A square that spins as it flies: 25 frames per second of a collapse, 1.2 rad apart, are too few."""
+    spin = 30.0
+    start = {"motion": {"kind": "none"}, "initial": [{"block": "b", "velocity": [0.0, 2.0, spin]}]}
+    _, records = engine.solve(shaken(0.1, 0.1, 0.35, **start))
+    turned = np.diff([frame.orientations[1, 0] for frame in records.frames])
+    assert turned.sum() == pytest.approx(0.35 * spin, rel=0.02)
+    assert turned.max() <= DEFAULT.snapshots.turn + 0.0051 * spin  # a look
+
+
 def test_frames_have_a_limit_on_disk():
     small = replace(DEFAULT, snapshots=replace(DEFAULT.snapshots, bytes=20_000, fewest=10))
     _, records = engine.solve(shaken(0.5, 1.5, 3.0, motion=PULSE), settings=small)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
@@ -17,6 +18,15 @@ def block_fields(model: Model) -> dict[str, np.ndarray]:
         "material": model.block_material[parts].astype(np.int32),
         "fixed": model.fixed[parts].astype(np.uint8),
     }
+
+
+def turning_fields(model: Model, frame: Frame) -> dict[str, np.ndarray]:
+    """How blocks have turned, and in space how fast they turn; a value per convex part."""
+    parts, d = model.part_blocks, model.dimension
+    found = {"rotation": angles_of(frame.orientations)}
+    if frame.orientations.shape[1] == 4:
+        found |= {"orientation": frame.orientations, "angular_velocity": frame.velocities[:, d:]}
+    return {name: values[parts].astype(np.float32) for name, values in found.items()}
 
 
 def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:

@@ -8,11 +8,17 @@ from typing import Protocol
 import h5py
 import numpy as np
 
-from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES, declared
 from dem_cli.output.paraview.cells import cells_of, outlines_of_joints
-from dem_cli.output.paraview.fields import block_fields, contact_fields, joint_fields, joint_places, step_fields
+from dem_cli.output.paraview.fields import (
+    block_fields,
+    contact_fields,
+    joint_fields,
+    joint_places,
+    step_fields,
+    turning_fields,
+)
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
 from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates
@@ -66,8 +72,7 @@ class ParaViewFiles:
         vertices = placed_vertices(model, frame.positions, frame.orientations)
         velocities = vertex_velocities(model, vertices, frame.positions, frame.velocities)
         moving = {"displacement": in_space(vertices - self._rest), "velocity": in_space(velocities)}
-        turned = {"rotation": angles_of(frame.orientations)[model.part_blocks].astype(np.float32)}
-        self.blocks.add(value, in_space(vertices), moving, turned, steps)
+        self.blocks.add(value, in_space(vertices), moving, turning_fields(model, frame), steps)
         self.points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), steps)
         if self.joints is not None and joints is not None:
             ends = in_space(joints.ends.reshape(-1, model.dimension))

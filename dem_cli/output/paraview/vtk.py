@@ -14,7 +14,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.atomic_file import write_text
 from dem_cli.output.folder import write_error
 from dem_cli.output.paraview.cells import cells_of, outlines
-from dem_cli.output.paraview.fields import block_fields, contact_fields
+from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
@@ -90,7 +90,8 @@ def _blocks(model: Model, frame: Frame) -> str:
     velocities = vertex_velocities(model, vertices, frame.positions, frame.velocities)
     moved = in_space(vertices - rest_vertices(model))
     fields = {"displacement": moved, "velocity": in_space(velocities)}
-    return _grid(model, in_space(vertices), fields, block_fields(model), _step_fields(frame))
+    cells = block_fields(model) | turning_fields(model, frame)
+    return _grid(model, in_space(vertices), fields, cells, _step_fields(frame))
 
 
 def _step_fields(frame: Frame) -> Fields:

@@ -31,7 +31,7 @@ class Eye {
     this.controls.touches = yes ? { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN } : { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_ROTATE };
   }
 
-  /** Turn to the front and show all free blocks, where they were and where they are now, but no corner that fell far. */
+  /** Turn to the front and show all free blocks, where they were and where they come, but no corner that fell far. */
   fit() {
     const { low, high } = this.bounds(), size = high.map((value, k) => value - low[k]);
     const far = 4 * Math.hypot(...size), [x, y, z] = this.flat ? [0, 0, 1] : this.scene.data.eye;
@@ -69,8 +69,11 @@ class Eye {
     }
   }
 
+  /** What all frames need, where they are drawn as they are; else this one. */
   bounds() {
-    const { scene } = this, ground = scene.ground(), rest = [], now = [];
+    const { scene } = this;
+    if (scene.data.window && scene.scale === 1) return { low: scene.data.window[0], high: scene.data.window[1] };
+    const ground = scene.ground(), rest = [], now = [];
     scene.owners.forEach((block, v) => {
       if (scene.fixed[block] && scene.fixed.includes(0)) return;
       const corner = scene.corner(scene.vertexCorners[v]), at = scene.centroids.subarray(3 * block, 3 * block + 3);

@@ -2,6 +2,7 @@
 
 const FRAMES_A_SECOND = 8;
 const SWING = 1.6; // s, of a mode that is played
+const SMOOTH = 30; // ms: where blocks take longer to place, a film shows its frames alone
 
 function metres(value) {
   const size = Math.abs(value);
@@ -122,6 +123,7 @@ class Player {
     if (!this.playing) return this.refresh();
     if (!this.data.modes && this.at === this.data.frames.length - 1) this.go(0);
     this.since = performance.now();
+    this.smooth = this.data.follows;
     this.tick();
   }
 
@@ -135,9 +137,14 @@ class Player {
     const step = (i) => (this.data.in_seconds ? frames[i + 1].time - frames[i].time : 1 / FRAMES_A_SECOND);
     let at = this.at, left = passed;
     while (at < frames.length - 1 && left >= step(at)) left -= step(at++); // frames may be closer than what a screen shows
-    if (at === this.at) return;
-    this.since = performance.now() - (1000 * left) / speed;
-    this.go(at);
+    if (at !== this.at) {
+      this.since = performance.now() - (1000 * left) / speed;
+      this.go(at);
+    } else if (this.smooth && left > 0) {
+      const before = performance.now();
+      this.scene.set(at, this.scale(), left / step(at));
+      this.smooth = performance.now() - before < SMOOTH;
+    }
   }
 
   say() {

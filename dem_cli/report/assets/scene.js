@@ -28,6 +28,23 @@ function rotation(x, y, z) {
   ];
 }
 
+/** Unit quaternion of a rotation vector, scalar first. */
+function quaternion([x, y, z]) {
+  const angle = Math.hypot(x, y, z), s = angle ? Math.sin(angle / 2) / angle : 0.5;
+  return [Math.cos(angle / 2), s * x, s * y, s * z];
+}
+
+/** Rotation vector a share of the way from one rotation to another, about one axis, the shorter way round. */
+function between(from, to, share) {
+  const a = quaternion(from), [w, x, y, z] = quaternion(to);
+  const cosine = a[0] * w + a[1] * x + a[2] * y + a[3] * z, sign = cosine < 0 ? -1 : 1;
+  const angle = Math.acos(Math.min(1, Math.abs(cosine))), sine = Math.sin(angle);
+  const [p, q] = sine < 1e-6 ? [1 - share, share] : [Math.sin((1 - share) * angle) / sine, Math.sin(share * angle) / sine];
+  const mixed = [w, x, y, z].map((value, k) => p * a[k] + q * sign * value), vector = mixed.slice(1);
+  const length = Math.hypot(...vector), turn = 2 * Math.atan2(length, mixed[0]);
+  return vector.map((value) => (length ? (turn / length) * value : 0));
+}
+
 class Scene {
   constructor(canvas, data) {
     THREE.ColorManagement.enabled = false;
@@ -52,18 +69,19 @@ class Scene {
 
   /** One mesh of all faces; its corners are written for each frame. */
   blocks() {
-    const owners = [], corners = [], triangles = [], shades = [];
+    const owners = [], corners = [], triangles = [];
+    this.rings = [];
     for (let at = 0; at < this.faces.length; at += this.faces[at] + 1) {
       const ring = this.faces.subarray(at + 1, at + 1 + this.faces[at]), first = corners.length;
-      const shade = this.shade(ring);
       for (const corner of ring) {
         corners.push(corner);
         owners.push(this.corner_blocks[corner]);
-        shades.push(shade);
       }
+      this.rings.push({ first, after: corners.length, block: this.corner_blocks[ring[0]], normal: this.normal(ring) });
       for (let k = 2; k < ring.length; k++) triangles.push(first, first + k - 1, first + k);
     }
-    Object.assign(this, { owners, vertexCorners: corners, shades });
+    Object.assign(this, { owners, vertexCorners: corners, shades: new Float32Array(corners.length) });
+    for (const ring of this.rings) this.shade(ring, ring.normal);
     this.shape = new THREE.BufferGeometry();
     this.places = new Float32Array(3 * corners.length);
     this.colours = new Float32Array(3 * corners.length);
@@ -98,8 +116,18 @@ class Scene {
     return sum.normalize();
   }
 
-  shade(ring) {
-    return LIGHT[this.data.dimension](this.normal(ring), this.data.along);
+  shade({ first, after }, normal) {
+    this.shades.fill(LIGHT[this.data.dimension](normal, this.data.along), first, after);
+  }
+
+  /** Light comes from where it comes from, however blocks in space have turned. */
+  light() {
+    if (this.data.dimension === 2) return;
+    for (const ring of this.rings) {
+      const { turn } = this.poses[ring.block], { x, y, z } = ring.normal;
+      const [a, b, c] = [0, 3, 6].map((row) => turn[row] * x + turn[row + 1] * y + turn[row + 2] * z);
+      this.shade(ring, { x: a, y: b, z: c });
+    }
   }
 
   /** The smallest side of the box around each block. */
@@ -120,16 +148,19 @@ class Scene {
     if (this.frame) this.set(this.at, this.scale);
   }
 
-  /** Show frame `at` with displacements times `scale`. */
-  set(at, scale) {
+  /** Show frame `at` with displacements times `scale`, or blocks a share of the way from it to the next one. */
+  set(at, scale, share = 0) {
     this.at = at;
     this.scale = scale;
     this.frame = this.frames[at];
-    const { shifts, turns } = this.frame, ground = this.ground();
+    const now = this.frame, next = share ? this.frames[at + 1] : now, ground = this.ground(share);
     this.poses = Array.from({ length: this.n }, (_, block) => {
-      const i = 3 * block, turn = rotation(scale * turns[i], scale * turns[i + 1], scale * turns[i + 2]);
-      return { turn, place: ground.map((value, k) => value + this.centroids[i + k] + scale * shifts[i + k]) };
+      const i = 3 * block, [from, to] = [now, next].map(({ turns }) => [0, 1, 2].map((k) => scale * turns[i + k]));
+      const shift = (k) => now.shifts[i + k] + share * (next.shifts[i + k] - now.shifts[i + k]);
+      const turn = rotation(...(share ? between(from, to, share) : from));
+      return { turn, place: ground.map((value, k) => value + this.centroids[i + k] + scale * shift(k)) };
     });
+    this.light();
     for (let v = 0; v < this.owners.length; v++)
       this.places.set(this.placed(this.owners[v], this.corner(this.vertexCorners[v])), 3 * v);
     this.shape.attributes.position.needsUpdate = true;
@@ -144,8 +175,9 @@ class Scene {
   }
 
   /** Where the ground is. */
-  ground() {
-    return this.show.carried ? this.data.ground[this.at] : [0, 0, 0];
+  ground(share = 0) {
+    const { ground } = this.data, next = ground[Math.min(this.at + 1, ground.length - 1)];
+    return this.show.carried ? ground[this.at].map((value, k) => value + share * (next[k] - value)) : [0, 0, 0];
   }
 
   /** A point that hangs on a block, in space. */

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from synthetic.spatial import extruded, spatial_model
 from synthetic.spatial_joints import one_joint, shifted, start_joints
 
@@ -71,6 +72,28 @@ def test_a_block_that_turns_about_an_edge(pair, kept):
     assert now.states.slip == pytest.approx([0.5 * B * (1.0 - np.cos(theta))])
     assert now.ends[:, 2].max() == pytest.approx(0.5 * B * np.sin(theta))
     assert now.states.state.tolist() == [OPEN]
+
+
+@pytest.mark.parametrize("angle", [0.7, 2.9])
+def test_what_turns_with_the_first_block_is_no_motion(pair, angle):
+    """Both turned far as one, and the second on by 0.3 rad about the normal: slip of the middle, what forces do."""
+    turn, spin = Rotation.from_rotvec(angle * np.array([2.0, -1.0, 2.0]) / 3.0), Rotation.from_rotvec([0.0, 0.0, 0.3])
+    shift = np.array([3.0, -1.0, 0.5])
+    positions, own = turn.apply(pair.centroids) + shift, [turn, turn * spin]
+    orientations = np.array([each.as_quat(scalar_first=True) for each in own])
+    held = pressed([[0, 0, 0], [B, D, 0]], [[3.0, 4.0, 30.0], [0.0, 0.0, 10.0]])
+    held = held._replace(
+        points=turn.apply(held.points) + shift, normals=turn.apply(held.normals), tangents=turn.apply(held.tangents)
+    )
+    states = DrawnJoints(pair).at(positions, orientations, held).states
+    for still in (states.opening, states.crack_width, states.slip):  # it turns about the middle of the joint
+        np.testing.assert_allclose(still, 0.0, atol=1e-14)
+    assert states.normal_stress == pytest.approx([40.0 / (B * D)])
+    assert states.shear_stress == pytest.approx([5.0 / (B * D)])
+    assert states.eccentricity == pytest.approx([0.25 * np.hypot(B, D)])
+    positions[1] += turn.apply([0.03, 0.04, 0.02])
+    states = DrawnJoints(pair).at(positions, orientations, nothing()).states
+    assert (states.opening[0], states.slip[0]) == (pytest.approx(0.02), pytest.approx(0.05))
 
 
 def test_stresses_and_eccentricity_of_a_joint(pair):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import h5py
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from synthetic.solid_runs import DEPTH, drum, solid_frames, solid_wall, write_solid_run
 from synthetic.spatial import spatial_model
+from synthetic.tumbling import column, write_collapse
 
 from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.geometry.polyhedron import box, hull
@@ -55,6 +57,25 @@ def test_every_component_has_its_name(run):
                     assert isinstance(words, str) or not words or len(words) == data.shape[-1], name
         assert file["dem/contacts/shear_force"].attrs["columns"].tolist() == ["t1", "t2"]
         assert file["dem/model/vertices"].attrs["columns"].tolist() == ["x", "y", "z"]
+
+
+def test_paraview_knows_how_blocks_turn(tmp_path):
+    """Blocks that tumble: orientations as they were handed over, and velocities of corners that follow from them."""
+    folder, model = write_collapse(tmp_path / "run", 12), column()
+    with h5py.File(folder / "blocks.vtkhdf", "r") as file:
+        cells, points = file["VTKHDF/CellData"], file["VTKHDF/PointData"]
+        turns, spins, speeds = cells["orientation"][:], cells["angular_velocity"][:], points["velocity"][:]
+        corners = file["VTKHDF/Points"][:]
+    n, frames = model.n_blocks, read(folder).frames
+    for i, frame in enumerate(frames):
+        np.testing.assert_array_equal(turns[n * i : n * (i + 1)], frame.orientations.astype(np.float32))
+        np.testing.assert_array_equal(spins[n * i : n * (i + 1)], frame.velocities[:, 3:].astype(np.float32))
+        here, owners = slice(8 * n * i, 8 * n * (i + 1)), model.vertex_blocks
+        expected = Rotation.from_quat(frame.orientations[owners], scalar_first=True).apply(model.vertices)
+        np.testing.assert_allclose(corners[here], frame.positions[owners] + expected, atol=1e-6)
+        swept = frame.velocities[owners, :3] + np.cross(frame.velocities[owners, 3:], expected)
+        np.testing.assert_allclose(speeds[here], swept, atol=2e-6)
+    assert np.abs(turns[:, 0]).min() < 0.2  # some turn right over
 
 
 def test_forces_in_space(run):

@@ -9,7 +9,7 @@ import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.errors import UsageError
-from dem_cli.output.paraview.fields import block_fields, contact_fields
+from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.paraview.vtk import export_pvd, write_geometry
 from dem_cli.output.reader import read
@@ -82,7 +82,7 @@ def test_export(tmp_path):
                 vertices = placed_vertices(model, frame.positions, frame.orientations)
                 np.testing.assert_array_equal(points[:, :2], vertices.astype(np.float32))
                 assert point_data.keys() == {"displacement", "velocity"}
-                assert_fields(cells, block_fields(model))
+                assert_fields(cells, block_fields(model) | turning_fields(model, frame))
             else:
                 np.testing.assert_array_equal(points[:, :2], frame.contacts.points.astype(np.float32))
                 assert_fields(point_data, contact_fields(frame.contacts))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from synthetic import wall_frames, wall_model, wall_summary
 from synthetic.shaking import COLLAPSE, MONITORS, shaken, write_shaking
+from synthetic.tumbling import write_shaken_column
 
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import read
@@ -107,6 +108,21 @@ def test_the_ground_is_seen_to_move_unless_it_goes_far(results):
     assert not view_box.carried(results, 10.0)
     far = results.series._replace(base=100.0 * results.series.base)
     assert not view_box.carried(type(results)(**{**vars(results), "series": far}), 1.0)
+
+
+def test_three_components_of_the_base_are_told_apart(tmp_path, figures):
+    """In the histories and below an animation; in the plane two were."""
+    folder = write_shaken_column(tmp_path / "run", 3)
+    found = read(folder)
+    histories.draw_histories(found, tmp_path / "histories.png")
+    lines = figures[0].axes[0].get_lines()
+    drawn = {line.get_label(): line.get_color() for line in lines if line.get_label() in "xyz"}
+    assert drawn == {"x": style.INK, "y": style.THRUST, "z": style.GREY}
+    for name, line in zip("xyz", lines):
+        np.testing.assert_array_equal(line.get_ydata(), found.series.base[:, 0, "xyz".index(name)])
+    assert histories.base_colours(read(write_shaking(tmp_path, 2)).series) == [style.INK, style.GREY]
+    animation.draw_animation(found, tmp_path / "collapse.gif")
+    assert (tmp_path / "collapse.gif").stat().st_size > 1e4
 
 
 def test_an_animation_of_other_runs(tmp_path):
