@@ -139,14 +139,14 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
 
 
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
-    """New points of a joint that goes on have traction, slip and memory of the nearest one that was loaded."""
-    loaded = old.contacts.normal != 0.0
+    """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
     known = np.isin(new.geometry.features, -1) | (match[new.joints.owners] < 0)
     for j in np.unique(new.joints.owners[~known]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
         features = new.geometry.features[now]
-        now, was = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])], was[loaded[was]]
+        was = was[old.geometry.features[was] >= 0]
+        now = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])]
         if len(was) and len(now):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]

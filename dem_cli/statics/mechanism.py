@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.measures import displacements
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
@@ -43,8 +44,11 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
-        slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
-        opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
+        both = points_in_use(joints) & points_in_use(sim.joints)  # a slot of joints in space may hold none
+        slip, opening = (
+            np.maximum.reduceat(np.where(both, now - then, 0.0), joints.starts[:-1])
+            for now, then in ((sim.contacts.slip, contacts.slip), (sim.contacts.gaps, contacts.gaps))
+        )
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
             parts[key] = _pairs(sim, np.flatnonzero(values > settings.takes_part * motion.max(initial=0.0)))
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
