@@ -30,7 +30,7 @@ __all__ = [
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
-FLOOR = 0.05  # of the median face: area of a face joint, at least
+FLOOR = 0.25  # of the median face: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
 SPARE = 4  # slots of a joint beside one for each corner of both faces
 REMEMBERED = 32  # numbers of memory of a law, at most
@@ -156,10 +156,11 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
 
 
 def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
-    """Energy that went or came with other points: new ones that press already hold what their overlap says."""
+    """Energy that went or came with other points: new ones hold what their own overlap says, unless they are glued."""
     contacts, joints = new.contacts, new.joints
-    fresh = ~known & (contacts.normal == 0.0) & (contacts.gaps < 0.0)
+    fresh = ~known & (contacts.normal >= 0.0)
     contacts.normal[fresh] = joints.kn[fresh] * np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    contacts.shear[fresh & (contacts.normal == 0.0)] = 0.0
     change = _held(old) - _held(new)
     contacts.exchanged[:] += change, abs(change)
 

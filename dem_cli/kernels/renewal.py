@@ -141,8 +141,7 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
         numbers[k, m] = 0.0
     if heir == NONE:
         return
-    gap = _gap_of(joints, geometry, bodies, joint, heir, frame)
-    numbers[k, CLOSED] = contacts.gaps[heir] - gap if gap < math.inf else 0.0
+    numbers[k, CLOSED] = contacts.gaps[heir] - _gap_of(joints, geometry, bodies, joint, heir, frame)
     numbers[k, 5] = contacts.normal[heir] / joints.kn[heir]
     numbers[k, 6], numbers[k, 7] = contacts.shear[heir, 0] / joints.ks[heir], contacts.shear[heir, 1] / joints.ks[heir]
     numbers[k, 8], numbers[k, 9] = contacts.slip[heir], contacts.closure[heir]

@@ -136,8 +136,10 @@ def crossing_alone(vertices, ends, point, sign):
     d, e = minus3(row3(vertices, ends[point, 1]), on_a), minus3(row3(vertices, ends[point, 3]), on_b)
     c, r = cross3(d, e), minus3(on_b, on_a)
     square = dot(c, c)
-    if square <= 1e-8 * dot(d, d) * dot(e, e):  # parallel: they cross nowhere
-        return (0.0, 0.0, 1.0), math.inf, on_a
+    if square <= 1e-8 * dot(d, d) * dot(
+        e, e
+    ):  # parallel: they cross nowhere, and are open; finite, as rates are formed
+        return (0.0, 0.0, 1.0), math.sqrt(dot(d, d)), on_a
     s = min(max(dot(cross3(r, e), c) / square, 0.0), 1.0)
     length = sign / math.sqrt(square)
     normal = (length * c[0], length * c[1], length * c[2])

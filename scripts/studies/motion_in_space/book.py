@@ -87,6 +87,8 @@ def solved(loaded: LoadedCase, model: Model) -> BookedRun:
 
     with tempfile.TemporaryDirectory() as folder:
         summary, _ = execute(loaded, model, Destination(Path(folder) / "run"), time.perf_counter(), solve=measured)
+    if not kept:
+        raise RuntimeError(f"{loaded.case.title or 'run'}: {summary['status']}: {summary['warnings']}")
     seen, seconds = kept[0]
     return BookedRun(summary, seen, seconds, int((~model.fixed).sum()))
 
