@@ -66,7 +66,7 @@ def points(
     outline = np.diff(found.starts)
     if properties.profiled:
         named = properties.between(model, model.part_blocks[faces.parts])
-        centred = ~lone & np.array([layout is not None for layout in properties.layouts])[named]
+        centred = ~lone & properties.centred[named]
         found, shares = _with_centres(found, shares, centred)
     joints = joints_of(model, faces, properties, found.starts, areas, shares)
     geometry = SpatialGeometry(

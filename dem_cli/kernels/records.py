@@ -155,6 +155,11 @@ class SpatialMotion(NamedTuple):
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
     shares: np.ndarray  # of crossings: place along the edge of a when renewed; lone: sign of the normal, (n_points,)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
+    rises: np.ndarray  # of caps (contact/caps.py): how high the outline of b lies over its lowest ring [m], (n_joints,)
+    slopes: np.ndarray  # of a cap, of its steepest side, (n_joints,)
+    cap_starts: np.ndarray  # a joint has the inner points cap_starts[j]:cap_starts[j + 1] of a cap, (n_joints + 1,)
+    cap_arms: np.ndarray  # of these, as `arms`, (n, 3)
+    cap_areas: np.ndarray  # [m²], (n,)
     face_starts: np.ndarray  # as Polyhedra, and the next four
     face_corners: np.ndarray
     part_starts: np.ndarray
@@ -163,7 +168,7 @@ class SpatialMotion(NamedTuple):
     work: np.ndarray  # of renewal: outlines, (6, room, 4)
     found: np.ndarray  # points that were found: as `corners`, (room, 5)
     labels: np.ndarray  # feature and type of each, (room, 2)
-    numbers: np.ndarray  # area, share, arm of each, and what it has from the nearest point before, (room, 10 + memory)
+    numbers: np.ndarray  # area, share, arm of each, and what it has from the nearest point before, (room, 11 + memory)
     taken: np.ndarray  # slot that each has, (room,)
     heirs: np.ndarray  # and the slot that is nearest to each new one, (room,)
 

@@ -43,8 +43,11 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
-        slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
-        opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
+        both = (joints.kn > 0.0) & (sim.joints.kn > 0.0)  # of joints in space: slots that hold a point
+        slip, opening = (
+            np.maximum.reduceat(np.where(both, now - then, 0.0), joints.starts[:-1])
+            for now, then in ((sim.contacts.slip, contacts.slip), (sim.contacts.gaps, contacts.gaps))
+        )
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
             parts[key] = _pairs(sim, np.flatnonzero(values > settings.takes_part * motion.max(initial=0.0)))
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
