@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.geometry import MOVING
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turning
@@ -142,9 +141,9 @@ def _largest(sim: Simulation, e: Energy) -> float:
 def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
     """Where the contact points are now [m], (n_points, d); blocks: the first one of each.
 
-    Geometry that cannot move keeps its points where they were, however far its blocks go: these take them along.
+    Geometry of the start keeps its points where they were, however far its blocks go: in space these take them along.
     """
-    if sim.kinematics == "large" or sim.model.dimension in MOVING:
+    if sim.kinematics == "large" or sim.joints.points.shape[1] == 2:
         return sim.joints.points
     bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
