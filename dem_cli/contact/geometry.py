@@ -79,6 +79,10 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     ) -> Returning | None:
         """What of the joints of the start comes back wherever the same faces meet again; None: nothing."""
 
+
+class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Returning]):
+    """What it has to know beside that where blocks move: how new contact points go on from old ones."""
+
     def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
         """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
 
@@ -101,13 +105,19 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
+AnyMovingNarrowPhase = MovingNarrowPhase[Any, Any]
 GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}  # of the start
-MOVING: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial_motion}  # that moves
+MOTION: dict[int, AnyMovingNarrowPhase] = {2: planar, 3: spatial_motion}
 
 
-def geometry_of(dimension: int, moves: bool = False) -> AnyNarrowPhase:
-    """The narrow phase for blocks in so many dimensions, that move or not. Raises UsageError where there is none."""
+def geometry_of(dimension: int) -> AnyNarrowPhase:
+    """The narrow phase for blocks in so many dimensions. Raises UsageError where there is none."""
     if dimension not in GEOMETRY:
         known = " or ".join(map(str, sorted(GEOMETRY)))
         raise UsageError(f"blocks in {dimension} dimensions cannot touch: contact is known in {known} dimensions")
-    return (MOVING if moves else GEOMETRY)[dimension]
+    return GEOMETRY[dimension]
+
+
+def motion_of(dimension: int) -> AnyMovingNarrowPhase:
+    """The narrow phase for blocks that move; joints of the start that stay there are those of `geometry_of`."""
+    return MOTION[dimension]

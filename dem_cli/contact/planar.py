@@ -4,7 +4,7 @@ these are when the blocks move. One of the modules of contact/geometry.py.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -158,8 +158,9 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
     known = np.flatnonzero(match >= 0)
-    new.geometry.sunk[:] = np.inf
-    new.geometry.sunk[known] = old.geometry.sunk[match[known]]
+    before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)
+    now.sunk[:] = np.inf
+    now.sunk[known] = before.sunk[match[known]]
 
 
 def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:

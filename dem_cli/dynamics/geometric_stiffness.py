@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.compatibility import directions, free_columns
-from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.geometry import JointGeometry, motion_of
 from dem_cli.dynamics.spatial_stiffness import attachment, second_derivatives
 from dem_cli.geometry.rotation import across
 
@@ -52,7 +52,7 @@ def _in_plane(model: Model, joints: Joints, geometry: JointGeometry, contacts: C
     forces = np.column_stack([contacts.normal, contacts.shear])
     along = np.einsum("pd,pdk->pk", forces, frames)  # force on b [N], (n_points, 2)
     normal = across(along)
-    share = geometry_of(model.dimension).corner_shares(joints, geometry, bodies.corners)[:, None]
+    share = motion_of(model.dimension).corner_shares(joints, geometry, bodies.corners)[:, None]
     arms = joints.points[:, None] - bodies.positions[blocks]
     lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
     one, two = share[:, 0], 1.0 - share[:, 0]

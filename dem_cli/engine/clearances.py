@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.geometry import JointGeometry, geometry_of, motion_of
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.engine.tracking import JointTracking
@@ -27,9 +27,9 @@ class Play(NamedTuple):
 def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
     """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
     model, smallest = tracking.model, tracking.smallest
-    found = play(model, tracking.joints, tracking.geometry, bodies.positions, clearance)
     if not tracking.moves:
-        return found
+        return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
+    found = play(model, tracking.joints, tracking.geometry, bodies.positions, clearance)
     faces = tracking.faces_within(bodies, clearance.widest * smallest)
     gaps = geometry_of(model.dimension).open_gaps(model, faces, bodies.corners, clearance.steepest, clearance.bare)
     gaps = gaps[(gaps > TOUCHING_GAP * smallest) & (gaps <= clearance.widest * smallest)]
@@ -65,7 +65,7 @@ def play(
     A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
     """
     found = Play(np.where(model.fixed, 0.0, np.inf), np.where(model.fixed, 0.0, np.inf))
-    angles = geometry_of(model.dimension).microrotations(joints, geometry)
+    angles = motion_of(model.dimension).microrotations(joints, geometry)
     if not angles.any():
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
     owner = joints.owners

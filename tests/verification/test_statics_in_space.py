@@ -195,7 +195,7 @@ def test_a_barrel_spreads_as_an_arch_of_the_plane():
 
 
 def test_a_barrel_twists_with_its_support():
-    """A springing that moves out, sinks and turns in plan: the mirror image of the run is the run of the mirror image."""
+    """A springing that moves out, sinks and turns in plan: mirrored, the run is that of the mirror image."""
     way = {"displacement": [0.03, 0.0, -0.01], "rotation_deg": [0.0, 0.0, 0.6]}
     back = {"displacement": [0.03, 0.0, -0.01], "rotation_deg": [0.0, 0.0, -0.6]}
     blocks = bonded_barrel(9)
