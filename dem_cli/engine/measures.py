@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.geometry import MOVING
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turning
@@ -15,6 +14,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
+_GO_ALONG = {2: False, 3: True}  # whether records take points of geometry of the start along with their blocks
 
 
 class EnergySums(NamedTuple):
@@ -142,9 +142,9 @@ def _largest(sim: Simulation, e: Energy) -> float:
 def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
     """Where the contact points are now [m], (n_points, d); blocks: the first one of each.
 
-    Geometry that cannot move keeps its points where they were, however far its blocks go: these take them along.
+    Geometry of the start keeps its points where they were, however far its blocks go: in space these take them along.
     """
-    if sim.kinematics == "large" or sim.model.dimension in MOVING:
+    if sim.kinematics == "large" or not _GO_ALONG[sim.model.dimension]:
         return sim.joints.points
     bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
