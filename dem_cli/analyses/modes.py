@@ -100,13 +100,14 @@ def closed_points(sim: Simulation) -> np.ndarray:
     weight = mean_weight(sim.loads.dead[free], sim.loads.live[free], d) if len(free) else 1.0
     closed = sim.contacts.normal > sim.settings.modes.pressed * weight
     if sim.law.bonded:
-        closed |= _bonds(sim, np.flatnonzero(~closed), weight)
+        closed |= _bonds(sim, np.flatnonzero(~closed & (sim.joints.kn > 0.0)), weight)
     return closed
 
 
 def touching_points(sim: Simulation) -> np.ndarray:
     """The same and all that have no gap, such as head joints that carry nothing yet, (n_points,) bool."""
-    return closed_points(sim) | (sim.measured().gaps <= sim.settings.modes.closes * sim.smallest)
+    near = sim.measured().gaps <= sim.settings.modes.closes * sim.smallest
+    return closed_points(sim) | (near & (sim.joints.kn > 0.0))
 
 
 def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
@@ -129,16 +130,15 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     settings = sim.settings.modes
     model, d, rotations = sim.model, sim.model.dimension, sim.model.rotations
     free = ~model.fixed
-    reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + np.abs(shape[:, rotations]).max(axis=1) * sim.shape.radii
+    turns = np.linalg.norm(shape[:, rotations], axis=1)
+    reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + turns * sim.shape.radii
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
-    turn = float(np.abs(shape[:, rotations]).max())
+    turn = float(turns.max())
     amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
-    return rest._replace(
+    return rest.moved(amplitude * shape)._replace(
         step=number,
         displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
-        positions=rest.positions + amplitude * shape[:, :d],
-        orientations=rest.orientations + amplitude * shape[:, rotations],
         velocities=np.zeros_like(rest.velocities),
     )
 

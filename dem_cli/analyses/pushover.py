@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
-from dem_cli.engine.kinematics import may_move
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
@@ -110,14 +109,8 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
         moved = search.peak_displacement / sim.smallest
         given = any(joint.kn != "auto" for joint in job.case.joints.values())
         soft = given and moved > job.settings.load_search.soft * analysis.resolution
-        moves = may_move(job.model)
-        again = soft and sim.kinematics == "fixed" and analysis.kinematics == "auto" and moves
+        again = soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"
         if not again or search.status == INTERRUPTED:
-            if soft and not moves:
-                job.warnings.append(
-                    f"with the given kn blocks move {moved:.2g} smallest edges before failure: that is left out of "
-                    "account, as only the geometry of the start is known in 3D yet; the structure may carry less"
-                )
             if rigid and search.found:
                 job.warnings += _changed(search.carried, rigid, job.settings.doubts.lowered)
             if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):

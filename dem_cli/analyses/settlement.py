@@ -67,7 +67,7 @@ def _motions(case: Case, sim: Simulation) -> np.ndarray:
     names = sim.model.numbers
     motion = np.zeros_like(sim.bodies.velocities)
     for table in case.settlement:
-        motion[names[table.block]] += [*table.displacement, table.rotation]
+        motion[names[table.block]] += [*table.displacement, *table.rotation]
     return motion
 
 
@@ -106,9 +106,14 @@ def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
     supports = {
         table.block: {
             "displacement": [share * component for component in table.displacement],
-            "rotation": share * table.rotation,
+            "rotation": _plain([share * angle for angle in table.rotation]),
         }
         for table in case.settlement
     }
     found = {"share": share, "bracket": [share, high / way.rows], "supports": supports}
     return {"settlement_at_collapse": found} | how
+
+
+def _plain(turn: list[float]) -> float | list[float]:
+    """A turn as a summary has it: in the plane one angle, in space axis times angle [rad]."""
+    return turn if len(turn) > 1 else turn[0]

@@ -50,7 +50,7 @@ class Calibration(CaseModel):
     point: Vector | None = Field(
         default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 0.5]]
     )
-    component: Literal["x", "y"] | None = Field(
+    component: Literal["x", "y", "z"] | None = Field(
         default=None, description="of the displacement; default: the length of the vector", examples=["x"]
     )
     apertures: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(

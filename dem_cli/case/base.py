@@ -18,6 +18,7 @@ NonNegative = Annotated[float, Field(ge=0.0)]
 Name = Annotated[str, Field(min_length=1)]
 Pair = tuple[float, float]  # two numbers, whatever the dimension of the case
 Vector = Annotated[tuple[float, ...], VectorLength(2, 3)]  # a point, vector or force in the space of the case
+Turn = Annotated[float | tuple[float, ...], VectorLength(1, 3)]  # about z; in space axis times angle
 Twist = Annotated[tuple[float, ...], VectorLength(3, 6)]  # a vector, then turns: about z, in space about x, y and z
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from dem_cli.case.base import CaseModel
 from dem_cli.case.vector import VectorLength
-from dem_cli.case.wording import either, kind_of, show
+from dem_cli.case.wording import kind_of, show
 from dem_cli.errors import CaseProblem, KeyPath
 
 NAME = "NAME"  # stands for a name of the user's choice in a key path
@@ -25,8 +25,6 @@ class Scope(NamedTuple):
     dimension: int
     why: str  # what is said where it is given in the other one
     values: tuple[Any, ...] = ()  # of these values alone; (): whatever it is
-    left: tuple[str, ...] = ()  # values that are known in both, named beside `why`
-    none: Any = None  # a value that says no more than leaving it out
     beside: tuple[str, Any] | None = None  # only beside this key of the same table with this value
 
     @property
@@ -45,24 +43,17 @@ class Scope(NamedTuple):
         if not self.values:
             return self.why
         found = show(value) + (" is " if self.why.startswith("not") else " is not allowed; ")
-        return found + self.why + (f"; must be {either(self.left)}" if self.left else "")
+        return found + self.why
 
 
-STATIC = ("gravity", "pushover", "safety")
 SCOPES = (
-    Scope("analysis.kind", 2, YET, ("cycle", "settlement", "time-history", "fragility", "modes"), STATIC),
-    Scope("analysis.kinematics", 2, f"{YET}: geometry is that of the start", ("large",), ("auto", "fixed")),
-    Scope("analysis.follow", 2, f"{YET}: geometry is that of the start; must be 0", none=0),
-    Scope("settlement", 2, YET),
-    Scope("motion", 2, YET),
-    Scope("damping", 2, YET),
-    Scope("initial", 2, YET),
     Scope("calibration", 2, YET),
     Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
+    Scope("initial.axis", 3, "blocks tilt in their plane in 2D: give dimension = 3"),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
     Scope("block.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
     Scope("block.parts.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
@@ -81,7 +72,7 @@ def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
     """What a case, as read, says that its dimension does not know."""
     for scope, path, table in _foreign(data):
         value = table[scope.name]
-        if not _unset(scope, value) and scope.holds(value, table):
+        if value not in ([], {}, None) and scope.holds(value, table):  # no tables say no more than leaving them out
             yield CaseProblem(path, scope.message(value), at_key=not scope.values)
 
 
@@ -90,11 +81,6 @@ def leave_out(data: dict[str, Any]) -> None:
     for scope, _, table in list(_foreign(data)):
         if not scope.values:
             del table[scope.name]
-
-
-def _unset(scope: Scope, value: Any) -> bool:
-    """Whether a value says no more than leaving the key out: no tables, or no collapse to follow."""
-    return value in ([], {}, scope.none)
 
 
 def _foreign(data: dict[str, Any]) -> Iterator[tuple[Scope, KeyPath, dict[str, Any]]]:
@@ -138,10 +124,10 @@ def in_space(table: Table) -> Table:
     changes = {}
     for name, field in type(table).model_fields.items():
         value = getattr(table, name)
-        if isinstance(value, tuple) and value and name not in table.model_fields_set:
+        if isinstance(value, (float, tuple)) and value != () and name not in table.model_fields_set:
             kind = kind_of(field.annotation, field.metadata)
             length = next((limit for limit in kind.limits if isinstance(limit, VectorLength)), None)
-            padded: Any = length.padded(value) if length is not None and len(value) == length.planar else value
+            padded: Any = length.padded(value) if length is not None and length.is_planar(value) else value
         elif isinstance(value, tuple):
             padded = tuple(in_space(item) if isinstance(item, CaseModel) else item for item in value)
         elif isinstance(value, dict):

@@ -22,6 +22,7 @@ from dem_cli.case.base import (
     OneOrMoreSchema,
     Positive,
     StructureBase,
+    Turn,
     Vector,
     one_or_more,
     sequence_of,
@@ -72,14 +73,18 @@ class Settlement(CaseModel):
     displacement: Vector = Field(
         default=(0.0, 0.0), description="how far its centroid moves [m]", examples=[[0.01, -0.02]]
     )
-    rotation_deg: float = Field(
-        default=0.0, description="turn about its centroid, counter-clockwise [deg]", examples=[1.0]
+    rotation_deg: Turn = Field(
+        default=0.0,
+        description="turn about its centroid, counter-clockwise; in 3D axis times angle, in components along x, y and "
+        "z, right-handed [deg]",
+        examples=[1.0],
     )
 
     @property
-    def rotation(self) -> float:
-        """Turn about the centroid [rad], counter-clockwise."""
-        return math.radians(self.rotation_deg)
+    def rotation(self) -> tuple[float, ...]:
+        """Turn about the centroid [rad]: counter-clockwise in the plane, in space axis times angle."""
+        degrees = self.rotation_deg if isinstance(self.rotation_deg, tuple) else (self.rotation_deg,)
+        return tuple(math.radians(angle) for angle in degrees)
 
 
 PLACES = ("block", "point", "between")  # where a monitor may be

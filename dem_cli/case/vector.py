@@ -1,4 +1,4 @@
-"""Vectors of a case file: points, directions and forces with as many components as the case has dimensions."""
+"""Vectors of a case file: points, directions, forces and turns with as many components as the case has dimensions."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ class VectorLength(NamedTuple):
     """Annotation of a tuple of numbers: how many there are, in the plane and in space.
 
     The dimension is that of the case that is read, in the context of the validation; without one both lengths will do.
+    One alone is a number, not a list of one.
     """
 
     planar: int
@@ -28,27 +29,50 @@ class VectorLength(NamedTuple):
         """Raises ValueError, with what is allowed, for what is no list of so many."""
         dimension = (info.context or {}).get("dimension")
         wanted = self if dimension is None else (self.in_dimension(dimension),)
-        if not isinstance(value, tuple) or len(value) not in wanted:
+        if _length(value) not in wanted:
             raise ValueError(f"{show(value)} is not allowed; must be {self._here(dimension, value)}")
         return handler(value)
 
     def _here(self, dimension: int | None, value: Any) -> str:
         """What is allowed in a case of so many dimensions."""
         if dimension == 3:
-            return f"a list of {self.spatial} numbers in a case with {OTHER_DIMENSION}"
-        of_space = isinstance(value, tuple) and len(value) == self.spatial
-        return f"a list of {self.planar} numbers" + (f" in a case without {OTHER_DIMENSION}" if of_space else "")
+            return f"{_list_of(self.spatial)} in a case with {OTHER_DIMENSION}"
+        of_space = _length(value) == self.spatial
+        return _list_of(self.planar) + (f" in a case without {OTHER_DIMENSION}" if of_space else "")
 
     def allowed(self, many: bool = False) -> str:
         """What is allowed in a case of any dimension."""
-        return f"{'lists' if many else 'a list'} of {self.planar} numbers (3D: {self.spatial})"
+        spatial = _list_of(self.spatial) if self.planar == 1 else self.spatial
+        return f"{_list_of(self.planar, many)} (3D: {spatial})"
 
-    def padded(self, value: tuple[float, ...]) -> tuple[float, ...]:
+    def padded(self, value: float | tuple[float, ...]) -> tuple[float, ...]:
         """A default that is given for the plane, in space."""
-        return (*value, *(0.0,) * (self.spatial - self.planar))
+        planar = value if isinstance(value, tuple) else (value,)
+        return (*planar, *(0.0,) * (self.spatial - self.planar))
+
+    def is_planar(self, value: Any) -> bool:
+        """Whether a value is one of the plane."""
+        return _length(value) == self.planar
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return WrapValidator(self.check).__get_pydantic_core_schema__(source, handler)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        return {**handler(schema), "minItems": self.planar, "maxItems": self.spatial}
+        if self.planar > 1:
+            return {**handler(schema), "minItems": self.planar, "maxItems": self.spatial}
+        number, several = handler(schema)["anyOf"]
+        return {"anyOf": [number, {**several, "minItems": self.spatial, "maxItems": self.spatial}]}
+
+
+def _length(value: Any) -> int:
+    """Numbers of a value: of a list so many, of a number 1, of anything else 0."""
+    if isinstance(value, tuple):
+        return len(value) if len(value) > 1 else 0
+    return int(isinstance(value, (int, float)) and not isinstance(value, bool))
+
+
+def _list_of(length: int, many: bool = False) -> str:
+    """So many numbers in words."""
+    if length == 1:
+        return "numbers" if many else "a number"
+    return f"{'lists' if many else 'a list'} of {length} numbers"

@@ -27,8 +27,8 @@ class DeclaredType(NamedTuple):
 
     @property
     def choices(self) -> tuple[DeclaredType, ...]:
-        """The members of a union; of anything else, itself."""
-        if get_origin(self.type) not in (Union, UnionType):
+        """The members of a union; of anything else, and of what has words of its own, itself."""
+        if get_origin(self.type) not in (Union, UnionType) or any(hasattr(limit, "allowed") for limit in self.limits):
             return (self,)
         return tuple(choice for member in get_args(self.type) for choice in kind_of(member).choices)
 

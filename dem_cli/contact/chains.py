@@ -6,13 +6,12 @@ They are made once, for the joints of the start, and come back wherever the same
 from __future__ import annotations
 
 from typing import NamedTuple
-from zlib import crc32
 
 import numpy as np
 
 from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends
 from dem_cli.contact.joints import Faces, JointProperties, points_of
-from dem_cli.contact.keys import same_rows
+from dem_cli.contact.keys import face_names, same_rows
 from dem_cli.contact.layout import PointLayout, draw
 from dem_cli.geometry import profile
 from dem_cli.model.model import Model
@@ -40,7 +39,7 @@ def made_chains(model: Model, faces: Faces, corners: np.ndarray, properties: Joi
     from_b1 = ((b1 - a0) * along).sum(axis=1)  # where the edge of b starts, along that of a
     whole = np.sqrt(((b1 - b0) ** 2).sum(axis=1))
     rows, shares = [np.zeros((0, 2))], [np.zeros(0)]
-    faces_named = _face_names(model)
+    faces_named = face_names(model)
     for i in range(n):
         layout = properties.layouts[named[i]]
         row, share = np.array([[0.0, 0.0], [whole[i], 0.0]]), np.full(2, 0.5)
@@ -84,16 +83,6 @@ def _chain(
     places, rises, share = draw(layout, key[:1], whole)
     places, rises = profile.cut((whole - places)[::-1], rises[::-1], low, high)
     return np.column_stack([places, rises]), np.full(len(places), share[0])
-
-
-def _face_names(model: Model) -> list[int]:
-    """A number for each edge that says whose it is and which: other blocks change nothing, (n_vertices,)."""
-    names = []
-    for part, block in enumerate(model.part_blocks):
-        of_block = part - int(np.searchsorted(model.part_blocks, block))
-        for edge in range(int(model.part_starts[part + 1] - model.part_starts[part])):
-            names.append(crc32(f"{model.block_ids[block]} {of_block} {edge}".encode()))
-    return names
 
 
 def _has(layout: PointLayout, overlap: float, whole: float, along: np.ndarray) -> bool:

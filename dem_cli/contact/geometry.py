@@ -65,6 +65,12 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
         """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""
 
+    def open_gaps(self, model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
+        """Largest gap of each pair of faces that look at each other [m], (n,); 0 where they do not, or overlap.
+
+        steepest: slope of one against the other; bare: share of the smaller one that they have to face each other over.
+        """
+
     def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
         """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 
@@ -79,8 +85,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
         """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""
 
-    def book(self, old: JointArrays, new: JointArrays) -> None:
-        """Books the elastic energy that came or went with other points (Contacts.exchanged)."""
+    def book(self, old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+        """Books the elastic energy that came or went with other points (Contacts.exchanged); known: those that were
+        there before, (n_points,) bool."""
 
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""

@@ -66,6 +66,11 @@ class JointProperties(NamedTuple):
         """Whether any joint has points elsewhere than at its two ends."""
         return any(layout is not None for layout in self.layouts)
 
+    @property
+    def centred(self) -> np.ndarray:
+        """In space: which have a point at the centroid of each face joint as well, (n_named,) bool."""
+        return np.array([layout is not None and layout.sides is None for layout in self.layouts])
+
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """The named joint of each pair of blocks (n, 2), (n,) int64."""
         materials = model.block_material[blocks]

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from zlib import crc32
+
 import numpy as np
+
+from dem_cli.model.model import Model
 
 
 def same_rows(old: np.ndarray, new: np.ndarray) -> np.ndarray:
@@ -17,3 +21,13 @@ def same_rows(old: np.ndarray, new: np.ndarray) -> np.ndarray:
     order = np.argsort(key_old, kind="stable")
     place = np.minimum(np.searchsorted(key_old[order], key_new), len(order) - 1)
     return np.where(key_old[order][place] == key_new, order[place], -1)
+
+
+def face_names(model: Model) -> list[int]:
+    """A number for each face that says whose it is and which: other blocks change nothing, (n_faces,)."""
+    names, part_faces = [], model.topology.part_faces
+    for part, block in enumerate(model.part_blocks):
+        of_block = part - int(np.searchsorted(model.part_blocks, block))
+        for face in range(int(part_faces[part + 1] - part_faces[part])):
+            names.append(crc32(f"{model.block_ids[block]} {of_block} {face}".encode()))
+    return names

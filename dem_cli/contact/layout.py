@@ -34,25 +34,28 @@ class PointLayout(NamedTuple):
     seed: int = 0
 
 
-def draw(layout: PointLayout, key: tuple[int, ...], length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def draw(
+    layout: PointLayout, key: tuple[int, ...], length: float, mirrored: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Contact points of a joint of this length [m]: places [m], initial gaps [m], shares of the area [-].
 
     places: along the joint, increasing from 0 to its length; gaps: 0 at the two ends of the side in contact;
     shares: of the points of a plane joint they add up to 1, of a profile each two neighbours do.
     key: what tells this joint from others of its kind (numbers ≥ 0): the same key draws the same profile,
-    whatever was drawn before.
+    whatever was drawn before. mirrored: an odd number of sides, and the second half is the mirror image of the first.
     """
     if layout.sides is None:
         places, shares = lobatto(layout.points)
         return places * length, np.zeros(layout.points), shares
     random = np.random.default_rng([layout.seed, *key])
     low, high = layout.sides
-    odd = 1 if layout.central is None else 2
+    odd = 1 if layout.central is None and not mirrored else 2
     sides = low + odd * int(random.integers(0, (high - low) // odd, endpoint=True))
     aperture = random.uniform(*layout.aperture)
     if layout.lengths:
         ranges = layout.lengths * sides if len(layout.lengths) == 1 else layout.lengths
         lengths = np.array([random.uniform(*each) for each in ranges])
+        lengths = np.concatenate([lengths[: sides // 2 + 1], lengths[: sides // 2][::-1]]) if mirrored else lengths
     else:
         lengths = profile.regular(sides, None if layout.central is None else random.uniform(*layout.central))
     if layout.keep == "lengths":

@@ -26,7 +26,7 @@ def carry_memory(narrow: NarrowPhase, old: JointArrays, new: JointArrays) -> Non
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)
     new.contacts.exchanged[:] = old.contacts.exchanged
-    narrow.book(old, new)
+    narrow.book(old, new, points >= 0)
 
 
 def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:

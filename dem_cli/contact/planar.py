@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.chains import Chains, come_back, made_chains
-from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths
+from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths, widest_gaps
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
@@ -99,6 +99,11 @@ def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: 
     return parallel & (overlap_lengths(edges, corners) > least)
 
 
+def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
+    """Largest gap of each pair of edges that look at each other [m], (n,); 0 where they do not or overlap."""
+    return widest_gaps(edges_of(model, faces), corners, steepest, bare)
+
+
 def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
     """Pairs of edges that overlap by more than `least` [m], with both ends of the overlap."""
     low, high = overlap_ends(edges_of(model, faces), corners)
@@ -163,7 +168,7 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
     new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
 
-def book(old: JointArrays, new: JointArrays) -> None:
+def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
     """Nothing: points keep their stiffness."""
 
 

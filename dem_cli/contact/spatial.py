@@ -66,7 +66,7 @@ def points(
     outline = np.diff(found.starts)
     if properties.profiled:
         named = properties.between(model, model.part_blocks[faces.parts])
-        centred = ~lone & np.array([layout is not None for layout in properties.layouts])[named]
+        centred = ~lone & properties.centred[named]
         found, shares = _with_centres(found, shares, centred)
     joints = joints_of(model, faces, properties, found.starts, areas, shares)
     geometry = SpatialGeometry(
@@ -141,6 +141,20 @@ def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: 
     """Faces that look at each other, nearly parallel, over a width of more than `least` [m], (n,) bool."""
     found, (a, b) = meetings(model, faces, corners), shapes_of(corners).normals(corners, model.topology)[faces.faces.T]
     return (found.kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= sine) & (found.widths > least)
+
+
+def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
+    """Largest gap at the corners of overlaps of faces that look at each other [m], (n,); 0: none or they overlap."""
+    if not len(faces.parts):
+        return np.zeros(0)
+    found = meetings(model, faces, corners)
+    areas = face_areas(corners, model.topology)
+    sizes = np.linalg.norm(areas, axis=1)
+    a, b = faces.faces.T
+    slopes = np.linalg.norm(np.cross(areas[a], areas[b]), axis=1) / (sizes[a] * sizes[b])
+    facing = (found.kinds == FACES) & (slopes < steepest)
+    facing &= found.measures[:, AREA] > bare * np.minimum(sizes[a], sizes[b])
+    return np.where(facing, np.maximum.reduceat(found.gaps, found.starts[:-1]), 0.0).clip(0.0)
 
 
 def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, chains_of, corners_of, drawn, facing, find, median_face, touching
+from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, touching
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
+from dem_cli.kernels.renewal import LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
@@ -28,19 +30,23 @@ __all__ = [
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
-FLOOR = 0.05  # of the median face: area of a face joint, at least
+FLOOR = 0.25  # of the median face: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
 SPARE = 4  # slots of a joint beside one for each corner of both faces
 REMEMBERED = 32  # numbers of memory of a law, at most
 
 
 def points(
-    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
+    model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Caps | None = None
 ) -> tuple[MovingJoints, SpatialMotion]:
-    """Joints with room for contact points, and what is known of their geometry; points come when they are placed."""
+    """Joints with room for contact points, and what is known of their geometry; points come when they are placed.
+
+    chains: caps of the joints of the start, which alone have one; None: these are they, or there are none.
+    """
+    caps = caps_of(chains or made_caps(model, faces, corners, properties), faces)
     solids, n = polyhedra(model, corners), len(faces.parts)
     counts = np.diff(solids.face_starts)
-    slots = counts[faces.faces].sum(axis=1) + SPARE
+    slots = counts[faces.faces].sum(axis=1) + np.diff(caps.starts) + SPARE
     starts = np.concatenate([[0], np.cumsum(slots)]).astype(np.int64)
     most = int(slots.max(initial=0))
     work = np.zeros((7, 2 * most + 2, 4))
@@ -63,6 +69,11 @@ def points(
         corners=np.full((n_points, 5), -1),
         shares=np.zeros(n_points),
         arms=np.zeros((n_points, 3)),
+        rises=caps.rises,
+        slopes=caps.slopes,
+        cap_starts=caps.starts,
+        cap_arms=caps.arms,
+        cap_areas=caps.areas,
         face_starts=solids.face_starts,
         face_corners=solids.face_corners,
         part_starts=solids.part_starts,
@@ -71,7 +82,7 @@ def points(
         work=work,
         found=np.full((2 * most + 2, 5), -1),
         labels=np.zeros((2 * most + 2, 2), np.int64),
-        numbers=np.zeros((2 * most + 2, 10 + REMEMBERED)),
+        numbers=np.zeros((2 * most + 2, LEFT + REMEMBERED)),
         taken=np.zeros(2 * most + 2, np.int64),
         heirs=np.zeros(2 * most + 2, np.int64),
     )
@@ -101,7 +112,7 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     shortest = np.minimum.reduceat(lengths, topology.face_starts[:-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
-    centred = np.array([layout is not None for layout in properties.layouts], float)[named]
+    centred = properties.centred[named].astype(float)
     n = len(faces.parts)
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
@@ -128,14 +139,14 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
 
 
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
-    """New points of a joint that goes on have traction, slip and memory of the nearest one that was loaded."""
-    loaded = old.contacts.normal != 0.0
+    """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
     known = np.isin(new.geometry.features, -1) | (match[new.joints.owners] < 0)
     for j in np.unique(new.joints.owners[~known]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
-        was, now = was[loaded[was]], now[new.geometry.features[now] >= 0]
-        now = now[~np.isin(new.geometry.features[now], old.geometry.features[was])]
+        features = new.geometry.features[now]
+        was = was[old.geometry.features[was] >= 0]
+        now = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])]
         if len(was) and len(now):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]
@@ -144,11 +155,12 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
                 getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
 
 
-def book(old: JointArrays, new: JointArrays) -> None:
-    """Energy that went or came with other points: those that press already hold what their overlap says."""
+def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+    """Energy that went or came with other points: new ones hold what their own overlap says, unless they are glued."""
     contacts, joints = new.contacts, new.joints
-    fresh = (contacts.normal == 0.0) & (contacts.gaps < 0.0)
+    fresh = ~known & (contacts.normal >= 0.0)
     contacts.normal[fresh] = joints.kn[fresh] * np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    contacts.shear[fresh & (contacts.normal == 0.0)] = 0.0
     change = _held(old) - _held(new)
     contacts.exchanged[:] += change, abs(change)
 
@@ -164,9 +176,14 @@ def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:
     """Nothing: only profiles have a recess."""
 
 
+def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
+    """Caps, which come back wherever the same faces meet again; None: all joints are plane."""
+    return made_caps(model, faces, corners, properties)
+
+
 def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
-    """None: joints in space have no profile, (n_joints,)."""
-    return np.zeros(len(joints.blocks))
+    """Largest microrotation of each joint from the plane that it rests on at the start [rad], (n_joints,)."""
+    return geometry.slopes
 
 
 def corner_shares(joints: Joints, geometry: SpatialMotion, corners: np.ndarray) -> np.ndarray:

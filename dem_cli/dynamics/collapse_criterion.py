@@ -9,6 +9,7 @@ import numpy as np
 from dem_cli.engine import measures
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
+from dem_cli.geometry.rotation import angles_of
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
@@ -43,7 +44,7 @@ def fallen_blocks(sim: DynamicSimulation, analysis: ShakingAnalysis) -> np.ndarr
 def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
     """What tells a fall, of the free blocks: values, limits, a word and a unit."""
     free, d = sim.free, sim.model.dimension
-    turned = np.degrees(np.abs(sim.bodies.orientations[free, 0]))
+    turned = np.degrees(np.abs(angles_of(sim.bodies.orientations[free])))
     sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
     drops = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
     return [
@@ -75,6 +76,6 @@ def check_finite(sim: DynamicSimulation) -> None:
 
 def _fastest(sim: DynamicSimulation) -> int:
     """The block with the largest velocity of a corner."""
-    d = sim.model.dimension
-    speeds = np.sqrt((sim.bodies.velocities[:, :d] ** 2).sum(axis=1))
-    return int((speeds + sim.shape.radii * np.abs(sim.bodies.velocities[:, sim.model.rotations]).max(axis=1)).argmax())
+    d, velocities = sim.model.dimension, sim.bodies.velocities
+    speeds, spins = (np.linalg.norm(part, axis=1) for part in (velocities[:, :d], velocities[:, sim.model.rotations]))
+    return int((speeds + sim.shape.radii * spins).argmax())

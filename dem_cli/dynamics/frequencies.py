@@ -4,6 +4,8 @@
 
 B: relative motion at every contact point (contact.compatibility), k: its normal and shear stiffness; free blocks only.
 G, on request: the geometric stiffness of the contact forces (dynamics.geometric_stiffness), W/(kn h) of the rest.
+In space M is not diagonal: moments of inertia are those about principal axes. There the eigenvalues are found with
+rotations about these axes; shapes have rotation vectors along the axes of the world.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
 from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
+from dem_cli.geometry.rotation import matrices
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -27,17 +30,21 @@ if TYPE_CHECKING:
 
 
 class System(NamedTuple):
-    """Springs and masses of the free degrees of freedom: block by block, translations first."""
+    """Springs and masses of the free degrees of freedom: block by block, translations first.
 
-    rows: csr_array  # √k B M^(-1/2), (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
-    geometric: csr_array | None  # M^(-1/2) G M^(-1/2) [1/s2], (n_free, n_free); None: left out
-    masses: np.ndarray  # [kg, kg m2], (n_free_blocks, n_dof)
+    L: M = Lᵀ L, a square root of the mass matrix, which turns rotations into principal axes.
+    """
+
+    rows: csr_array  # √k B L⁻¹, (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
+    geometric: csr_array | None  # L⁻ᵀ G L⁻¹ [1/s2], (n_free, n_free); None: left out
+    masses: np.ndarray  # and principal moments of inertia [kg, kg m2], (n_free_blocks, n_dof)
+    axes: np.ndarray  # from principal axes to those of the world, (n_free_blocks, r, r)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
     settings: FrequencySettings
 
     @property
     def matrix(self) -> csr_array:
-        """M^(-1/2) K M^(-1/2) [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
+        """L⁻ᵀ K L⁻¹ [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
         springs = (self.rows.T @ self.rows).tocsr()
         return springs if self.geometric is None else springs + self.geometric
 
@@ -46,8 +53,17 @@ class System(NamedTuple):
         """K [N/m, N, N m], (n_free, n_free)."""
         from scipy.sparse import diags_array
 
-        roots = diags_array(np.sqrt(self.masses.ravel()))
-        return (roots @ self.matrix @ roots).tocsr()
+        roots = diags_array(np.sqrt(self.masses.ravel())) @ _turning(self.axes, self.masses.shape[1]).T
+        return (roots.T @ self.matrix @ roots).tocsr()
+
+    def motion(self, vectors: np.ndarray) -> np.ndarray:
+        """L⁻¹ y: displacements and rotation vectors of the free blocks [m, rad], (..., n_free_blocks, n_dof)."""
+        found = vectors / np.sqrt(self.masses)
+        return _with_rotations(found, self.axes)
+
+    def reduced(self, forces: np.ndarray) -> np.ndarray:
+        """L⁻ᵀ f, of forces and moments on the free blocks [N, N m], (n_free_blocks, n_dof)."""
+        return _with_rotations(forces, self.axes.swapaxes(1, 2)) / np.sqrt(self.masses)
 
 
 class Highest(NamedTuple):
@@ -77,32 +93,75 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     """
     contacts = sim.measured()  # and frames and levers of this instant
     model, joints = sim.model, sim.joints
-    found = springs_of(model, joints, closed, sim.settings.frequency)
+    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies.orientations)
     if not geometric:
         return found
-    from scipy.sparse import diags_array
-
-    per_mass = diags_array(1.0 / np.sqrt(found.masses.ravel()))
+    per_mass = _per_mass(found.masses, found.axes)
     turning = geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies)
-    return found._replace(geometric=(per_mass @ turning @ per_mass).tocsr())
+    return found._replace(geometric=(per_mass.T @ turning @ per_mass).tocsr())
 
 
 def springs_of(
-    model: Model, joints: Joints, closed: np.ndarray | None = None, settings: FrequencySettings = DEFAULT.frequency
+    model: Model,
+    joints: Joints,
+    closed: np.ndarray | None = None,
+    settings: FrequencySettings = DEFAULT.frequency,
+    orientations: np.ndarray | None = None,
 ) -> System:
-    """Springs and masses of joints whose frames and levers are current; closed: as for `system`."""
+    """Springs and masses of joints whose frames and levers are current; closed: as for `system`.
+
+    orientations: of all blocks, as Bodies has them; None: none has turned.
+    """
     from scipy.sparse import diags_array
 
     d = model.dimension
     blocks = np.flatnonzero(~model.fixed)
     masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]])
+    axes = principal_directions(model, orientations)[blocks]
     springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
     if closed is not None:
         springs = springs * closed[:, None]
-    per_mass = diags_array(1.0 / np.sqrt(masses.ravel()))
-    rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ per_mass).tocsr()
+    rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ _per_mass(masses, axes)
+    rows = rows.tocsr()
     rows.eliminate_zeros()
-    return System(rows, None, masses, blocks, settings)
+    return System(rows, None, masses, axes, blocks, settings)
+
+
+def principal_directions(model: Model, orientations: np.ndarray | None = None) -> np.ndarray:
+    """From the principal axes of each block to those of the world, (n_blocks, r, r); in the plane both are one."""
+    if not len(model.principal_axes):
+        return np.ones((model.n_blocks, 1, 1))
+    own = matrices(model.principal_axes)
+    return own if orientations is None else matrices(orientations) @ own
+
+
+def _per_mass(masses: np.ndarray, axes: np.ndarray) -> csr_array:
+    """L⁻¹ of System."""
+    from scipy.sparse import diags_array
+
+    return _turning(axes, masses.shape[1]) @ diags_array(1.0 / np.sqrt(masses.ravel()))
+
+
+def _turning(axes: np.ndarray, n_dof: int) -> csr_array:
+    """Degrees of freedom from those with rotations about principal axes, (n_free, n_free), orthogonal."""
+    from scipy.sparse import coo_array
+
+    n, r = axes.shape[:2]
+    blocks = np.zeros((n, n_dof, n_dof))
+    blocks[:] = np.eye(n_dof)
+    blocks[:, n_dof - r :, n_dof - r :] = axes
+    first = n_dof * np.arange(n)[:, None, None]
+    rows, columns = first + np.arange(n_dof)[:, None], first + np.arange(n_dof)
+    rows, columns = np.broadcast_arrays(rows, columns)
+    used = blocks != 0.0
+    return coo_array((blocks[used], (rows[used], columns[used])), shape=(n * n_dof, n * n_dof)).tocsr()
+
+
+def _with_rotations(values: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Generalised vectors (..., n, n_dof) with their last r components turned, each block's by its own matrix."""
+    r = axes.shape[1]
+    turned = (axes @ values[..., -r:, None])[..., 0]
+    return np.concatenate([values[..., :-r], turned], axis=-1)
 
 
 def highest_frequency(sim: Simulation) -> float:
@@ -170,7 +229,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     vectors = flat.reshape(len(values), n_free, n_dof)
     still = values == 0.0
     loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > found.settings.equal).any(axis=0)
-    moving = vectors[~still] / np.sqrt(masses)
+    moving = found.motion(vectors[~still])
     shares = (moving * masses)[:, :, :dimension].sum(axis=1)  # φᵀ M r, r: unit motion of the base along each axis
     shapes = np.zeros((len(moving), n_blocks, n_dof))
     shapes[:, found.blocks] = moving * _signs(moving, shares, masses[:, 0].sum(), found.settings.equal)[:, None, None]

@@ -1,4 +1,6 @@
-"""Geometric stiffness: how contact forces turn and shift when blocks with forces between them move; 2D.
+"""Geometric stiffness: how contact forces turn and shift when blocks with forces between them move.
+
+In space: spatial_stiffness.py. In the plane:
 
 A force f along a direction e of the contact frame (normal or tangent) does work on e · (c − x), where c is a corner
 of one block and e turns with the edge of the other, whose centroid is x. With A, B: arms of the point from the
@@ -19,6 +21,7 @@ import numpy as np
 
 from dem_cli.contact.compatibility import directions, free_columns
 from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.dynamics.spatial_stiffness import attachment, second_derivatives
 from dem_cli.geometry.rotation import across
 
 if TYPE_CHECKING:
@@ -34,6 +37,16 @@ def geometric_stiffness(
     """Of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be current."""
     from scipy.sparse import coo_array
 
+    local = SECOND_DERIVATIVES[model.dimension](model, joints, geometry, contacts, bodies)
+    dofs = free_columns(model, joints).reshape(len(local), -1)
+    rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+    used = (rows >= 0) & (columns >= 0)
+    n = model.dead_loads.shape[1] * int((~model.fixed).sum())
+    return coo_array((-local[used], (rows[used], columns[used])), shape=(n, n)).tocsr()
+
+
+def _in_plane(model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
+    """Second derivatives times forces, (n_points, 6, 6): x, y, θ of a, then of b."""
     blocks = joints.blocks[joints.owners]
     frames = directions(joints, 2)
     forces = np.column_stack([contacts.normal, contacts.shear])
@@ -43,15 +56,22 @@ def geometric_stiffness(
     arms = joints.points[:, None] - bodies.positions[blocks]
     lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
     one, two = share[:, 0], 1.0 - share[:, 0]
-    local = np.zeros((len(blocks), 6, 6))  # second derivatives times forces: x, y, θ of a, then of b
+    local = np.zeros((len(blocks), 6, 6))
     for k in (0, 1):
         local[:, 2, k], local[:, 2, 3 + k] = -one * normal[:, k], one * normal[:, k]
         local[:, 5, k], local[:, 5, 3 + k] = -two * normal[:, k], two * normal[:, k]
     local[:, 2, 5] = one * lever_b - two * lever_a
     local += local.swapaxes(1, 2)
     local[:, 2, 2], local[:, 5, 5] = (two - one) * lever_a, (two - one) * lever_b
-    dofs = free_columns(model, joints).reshape(-1, 6)
-    rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-    used = (rows >= 0) & (columns >= 0)
-    n = 3 * int((~model.fixed).sum())
-    return coo_array((-local[used], (rows[used], columns[used])), shape=(n, n)).tocsr()
+    return local
+
+
+def _in_space(model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
+    """The same, (n_points, 12, 12): x, rotation vector of a, then of b."""
+    forces = np.column_stack([contacts.normal, contacts.shear])
+    along = np.einsum("pd,pdk->pk", forces, directions(joints, 3))
+    arms = joints.points[:, None] - bodies.positions[joints.blocks[joints.owners]]
+    return second_derivatives(along, arms, attachment(model, joints, geometry, contacts, bodies))
+
+
+SECOND_DERIVATIVES = {2: _in_plane, 3: _in_space}

@@ -1,4 +1,4 @@
-"""[[initial]]: blocks that start tilted, displaced or moving; 2D."""
+"""[[initial]]: blocks that start tilted, displaced or moving."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.geometry.rotation import swept
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -21,16 +22,20 @@ def set_initial(case: Case, sim: Simulation) -> None:
     for table in case.initial:
         chosen = np.array([names[name] for name in table.names])
         if table.tilt:
-            sim.turn(chosen, table.tilt, _pivot(sim, chosen, table.tilt))
+            sim.turn(chosen, np.array(table.turn), _pivot(sim, chosen, np.array(table.turn)))
         sim.displace(chosen, np.array(table.displacement))
         sim.throw(chosen, np.array(table.velocity))
         sim.find_faces()
     _check_apart(case, sim, rest)
 
 
-def tilt(sim: Simulation, chosen: np.ndarray, angle: float) -> None:
-    """Turns blocks as one about the corner on which they then stand, counter-clockwise [rad]."""
-    sim.turn(chosen, angle, _pivot(sim, chosen, angle))
+def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
+    """Turns blocks as one about the corner or edge on which they then stand.
+
+    turn: counter-clockwise, in space axis times angle (3,) [rad].
+    """
+    turn = np.atleast_1d(turn)
+    sim.turn(chosen, turn, _pivot(sim, chosen, turn))
     sim.find_faces()
 
 
@@ -51,8 +56,10 @@ def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
         raise CaseError([CaseProblem(("initial", tables[-1]), message)])
 
 
-def _pivot(sim: Simulation, chosen: np.ndarray, angle: float) -> np.ndarray:
-    """Where the chosen blocks touch others, the leftmost point for a tilt to the left, else the rightmost (d,)."""
+def _pivot(sim: Simulation, chosen: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Where the chosen blocks touch others, the outermost point on the side to which they tilt (d,): to the left in the
+    plane the leftmost one.
+    """
     record = measures.contact_record(sim)
     ours = np.isin(record.blocks, chosen)
     between = (ours.sum(axis=1) == 1) & (record.gap <= TOUCHING_GAP * sim.smallest)
@@ -60,5 +67,6 @@ def _pivot(sim: Simulation, chosen: np.ndarray, angle: float) -> np.ndarray:
     if not len(points):  # nothing holds them: about their lowest corner on that side
         mine = np.isin(sim.shape.corner_blocks, chosen)
         corners = sim.bodies.corners[mine]
-        points = corners[corners[:, 1] <= corners[:, 1].min() + 1e-9]
-    return points[(points[:, 0] * np.sign(angle)).argmin()]
+        points = corners[corners[:, -1] <= corners[:, -1].min() + 1e-9]
+    towards = swept(turn, np.eye(sim.model.dimension)[-1])  # where what is above goes
+    return points[(points @ (towards / np.linalg.norm(towards))).argmax()]

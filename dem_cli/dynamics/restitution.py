@@ -2,7 +2,8 @@
 
 With dashpots that do not pull, the ratio r of angular velocities after and before landing falls with the damping
 towards that of Housner's rigid block, from above. A wanted r is sought by rocking the block, alone on its joint, as
-the run does.
+the run does. In space a block rocks about the side of its joint over which it falls first, and lands on what lies
+furthest from it: a side again, or a corner, about which it goes on turning parallel to the first.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from dem_cli.dynamics.frequencies import principal_directions
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.kernels.records import Joints, Watch
 from dem_cli.model.model import Model
+from dem_cli.model.scales import origin_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -28,7 +31,18 @@ class RockingBlock(NamedTuple):
     block: int
     support: int  # the block below
     frequency: float  # √(K/M), K the normal stiffness of the joint and M the mass of the block [rad/s]
-    ends: np.ndarray  # where it turns, from its centroid [m], (2, d)
+    foot: np.ndarray  # points of the joint, from its centroid [m], (n, d)
+
+    def rocks(self) -> Rocking:
+        """Where it turns from and to."""
+        return ROCKING[self.foot.shape[1]](self.foot)
+
+
+class Rocking(NamedTuple):
+    """A way in which a block rocks."""
+
+    ends: np.ndarray  # where it turns, from its centroid and across the axis of its turn [m], (2, d)
+    axis: np.ndarray  # of the turn by which it stands on the first of these, unit, (r,)
 
 
 def reference_block(case: Case, model: Model, joints: Joints, table: DampingTable) -> RockingBlock:
@@ -52,16 +66,43 @@ def reference_block(case: Case, model: Model, joints: Joints, table: DampingTabl
     a, b = joints.blocks[joint].tolist()
     support = b if a == chosen else a
     stiffness = float(joints.kn[points].sum())
-    ends = joints.points[points][[0, -1]] - model.centroids[chosen]
-    return RockingBlock(chosen, support, float(np.sqrt(stiffness / model.masses[chosen])), ends)
+    foot = joints.points[points] + origin_of(model) - model.centroids[chosen]
+    return RockingBlock(chosen, support, float(np.sqrt(stiffness / model.masses[chosen])), foot)
+
+
+def _in_plane(foot: np.ndarray) -> Rocking:
+    """From one end of a joint to the other."""
+    return Rocking(foot[[0, -1]], np.ones(1))
+
+
+def _in_space(foot: np.ndarray) -> Rocking:
+    """About the side over which the block falls first, to what is furthest from it; foot: (n, 3)."""
+    from scipy.spatial import ConvexHull
+
+    outline = foot[ConvexHull(foot[:, :2]).vertices]  # counter-clockwise: outside is on the right of a side
+    sides = np.roll(outline, -1, axis=0) - outline
+    along = sides / np.linalg.norm(sides, axis=1)[:, None]
+    across = outline - (outline * along).sum(axis=1)[:, None] * along
+    outwards = np.column_stack([along[:, 1], -along[:, 0]])
+    leaning = np.arctan2((across[:, :2] * outwards).sum(axis=1), -across[:, 2])
+    first = int(np.flatnonzero(leaning <= leaning.min() + EQUAL)[0])
+    axis = along[first]
+    others = outline - (outline @ axis)[:, None] * axis
+    last = others[(others[:, :2] @ outwards[first]).argmin()]
+    return Rocking(np.array([across[first], last]), axis)
+
+
+EQUAL = 1e-9  # rad: sides over which a block falls as soon; the first of them is taken
+ROCKING = {2: _in_plane, 3: _in_space}
 
 
 def housner(model: Model, reference: RockingBlock) -> float:
     """Ratio of angular velocities of a rigid block that turns from one end of its joint to the other without slip or
     bounce: (I + m r·r') / (I + m r'²), of moments about the new end (Housner 1963; 1 − 1.5 sin²α for a rectangle).
     """
-    mass, inertia = model.masses[reference.block], model.inertias[reference.block, 0]
-    old, new = reference.ends
+    (old, new), axis = reference.rocks()
+    mass, along = model.masses[reference.block], axis @ principal_directions(model)[reference.block]
+    inertia = (along**2 * model.inertias[reference.block]).sum()
     return float((inertia + mass * old @ new) / (inertia + mass * new @ new))
 
 
@@ -112,21 +153,23 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     rest = float(sim.bodies.positions[1, pair.dimension - 1])
     dt = time_step(sim, case.analysis.margin).step
     sim.begin(dt)
-    slender = np.arctan2(np.abs(reference.ends[:, 0]).min(), np.abs(reference.ends[:, 1]).max())
+    ends, axis = reference.rocks()
+    slender = np.arctan2(np.linalg.norm(ends[:, :-1], axis=1).min(), np.abs(ends[:, -1]).max())
     angle = float(restitution.tilt * slender)
-    tilt(sim, np.array([1]), angle)
+    tilt(sim, np.array([1]), angle * axis)
     sim.start_moving()
     start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
     ground = GroundMotion([], pair)
-    radius = float(np.sqrt((reference.ends**2).sum(axis=1)).max())
+    radius = float(np.sqrt((ends**2).sum(axis=1)).max())
     longest = restitution.longest * np.sqrt(radius / max(case.gravity, 1e-9))
     n, highest = max(1, int(restitution.look * longest / dt)), 0.0
     watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
     while sim.time < longest:
         sim.shake(ground.stretch(sim.time, n, dt), n, watch)
         place, speed = watch.samples[:, 0, 0], watch.samples[:, 0, 1]
-        beyond = place[:, pair.dimension] < -restitution.landed * angle
+        turn, spin = place[:, pair.rotations] @ axis, speed[:, pair.rotations] @ axis
+        beyond = turn < -restitution.landed * angle
         highest = max(highest, float((place[beyond, pair.dimension - 1] - rest).max(initial=0.0)))
-        if (beyond & (speed[:, pair.dimension] > 0.0)).any():
+        if (beyond & (spin > 0.0)).any():
             break
     return float(np.sqrt(highest / start))

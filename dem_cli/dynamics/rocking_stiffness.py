@@ -79,33 +79,34 @@ def rocking_stiffness(case: Case, model: Model, settings: Settings = DEFAULT) ->
 
 
 def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) -> float:
-    """Largest rotation of a block [rad] when all dead forces are turned to the side; to first order, on springs.
+    """Largest rotation of a block [rad] when all dead forces are turned to the side that turns it most; to first order,
+    on springs.
 
     Joints act that gravity presses together, as if they could pull. Blocks that are held by too few points to be at
     rest do not count.
     """
     d = model.dimension
     found = springs_of(model, joints, settings=settings.frequency)
-    roots = np.sqrt(found.masses.ravel())
     dead = model.dead_loads[found.blocks]
-    still = _solved(found, dead.ravel() / roots)
+    still = _solved(found, found.reduced(dead).ravel())
     points = len(joints.kn)
     normal = -np.sqrt(joints.kn) * (found.rows @ still).reshape(points, d)[:, 0]
     forces = np.add.reduceat(normal, joints.starts[:-1])
     pressed = forces > settings.rocking.pressed * mean_weight(dead, dead, d)
     found = springs_of(model, joints, pressed[joints.owners], settings.frequency)
-    largest = 0.0
+    turns = np.zeros((len(dead), model.inertias.shape[1], d - 1))
     for axis in range(d - 1):
         sideways = np.zeros_like(dead)
         sideways[:, axis] = np.sqrt((dead[:, :d] ** 2).sum(axis=1))
-        moved = (_solved(found, sideways.ravel() / roots) / roots).reshape(dead.shape)
-        turns = np.abs(moved[:, model.rotations]).max(axis=1)
-        largest = max(largest, float(turns[turns < settings.rocking.mechanism].max(initial=0.0)))
-    return largest
+        moved = found.motion(_solved(found, found.reduced(sideways).ravel()).reshape(dead.shape))
+        turns[:, :, axis] = moved[:, model.rotations]
+    # Of all horizontal directions that which turns a block most: the largest singular value.
+    most = np.sqrt(np.linalg.eigvalsh(np.einsum("brk,brl->bkl", turns, turns))[:, -1])
+    return float(most[most < settings.rocking.mechanism].max(initial=0.0))
 
 
 def _solved(found: System, forces: np.ndarray) -> np.ndarray:
-    """Displacements times √M under forces over √M; what nothing holds moves very far."""
+    """L u under forces L⁻ᵀ f (frequencies.System); what nothing holds moves very far."""
     matrix = found.matrix
     shift = found.settings.zero * float(matrix.diagonal().max(initial=0.0)) or 1.0
     if len(forces) <= found.settings.dense:

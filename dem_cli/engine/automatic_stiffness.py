@@ -82,7 +82,7 @@ def leaning(sim: Simulation) -> float:
     model, blocks, y = sim.model, sim.joints.blocks, sim.model.dimension - 1
     if not (len(blocks) and sim.properties.rigid.any()):
         return 0.0
-    stiffness, places = _rotational(sim)
+    stiffness, places = _rotational(sim, _overturning(sim))
     touches = stiffness > 0.0
     level = levels(blocks[touches], model.fixed)
     structure = structures(blocks[touches], model.fixed)
@@ -105,16 +105,40 @@ class Beds(NamedTuple):
     heights: np.ndarray  # [m], (n,)
 
 
-def _rotational(sim: Simulation) -> tuple[np.ndarray, np.ndarray]:
-    """Rotational stiffness [N m] and height [m] of each joint; 0: it touches at one point or none, infinite: given."""
+def _overturning(sim: Simulation) -> np.ndarray | None:
+    """Unit vector along the horizontal axis about which the live load overturns, (3,); None: any, or in the plane."""
+    pushed = sim.loads.live[sim.free, : sim.model.dimension].sum(axis=0)
+    level = float(np.hypot(*pushed[:2]))
+    if len(pushed) < 3 or level <= 1e-9 * float(np.abs(sim.loads.live).max(initial=0.0)):
+        return None
+    return np.array([-pushed[1], pushed[0], 0.0]) / level
+
+
+def _rotational(sim: Simulation, axis: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Rotational stiffness [N m] and height [m] of each joint; 0: it touches at one point or none, infinite: given.
+
+    axis: about which; None: in space the horizontal one about which it is least.
+    """
     joints, y = sim.joints, sim.model.dimension - 1
     starts, owners = joints.starts[:-1], joints.owners
     kn = np.where(sim.contacts.gaps <= 0.0, joints.kn, 0.0)[:, None]
     whole = np.maximum(np.add.reduceat(kn, starts), np.finfo(float).tiny)
     middle = np.add.reduceat(kn * joints.points, starts) / whole
-    stiffness = np.add.reduceat(kn[:, 0] * ((joints.points - middle[owners]) ** 2).sum(axis=1), starts)
+    arms = joints.points - middle[owners]
+    stiffness = np.add.reduceat(kn[:, 0] * (arms**2).sum(axis=1), starts)
+    if arms.shape[1] > 2:
+        stiffness = stiffness - _along(kn[:, 0], arms, starts, axis)
+        stiffness[stiffness <= 1e-9 * np.add.reduceat(kn[:, 0] * (arms**2).sum(axis=1), starts)] = 0.0
     given = ~sim.properties.rigid[sim.properties.between(sim.model, joints.blocks)]
     return np.where(given & (stiffness > 0.0), np.inf, stiffness), middle[:, y]
+
+
+def _along(kn: np.ndarray, arms: np.ndarray, starts: np.ndarray, axis: np.ndarray | None) -> np.ndarray:
+    """Σ kn (arm along the axis)² of each joint in space [N m], which does not help about that axis; None: the most."""
+    if axis is not None:
+        return np.add.reduceat(kn * (arms @ axis) ** 2, starts)
+    xx, yy, xy = (np.add.reduceat(kn * arms[:, i] * arms[:, j], starts) for i, j in ((0, 0), (1, 1), (0, 1)))
+    return 0.5 * (xx + yy) + np.hypot(0.5 * (xx - yy), xy)
 
 
 def _share(level: np.ndarray, weights: np.ndarray, heights: np.ndarray, beds: Beds) -> float:

@@ -9,12 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.edges import edges_of
 from dem_cli.contact.geometry import JointGeometry, geometry_of
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.engine.tracking import JointTracking
-from dem_cli.geometry.rotation import cross
 from dem_cli.kernels.records import Bodies, Joints
 from dem_cli.model.model import Model
 
@@ -33,7 +31,7 @@ def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceS
     if not tracking.moves:
         return found
     faces = tracking.faces_within(bodies, clearance.widest * smallest)
-    gaps = open_gaps(bodies.corners, edges_of(model, faces), clearance)
+    gaps = geometry_of(model.dimension).open_gaps(model, faces, bodies.corners, clearance.steepest, clearance.bare)
     gaps = gaps[(gaps > TOUCHING_GAP * smallest) & (gaps <= clearance.widest * smallest)]
     if not len(gaps):
         return found
@@ -41,25 +39,6 @@ def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceS
     width = float(np.median(model.shapes.widths[free])) if len(free) else smallest
     more = gap_play(gaps, width, model.n_blocks, clearance)
     return Play(found.moved + more.moved, found.turned + more.turned)
-
-
-def open_gaps(corners: np.ndarray, edges: np.ndarray, clearance: ClearanceSettings = DEFAULT.clearance) -> np.ndarray:
-    """Largest gap of each pair of faces that look at each other [m], (n,); 0 where they do not or overlap; 2D.
-
-    corners: world coordinates of all corners [m], (n_vertices, 2); edges: as Faces.edges, (n, 4). A wedge touches at
-    one end of the joint and is open at the other.
-    """
-    a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
-    along, across = a1 - a0, b0 - b1
-    length = np.hypot(*along.T)
-    along /= length[:, None]
-    start, run, rise = ((b1 - a0) * along).sum(axis=1), (across * along).sum(axis=1), cross(across, along)
-    facing = (run > 0.0) & (np.abs(rise) < clearance.steepest * run)  # rise: of b's face from b1 to b0, away from a
-    run = np.where(facing, run, 1.0)
-    low, high = np.maximum(start, 0.0), np.minimum(start + run, length)
-    first = cross(b1 - a0, along)  # to the right of a: outside, as corners go counter-clockwise
-    gaps = [first + rise * (place - start) / run for place in (low, high)]
-    return np.where(facing & (high - low > clearance.bare * np.minimum(run, length)), np.maximum(*gaps), 0.0).clip(0.0)
 
 
 def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
@@ -81,7 +60,7 @@ def play(
     positions: np.ndarray,
     clearance: ClearanceSettings = DEFAULT.clearance,
 ) -> Play:
-    """Of every block on the way from the supports on which it can move least; joints: those of the start, 2D.
+    """Of every block on the way from the supports on which it can move least; joints: those of the start.
 
     A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
     """
@@ -101,7 +80,7 @@ def play(
         for i in np.flatnonzero(reached[:, 0] != reached[:, 1]):
             side = 1 if reached[i, 0] else 0
             a, b = joints.blocks[i, 1 - side], joints.blocks[i, side]
-            far = np.hypot(*(positions[b] - positions[a]))
+            far = np.hypot.reduce(positions[b] - positions[a])
             moved = found.moved[a] + found.turned[a] * far + clearance.margin * angles[i] * reach[i, side]
             if moved < found.moved[b]:
                 found.moved[b], found.turned[b] = moved, found.turned[a] + clearance.margin * angles[i]

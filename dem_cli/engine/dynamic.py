@@ -11,6 +11,7 @@ from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
+from dem_cli.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
@@ -43,6 +44,8 @@ class DynamicSimulation(Simulation):
         self.damping = damping
         self.real, self.dt = False, 1.0
         self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
+        if len(model.principal_axes):  # inertia is a tensor, which turns with its block
+            self.masses[:, model.rotations] = 0.0
         super().__init__(model, law, properties, "large", settings=settings)
         self.takes_back = False  # springs that press at the start go on pressing
 
@@ -71,14 +74,18 @@ class DynamicSimulation(Simulation):
         self.ledger[:] = 0.0
         self.ledger[slot.EXTERNAL] = self.elastic_energy()  # what the springs hold was given before
         self.centred = self.ledger.copy()
+        bodies, shape = self.bodies, self.shape
+        bodies.means[:] = 0.0
+        bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
+        self.turns_of_means = bodies.turns.copy()
         self.contacts.exchanged[:] = 0.0
-        self.bodies.means[:] = 0.0
 
     def start_moving(self) -> None:
         """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
         self._run(0, 1, self._still(1), _no_watch(self))
-        change, elastic = (self.bodies.velocities - before)[self.free], self.elastic_energy()  # of springs at time 0
+        kicked = self.bodies.pulled.reshape(before.shape)
+        change, elastic = (kicked - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
         self.ledger[slot.EXTERNAL] = elastic + kinetic
         self._new_dampers(STARTS)
@@ -103,7 +110,7 @@ class DynamicSimulation(Simulation):
             viscosity=self.damping.viscosities(self.model, joints),
             elements=self._decays(),
             rates=np.zeros((n, d)),
-            gains=np.ones((n, d)),
+            gains=np.ones((n, d * self.model.inertias.shape[1])),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),
@@ -139,7 +146,7 @@ class DynamicSimulation(Simulation):
             look()
             last = step == end - 1
             if last:
-                before = self.ledger.copy()
+                before, self.turns_of_means = self.ledger.copy(), self.bodies.turns.copy()
             n = 1 if last else end - 1 - step
             if looker is not None:
                 n = min(n, looker.every - (done + step) % looker.every)
@@ -170,11 +177,21 @@ class DynamicSimulation(Simulation):
 
     # -- energy ------------------------------------------------------------------------------------
 
+    def kinetic_energy(self) -> float:
+        """Of all blocks, with the masses that they have now [J]."""
+        return self._energy_of(self.bodies.velocities, self.bodies.turns) if self.real else super().kinetic_energy()
+
     def centred_kinetic_energy(self) -> float:
         """Of the mean velocities of the last step [J]."""
-        inverse = self.loads.inverse_masses.ravel()
+        return self._energy_of(self.bodies.means.reshape(self.bodies.velocities.shape), self.turns_of_means)
+
+    def _energy_of(self, velocities: np.ndarray, turns: np.ndarray) -> float:
+        """Kinetic energy of blocks that are turned like this, with real masses: those along principal axes [J]."""
+        spins = along_principal(velocities[:, self.model.rotations], self.shape.axes, turns)
+        velocities = np.column_stack([velocities[:, : self.model.dimension], spins])
+        inverse = self.loads.inverse_masses
         moving = inverse > 0.0
-        return 0.5 * float((self.bodies.means[moving] ** 2 / inverse[moving]).sum())
+        return 0.5 * float((velocities[moving] ** 2 / inverse[moving]).sum())
 
     def note_kinetic_energy(self) -> None:
         """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""
@@ -190,11 +207,12 @@ class DynamicSimulation(Simulation):
     def _held_by_elements(self) -> float:
         """Energy in the springs of Maxwell elements [J]."""
         joints, d, held = self.joints, self.model.dimension, 0.0
+        used = joints.kn > 0.0
         for e, (share, _) in enumerate(self.damping.elements):
             column = self.dampers.first + d * (e + 1)
             forces = self.contacts.memory[:, column : column + d]
-            held += float((forces[:, 0] ** 2 / (share * joints.kn)).sum())
-            held += float(((forces[:, 1:] ** 2).sum(axis=1) / (share * joints.ks)).sum())
+            held += float((forces[used, 0] ** 2 / (share * joints.kn[used])).sum())
+            held += float(((forces[used, 1:] ** 2).sum(axis=1) / (share * joints.ks[used])).sum())
         return 0.5 * held
 
     @property
@@ -207,10 +225,16 @@ class DynamicSimulation(Simulation):
         """The load that records show: acceleration of the base over gravity."""
         self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
 
-    def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
-        """Of the last step, relative to the base [m/s², rad/s²], (..., n_dof)."""
-        means = self.bodies.means.reshape(self.bodies.velocities.shape)
-        return 2.0 * (self.bodies.velocities[blocks] - means[blocks]) / self.dt
+    def accelerations(self, blocks: np.ndarray) -> np.ndarray:
+        """Of the last step, relative to the base [m/s², rad/s²], (n, n_dof)."""
+        bodies, shape = self.bodies, self.shape
+        means, kicked = (field.reshape(bodies.velocities.shape)[blocks] for field in (bodies.means, bodies.pulled))
+        found = 2.0 * (kicked - means) / self.dt
+        if len(shape.axes):
+            rotations = self.model.rotations
+            turning = shape.inertias[blocks], shape.axes[blocks], self.turns_of_means[blocks]
+            found[:, rotations] += gyration(means[:, rotations], *turning)
+        return found
 
 
 def _masses(model: Model) -> np.ndarray:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.gaps import gap_words, gaps_of_start, wedges_of_start
-from dem_cli.contact.geometry import MOVING
 from dem_cli.engine.properties import joint_properties
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
@@ -19,23 +18,8 @@ if TYPE_CHECKING:
 def why_moving(case: Case, model: Model) -> str | None:
     """Why geometry moves on the way to failure ("": the case says so); None: that of the start is good enough.
 
-    Raises CaseError where the case asks for fixed geometry that its joints do not allow, or where geometry would have
-    to move in a dimension in which it cannot.
+    Raises CaseError where the case asks for fixed geometry that its joints do not allow.
     """
-    reason = _reason(case, model)
-    if reason is None or may_move(model):
-        return reason
-    kept = "only 'fixed' is known in 3D yet, the geometry of the start"
-    found = f"{kept}; here {reason}: 'fixed' leaves that out of account" if reason else kept
-    raise CaseError([CaseProblem(("analysis", "kinematics"), f"'{case.analysis.kinematics}' is not allowed: {found}")])
-
-
-def may_move(model: Model) -> bool:
-    """Whether joints can be placed where the blocks are; else their geometry is that of the start."""
-    return model.dimension in MOVING
-
-
-def _reason(case: Case, model: Model) -> str | None:
     wanted = case.analysis.kinematics
     profiles = [name for name, joint in case.joints.items() if joint.profile is not None]
     if profiles:
@@ -60,8 +44,8 @@ def open_gaps_doubt(model: Model) -> str | None:
     gaps = gaps_of_start(model)
     if not len(gaps.widths):
         return None
-    hint = '; with analysis.kinematics = "large" gaps close' if may_move(model) else ""
-    return f"{gap_words(model, gaps)}: nothing rests there, as the geometry of the start is kept{hint}"
+    hint = 'with analysis.kinematics = "large" gaps close'
+    return f"{gap_words(model, gaps)}: nothing rests there, as the geometry of the start is kept; {hint}"
 
 
 def live_scale(model: Model) -> float:

@@ -14,7 +14,6 @@ from dem_cli.kernels import records as slot
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
-_GO_ALONG = {2: False, 3: True}  # whether records take points of geometry of the start along with their blocks
 
 
 class EnergySums(NamedTuple):
@@ -144,7 +143,7 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
 
     Geometry of the start keeps its points where they were, however far its blocks go: in space these take them along.
     """
-    if sim.kinematics == "large" or not _GO_ALONG[sim.model.dimension]:
+    if sim.kinematics == "large" or sim.joints.points.shape[1] == 2:
         return sim.joints.points
     bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
@@ -153,9 +152,10 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
     joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
-    owner = joints.owners
+    owner, used = joints.owners, points_in_use(joints)
     friction = np.sqrt((contacts.shear**2).sum(axis=1))
-    limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, joints.kn)
+    kn = np.where(used, joints.kn, 1.0)
+    limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, kn)
     slides = friction >= limit * (1 - sim.settings.mechanism.slides)
     state = np.where(contacts.normal == 0.0, 0, np.where(slides, 2, 1))
     record = ContactRecord(
@@ -170,7 +170,6 @@ def contact_record(sim: Simulation) -> ContactRecord:
         state=state.astype(np.int8),
         tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
-    used = points_in_use(joints)
     return record if used.all() else ContactRecord(*(values[used] for values in record))
 
 

@@ -179,8 +179,8 @@ class Simulation:
         )  # fmt: skip
         return done
 
-    def accelerations(self, blocks: int | np.ndarray) -> np.ndarray:
-        """Of the last step, per unit of the solver's time, (..., n_dof)."""
+    def accelerations(self, blocks: np.ndarray) -> np.ndarray:
+        """Of the last step, per unit of the solver's time, (n, n_dof)."""
         return self.bodies.unbalanced[blocks] * self.loads.inverse_masses[blocks]
 
     def rest(self) -> None:

@@ -37,7 +37,10 @@ class Damping:
         """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M with the reduced mass M."""
         found = np.full(len(joints.blocks), self.stiffness)
         if self.fraction > 0.0 and len(found):
-            found += 2.0 * self.fraction / joint_frequencies(model, joints)
+            frequencies = joint_frequencies(model, joints)
+            held = frequencies > 0.0  # in space a joint may have no point yet: what will be there is like the others
+            frequencies[~held] = np.median(frequencies[held]) if held.any() else np.inf
+            found += 2.0 * self.fraction / frequencies
         return found
 
 

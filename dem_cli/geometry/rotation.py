@@ -27,7 +27,8 @@ def turned_as_one(vectors: np.ndarray, rotation: np.ndarray | float) -> np.ndarr
     """Vectors (n, d) turned about the origin as one, by an angle or a rotation vector (3,) [rad], with matrices."""
     if vectors.shape[1] == 3:
         return vectors @ matrices(np.reshape(rotation, (1, 3)))[0].T
-    c, s = np.cos(rotation), np.sin(rotation)
+    angle = float(np.asarray(rotation).item())
+    c, s = np.cos(angle), np.sin(angle)
     return vectors @ np.array([[c, s], [-s, c]])
 
 
@@ -122,7 +123,7 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
         return orientations[:, 0]
     if orientations.shape[1] == 3:
         return np.linalg.norm(orientations, axis=1)
-    return 2.0 * np.arccos(np.clip(np.abs(orientations[:, 0]), 0.0, 1.0))
+    return 2.0 * np.arctan2(np.linalg.norm(orientations[:, 1:], axis=1), np.abs(orientations[:, 0]))
 
 
 def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:

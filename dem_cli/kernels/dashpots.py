@@ -10,56 +10,125 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.jit import always_inline, inline, overload
+from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, sweep, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
-from dem_cli.kernels.vec import (
-    add_at,
-    add_torques,
-    axpy,
-    components,
-    compose,
-    dot,
-    load,
-    load_frame,
-    load_levers,
-    scale,
-    store,
-    turn,
-)
+from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
 
 OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
-@always_inline
-def _rates(frame, levers_a, levers_b, relative, spin_a, spin_b):
-    """Speed of opening and sliding of a point [m/s]."""
-    normal, along = components(frame, relative)
-    normal_a, along_a = turn(levers_a, spin_a)
-    normal_b, along_b = turn(levers_b, spin_b)
-    return normal + normal_b - normal_a, axpy(-1.0, along_a, axpy(1.0, along_b, along))
+def put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    """How far an impulse goes in one turn to where its error is none: (1 + C K)⁻¹, row by row; in 2D of its diagonal.
+
+    viscous: C, half of damping × step across and along the joint [kg]; K: rates by impulses at the point [1/kg];
+    masses: sum of both inverse masses; mobilities: of both blocks. What slips has no dashpot along the joint.
+    """
+    put = _put_diagonal if len(frame) == 2 else _put_block
+    put(gains, point, frame, reaches, masses, mobilities, viscous, slips)
+
+
+@overload(put_gains)
+def _put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    put = _put_diagonal if len(frame) == 2 else _put_block
+    return lambda gains, point, frame, reaches, masses, mobilities, viscous, slips: put(
+        gains, point, frame, reaches, masses, mobilities, viscous, slips
+    )
 
 
 @inline
-def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation):
+def _put_diagonal(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    levers_a, levers_b = reaches
+    turning_a, turning_b = mobilities[0][0][0], mobilities[1][0][0]
+    for k in range(2):
+        inverse = masses
+        inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
+        gains[point, k] = 1.0 / (1.0 + viscous[k] * inverse)
+
+
+@inline
+def _put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips):
+    n, s, t = frame
+    c, f = viscous
+    a_n, a_s, a_t = sweep(reaches[0], n), sweep(reaches[0], s), sweep(reaches[0], t)
+    b_n, b_s, b_t = sweep(reaches[1], n), sweep(reaches[1], s), sweep(reaches[1], t)
+    by_a, by_b = spun(mobilities[0], a_n), spun(mobilities[1], b_n)
+    nn = 1.0 + c * (masses + dot(by_a, a_n) + dot(by_b, b_n))
+    if slips:
+        gains[point, 0] = 1.0 / nn
+        for k in range(1, 9):
+            gains[point, k] = 0.0
+        return
+    ns, nt = dot(by_a, a_s) + dot(by_b, b_s), dot(by_a, a_t) + dot(by_b, b_t)
+    by_a, by_b = spun(mobilities[0], a_s), spun(mobilities[1], b_s)
+    ss, st = 1.0 + f * (masses + dot(by_a, a_s) + dot(by_b, b_s)), f * (dot(by_a, a_t) + dot(by_b, b_t))
+    tt = 1.0 + f * (masses + dot(spun(mobilities[0], a_t), a_t) + dot(spun(mobilities[1], b_t), b_t))
+    # Rows (nn, c ns, c nt), (f ns, ss, st), (f nt, st, tt); its inverse by cofactors.
+    low, left, right = ss * tt - st * st, ns * tt - st * nt, ns * st - ss * nt
+    share = 1.0 / (nn * low - c * f * (ns * left - nt * right))
+    gains[point, 0], gains[point, 1], gains[point, 2] = share * low, -share * c * left, share * c * right
+    gains[point, 3], gains[point, 6] = -share * f * left, share * f * right
+    gains[point, 4], gains[point, 8] = share * (nn * tt - c * f * nt * nt), share * (nn * ss - c * f * ns * ns)
+    gains[point, 5] = gains[point, 7] = share * (c * f * ns * nt - nn * st)
+
+
+def gained(gains, point, push, along, error, error_along, least):
+    """Impulses across and along the joint after they gave up their errors; across it not below `least`."""
+    give_up = _give_up_apart if len(along) == 1 else _give_up_together
+    return give_up(gains, point, push, along, error, error_along, least)
+
+
+@overload(gained)
+def _gained(gains, point, push, along, error, error_along, least):
+    give_up = _give_up_apart if len(along) == 1 else _give_up_together
+    return lambda gains, point, push, along, error, error_along, least: give_up(
+        gains, point, push, along, error, error_along, least
+    )
+
+
+@always_inline
+def _give_up_apart(gains, point, push, along, error, error_along, least):
+    return max(push - error * gains[point, 0], least), axpy(-gains[point, 1], error_along, along)
+
+
+@always_inline
+def _give_up_together(gains, point, push, along, error, error_along, least):
+    x, y, z = error, error_along[0], error_along[1]
+    free = push - (gains[point, 0] * x + gains[point, 1] * y + gains[point, 2] * z)
+    s = along[0] - (gains[point, 3] * x + gains[point, 4] * y + gains[point, 5] * z)
+    t = along[1] - (gains[point, 6] * x + gains[point, 7] * y + gains[point, 8] * z)
+    if free >= least:
+        return free, (s, t)
+    given = (least - free) / gains[point, 0]  # what the bound gives back goes on to the others
+    return least, (s + given * gains[point, 3], t + given * gains[point, 6])
+
+
+@always_inline
+def _least(normal, dt):
+    """The least impulse across a joint: spring and dashpot together do not pull, but for what is bonded."""
+    return -normal * dt if normal >= 0.0 else -np.inf
+
+
+@inline
+def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """States, rates and gains of all points before the kick.
 
     Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
     elements to `forces`. Returns how many points have met.
     """
-    blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
-    frames, levers, normals, memory, slips = (
-        joints.frames, joints.levers, contacts.normal, contacts.memory, contacts.slip
-    )  # fmt: skip
+    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
+    normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
+    positions, velocities, forces = bodies.positions, bodies.velocities, bodies.forces
     viscosity, elements, rates, gains = dampers.viscosity, dampers.elements, dampers.rates, dampers.gains
     states, seen, shares, first = dampers.states, dampers.slips, dampers.shares, dampers.first
     pushes = dampers.pushes
     pushes[:] = 0.0
-    d, n_elements, none = len(like), elements.shape[0], scale(0.0, like_rotation)
-    n_met = 0
+    d, n_elements, n_met = len(like), elements.shape[0], 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
-        half = 0.5 * viscosity[joint] * dt
+        half, masses = 0.5 * viscosity[joint] * dt, inverse_masses[a, 0] + inverse_masses[b, 0]
+        mobilities = (load_mobility(bodies.mobilities, a, like), load_mobility(bodies.mobilities, b, like))
         for p in range(starts[joint], starts[number + 1]):
             point = np.uint64(p)
             if normals[point] == 0.0:
@@ -73,10 +142,11 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             states[point] = STICKS if slips[point] == seen[point] else SLIPS
             seen[point] = slips[point]
             frame = load_frame(frames, point, like)
-            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
+            reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
-            opening, sliding = _rates(frame, levers_a, levers_b, relative, spin_a, spin_b)
+            opening, sliding = rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b)
             rates[point, 0] = opening
             store(rates, point, 1, sliding)
             shares[point] = 1.0
@@ -84,25 +154,22 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
                 closed = min(max(contacts.gaps[point] / (opening * dt), 0.0), 1.0)
                 shares[point] = 0.5 + closed
-            masses = inverse_masses[a, 0] + inverse_masses[b, 0]
-            turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
-            for k in range(d):
-                stiffness = kns[point] if k == 0 else kss[point]
-                inverse = masses
-                inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
-                gains[point, k] = 1.0 / (1.0 + shares[point] * half * stiffness * inverse)
+            weight = shares[point] * half
+            viscous = (weight * kns[point], weight * kss[point])
+            put_gains(
+                gains, point, frame, (reach_a, reach_b), masses, mobilities, viscous, states[point] == SLIPS
+            )  # fmt: skip
             push, along = memory[point, first], load(memory, point, first + 1, sliding)
-            if normals[point] >= 0.0:
-                push = max(push, -normals[point] * dt)
-                memory[point, first] = push
+            push = max(push, _least(normals[point], dt))
+            memory[point, first] = push
             if states[point] == SLIPS:
                 along = scale(0.0, along)
                 store(memory, point, first + 1, along)
             force = compose(frame, push, along, scale(0.0, like))
             add_at(pushes, a, 0, force, -1.0)
             add_at(pushes, b, 0, force, 1.0)
-            add_at(pushes, a, d, add_torques(levers_a, push, along, none), -1.0)
-            add_at(pushes, b, d, add_torques(levers_b, push, along, none), 1.0)
+            add_at(pushes, a, d, torque_at(reach_a, force, push, along), -1.0)
+            add_at(pushes, b, d, torque_at(reach_b, force, push, along), 1.0)
             if n_elements > 0:
                 stiffness = (kns[point], kss[point])
                 _relax(memory, rates, elements, states[point], normals[point], stiffness, closed, point, first, d)
@@ -114,8 +181,8 @@ def meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like
                 force = compose(frame, normal, shear, scale(0.0, like))
                 add_at(forces, a, 0, force, -1.0)
                 add_at(forces, b, 0, force, 1.0)
-                add_at(forces, a, d, add_torques(levers_a, normal, shear, none), -1.0)
-                add_at(forces, b, d, add_torques(levers_b, normal, shear, none), 1.0)
+                add_at(forces, a, d, torque_at(reach_a, force, normal, shear), -1.0)
+                add_at(forces, b, d, torque_at(reach_b, force, normal, shear), 1.0)
     return n_met
 
 
@@ -140,10 +207,10 @@ def _relax(memory, rates, elements, state, pressed, stiffness, closed, point, fi
 
 
 @inline
-def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards, like, like_rotation):
+def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, like, like_rotation):
     """One sweep over all impulses."""
-    blocks, starts, kns, kss = joints.blocks, joints.starts, joints.kn, joints.ks
-    frames, levers, normals, memory = joints.frames, joints.levers, contacts.normal, contacts.memory
+    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
+    positions, velocities, normals, memory = bodies.positions, bodies.velocities, contacts.normal, contacts.memory
     viscosity, rates, gains, states, shares, first = (
         dampers.viscosity, dampers.rates, dampers.gains, dampers.states, dampers.shares, dampers.first
     )  # fmt: skip
@@ -157,7 +224,9 @@ def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards,
         low, high = starts[joint], starts[number + 1]
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
-        turning_a, turning_b = inverse_masses[a, d], inverse_masses[b, d]
+        mobility_a = load_mobility(bodies.mobilities, a, like)
+        mobility_b = load_mobility(bodies.mobilities, b, like)
+        xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
         va, vb = load(velocities, a, 0, like), load(velocities, b, 0, like)
         spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
         touched = False
@@ -168,16 +237,14 @@ def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards,
                 continue
             touched = True
             frame = load_frame(frames, point, like)
-            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
+            reach_a, reach_b = reach_of(joints, point, 0, xa, like), reach_of(joints, point, 1, xb, like)
             push, along = memory[point, first], load(memory, point, first + 1, like[1:])
-            opening, sliding = _rates(frame, levers_a, levers_b, axpy(-1.0, va, vb), spin_a, spin_b)
+            opening, sliding = rates_at(frame, reach_a, reach_b, axpy(-1.0, va, vb), spin_a, spin_b)
             weight = half * shares[point]
-            new = push - (weight * kns[point] * (rates[point, 0] + opening) + push) * gains[point, 0]
+            error = weight * kns[point] * (rates[point, 0] + opening) + push
             mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
-            error = axpy(weight * kss[point], mean, along)
-            new_along = axpy(-gains[point, 1], error, along)
-            if normals[point] >= 0.0:
-                new = max(new, -normals[point] * dt)
+            error_along = axpy(weight * kss[point], mean, along)
+            new, new_along = gained(gains, point, push, along, error, error_along, _least(normals[point], dt))
             if state == SLIPS:
                 new_along = scale(0.0, along)
             memory[point, first] = new
@@ -185,9 +252,8 @@ def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards,
             new, new_along = new - push, axpy(-1.0, along, new_along)
             force = compose(frame, new, new_along, scale(0.0, like))
             va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
-            none = scale(0.0, spin_a)
-            spin_a = axpy(-turning_a, add_torques(levers_a, new, new_along, none), spin_a)
-            spin_b = axpy(turning_b, add_torques(levers_b, new, new_along, none), spin_b)
+            spin_a = axpy(-1.0, spun(mobility_a, torque_at(reach_a, force, new, new_along)), spin_a)
+            spin_b = axpy(1.0, spun(mobility_b, torque_at(reach_b, force, new, new_along)), spin_b)
         if touched:
             store(velocities, a, 0, va)
             store(velocities, a, d, spin_a)
@@ -196,26 +262,27 @@ def _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, backwards,
 
 
 @inline
-def resist(joints, contacts, velocities, inverse_masses, dampers, dt, turns, like, like_rotation):
+def resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """The impulses of all dashpots on the velocities after the kick, from those of the step before.
 
     turns: pairs of sweeps, to and fro. One is enough where the step before is a good guess.
     """
-    pushes = dampers.pushes
+    velocities, mobilities, pushes, d = bodies.velocities, bodies.mobilities, dampers.pushes, len(like)
     for block in range(velocities.shape[0]):
-        for k in range(velocities.shape[1]):
+        for k in range(d):
             velocities[block, k] += inverse_masses[block, k] * pushes[block, k]
+        push = load(pushes, block, d, like_rotation)
+        add_at(velocities, block, d, spun(load_mobility(mobilities, block, like), push), 1.0)
     for _ in range(turns):
-        _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, False, like, like_rotation)
-        _sweep(joints, contacts, velocities, inverse_masses, dampers, dt, True, like, like_rotation)
+        _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, False, like, like_rotation)
+        _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, True, like, like_rotation)
 
 
 @inline
-def book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation):
+def book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
     """What Maxwell elements took in this step, by the mean rates over it."""
-    blocks, starts, frames, levers, memory = (
-        joints.blocks, joints.starts, joints.frames, joints.levers, contacts.memory
-    )  # fmt: skip
+    blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
+    positions, velocities = bodies.positions, bodies.velocities
     rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, dampers.elements.shape[0]
     d, taken = len(like), 0.0
     for number in range(blocks.shape[0]):
@@ -227,8 +294,9 @@ def book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_
                 continue
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
-            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
-            opening, sliding = _rates(load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b)
+            reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
+            reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
+            opening, sliding = rates_at(load_frame(frames, point, like), reach_a, reach_b, relative, spin_a, spin_b)
             opening = 0.5 * (opening + rates[point, 0])
             sliding = scale(0.5, axpy(1.0, load(rates, point, 1, sliding), sliding))
             for e in range(n_elements):
@@ -238,11 +306,10 @@ def book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_
 
 
 @inline
-def book_supports(joints, contacts, velocities, old, inverse_masses, dampers, ledger, like, like_rotation):
+def book_supports(joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation):
     """Work of moving supports through dashpots: theirs, and lost there. old: velocities before the step."""
-    blocks, starts, frames, levers, memory = (
-        joints.blocks, joints.starts, joints.frames, joints.levers, contacts.memory
-    )  # fmt: skip
+    blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
+    positions, velocities = bodies.positions, bodies.velocities
     states, first, d, work = dampers.states, dampers.first, len(like), 0.0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
@@ -259,8 +326,9 @@ def book_supports(joints, contacts, velocities, old, inverse_masses, dampers, le
             point = np.uint64(p)
             if states[point] == OPEN:
                 continue
-            levers_a, levers_b = load_levers(levers, point, 0, like), load_levers(levers, point, 1, like)
-            opening, sliding = _rates(load_frame(frames, point, like), levers_a, levers_b, relative, spin_a, spin_b)
+            reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
+            reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
+            opening, sliding = rates_at(load_frame(frames, point, like), reach_a, reach_b, relative, spin_a, spin_b)
             work -= memory[point, first] * opening + dot(load(memory, point, first + 1, sliding), sliding)
     ledger[SUPPORT] += work
     ledger[DASHPOT] += work

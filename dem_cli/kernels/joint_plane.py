@@ -8,7 +8,7 @@ is plain Python too, as in vec.py.
 from __future__ import annotations
 
 from dem_cli.kernels.jit import overload
-from dem_cli.kernels.vec import axpy, compose, dot, scale
+from dem_cli.kernels.vec import add_torques, axpy, components, compose, dot, load_levers, scale, turn
 
 
 def sweep(spin, arm):
@@ -123,3 +123,91 @@ def _add_moment_at(place, normal_part, tangent_parts, start):
         start[1] + place[1] * normal_part,
         start[2] - place[0] * normal_part,
     )
+
+
+def reach_of(joints, point, side, centre, like):
+    """What says how a point moves when block a (side 0) or b (side 1) turns: in 2D its levers, in 3D its arm [m]."""
+    if len(like) == 2:
+        return load_levers(joints.levers, point, side, like)
+    return tuple(joints.points[point, k] - centre[k] for k in range(3))
+
+
+@overload(reach_of)
+def _reach_of(joints, point, side, centre, like):
+    if len(like) == 2:
+        return lambda joints, point, side, centre, like: load_levers(joints.levers, point, side, like)
+    return lambda joints, point, side, centre, like: (
+        joints.points[point, 0] - centre[0],
+        joints.points[point, 1] - centre[1],
+        joints.points[point, 2] - centre[2],
+    )
+
+
+def rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b):
+    """Speed of opening and sliding of a point whose blocks move and turn [m/s]; relative: of centroid b against a."""
+    if len(frame) == 2:
+        normal, along = components(frame, relative)
+        normal_a, along_a = turn(reach_a, spin_a)
+        normal_b, along_b = turn(reach_b, spin_b)
+        return normal + normal_b - normal_a, axpy(-1.0, along_a, axpy(1.0, along_b, along))
+    return components(frame, axpy(-1.0, sweep(spin_a, reach_a), axpy(1.0, sweep(spin_b, reach_b), relative)))
+
+
+@overload(rates_at)
+def _rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b):
+    if len(frame) == 2:
+
+        def planar(frame, reach_a, reach_b, relative, spin_a, spin_b):
+            normal, along = components(frame, relative)
+            normal_a, along_a = turn(reach_a, spin_a)
+            normal_b, along_b = turn(reach_b, spin_b)
+            return normal + normal_b - normal_a, axpy(-1.0, along_a, axpy(1.0, along_b, along))
+
+        return planar
+    return lambda frame, reach_a, reach_b, relative, spin_a, spin_b: components(
+        frame, axpy(-1.0, sweep(spin_a, reach_a), axpy(1.0, sweep(spin_b, reach_b), relative))
+    )
+
+
+def torque_at(reach, force, normal_part, tangent_parts):
+    """Moment of a force at a point about a centroid: by its components along the frame in 2D, by itself in 3D."""
+    if len(force) == 2:
+        return add_torques(reach, normal_part, tangent_parts, (0.0,))
+    return moment(reach, force)
+
+
+@overload(torque_at)
+def _torque_at(reach, force, normal_part, tangent_parts):
+    if len(force) == 2:
+        return lambda reach, force, normal_part, tangent_parts: add_torques(reach, normal_part, tangent_parts, (0.0,))
+    return lambda reach, force, normal_part, tangent_parts: moment(reach, force)
+
+
+def load_mobility(mobilities, row, like):
+    """Inverse inertia of a block along the axes of the world, row by row: one number in 2D, three by three in 3D."""
+    if len(like) == 2:
+        return ((mobilities[row, 0],),)
+    return tuple(tuple(mobilities[row, 3 * k : 3 * k + 3]) for k in range(3))
+
+
+@overload(load_mobility)
+def _load_mobility(mobilities, row, like):
+    if len(like) == 2:
+        return lambda mobilities, row, like: ((mobilities[row, 0],),)
+    return lambda mobilities, row, like: (
+        (mobilities[row, 0], mobilities[row, 1], mobilities[row, 2]),
+        (mobilities[row, 3], mobilities[row, 4], mobilities[row, 5]),
+        (mobilities[row, 6], mobilities[row, 7], mobilities[row, 8]),
+    )
+
+
+def spun(mobility, torque):
+    """Change of spin by an angular impulse: mobility × torque."""
+    return tuple(dot(row, torque) for row in mobility)
+
+
+@overload(spun)
+def _spun(mobility, torque):
+    if len(mobility) == 1:
+        return lambda mobility, torque: (dot(mobility[0], torque),)
+    return lambda mobility, torque: (dot(mobility[0], torque), dot(mobility[1], torque), dot(mobility[2], torque))

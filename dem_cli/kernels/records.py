@@ -29,7 +29,8 @@ class Bodies(NamedTuple):
     # now in time histories [1/(kg m²)], (n_blocks, r·r)
     means: np.ndarray  # mean velocities of the last step, (n_blocks·n_dof,)
     drags: np.ndarray  # damping forces of the last step [N, N m], (n_blocks·n_dof,)
-    pulled: np.ndarray  # velocities before the dashpots of the last step, (n_blocks·n_dof,)
+    pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
+    # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
 
 
@@ -154,6 +155,11 @@ class SpatialMotion(NamedTuple):
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
     shares: np.ndarray  # of crossings: place along the edge of a when renewed; lone: sign of the normal, (n_points,)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
+    rises: np.ndarray  # of caps (contact/caps.py): how high the outline of b lies over its lowest ring [m], (n_joints,)
+    slopes: np.ndarray  # of a cap, of its steepest side, (n_joints,)
+    cap_starts: np.ndarray  # a joint has the inner points cap_starts[j]:cap_starts[j + 1] of a cap, (n_joints + 1,)
+    cap_arms: np.ndarray  # of these, as `arms`, (n, 3)
+    cap_areas: np.ndarray  # [m²], (n,)
     face_starts: np.ndarray  # as Polyhedra, and the next four
     face_corners: np.ndarray
     part_starts: np.ndarray
@@ -162,7 +168,7 @@ class SpatialMotion(NamedTuple):
     work: np.ndarray  # of renewal: outlines, (6, room, 4)
     found: np.ndarray  # points that were found: as `corners`, (room, 5)
     labels: np.ndarray  # feature and type of each, (room, 2)
-    numbers: np.ndarray  # area, share, arm of each, and what it has from the nearest point before, (room, 10 + memory)
+    numbers: np.ndarray  # area, share, arm of each, and what it has from the nearest point before, (room, 11 + memory)
     taken: np.ndarray  # slot that each has, (room,)
     heirs: np.ndarray  # and the slot that is nearest to each new one, (room,)
 
@@ -224,11 +230,13 @@ class Dampers(NamedTuple):
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
     elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
     rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
-    gains: np.ndarray  # share of its error that an impulse gives up in one turn, (n_points, d)
+    gains: np.ndarray  # what impulses give up of their errors in one turn: shares in 2D, blocks row by row in 3D,
+    # (n_points, d·r)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8
-    masses: np.ndarray  # and moments of inertia; 0 of supports, (n_blocks, n_dof)
+    masses: np.ndarray  # and moments of inertia in the plane; 0 of supports, and where inertia is a tensor (in
+    # space: BlockShapes.inertias), (n_blocks, n_dof)
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 
 

@@ -11,9 +11,13 @@ import math
 from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
-from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, turned3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap, turned3, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
 from dem_cli.kernels.vec import axpy, dot
+
+# Columns of SpatialMotion.numbers.
+CLOSED = 10  # how far the nearest point has closed since forces were found [m]
+LEFT = 11  # memory of the law, from here on
 
 
 @inline
@@ -127,33 +131,47 @@ def _found_place(geometry, bodies, k, b):
 
 
 @inline
-def _bequeath(joints, contacts, geometry, k, remembers):
-    """What a new point gets from the nearest one: tractions over stiffness, slip, closure, memory of the law."""
+def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
+    """What a new point gets from the nearest one: tractions over stiffness, slip, closure, memory of the law.
+
+    Forces are those of the last step, so that the gap by which it has closed since then belongs to this one.
+    """
     numbers, heir = geometry.numbers, geometry.heirs[k]
-    for m in range(5, 10 + remembers):
+    for m in range(5, LEFT + remembers):
         numbers[k, m] = 0.0
     if heir == NONE:
         return
+    numbers[k, CLOSED] = contacts.gaps[heir] - _gap_of(joints, geometry, bodies, joint, heir, frame)
     numbers[k, 5] = contacts.normal[heir] / joints.kn[heir]
     numbers[k, 6], numbers[k, 7] = contacts.shear[heir, 0] / joints.ks[heir], contacts.shear[heir, 1] / joints.ks[heir]
     numbers[k, 8], numbers[k, 9] = contacts.slip[heir], contacts.closure[heir]
     for m in range(remembers):
-        numbers[k, 10 + m] = contacts.memory[heir, m]
+        numbers[k, LEFT + m] = contacts.memory[heir, m]
+
+
+@inline
+def _gap_of(joints, geometry, bodies, joint, point, frame):
+    """Where the blocks are now."""
+    a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
+    _, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+    return on_cap(geometry, bodies, joint, point, gap, place, frame[0])
 
 
 @inline
 def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remembers, bonded, fresh):
     """A new point in its slot: its own gap, and what the nearest one left it."""
-    numbers, a, b = geometry.numbers, joints.blocks[joint, 0], joints.blocks[joint, 1]
+    numbers = geometry.numbers
     _put(geometry, point, k)
     _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
-    gap = feature_of(geometry, bodies, joint, point, a, b, frame)[1]
-    contacts.gaps[point] = gap
+    gap = _gap_of(joints, geometry, bodies, joint, point, frame)
     if fresh:
+        contacts.gaps[point] = gap
         return
+    gap += numbers[k, CLOSED]
+    contacts.gaps[point] = gap
     contacts.slip[point], contacts.closure[point] = numbers[k, 8], numbers[k, 9]
     for m in range(remembers):
-        contacts.memory[point, m] = numbers[k, 10 + m]
+        contacts.memory[point, m] = numbers[k, LEFT + m]
     deep = numbers[k, 5] if bonded else max(numbers[k, 9] - gap, 0.0)
     contacts.normal[point] = joints.kn[point] * deep
     if deep != 0.0:
@@ -173,7 +191,7 @@ def _found(geometry, bodies, joint, pair, frame, along, room):
 
 
 @kernel
-def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
+def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     """Finds the contact points of a joint anew; returns how many there are.
 
     remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
@@ -188,7 +206,7 @@ def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     _look_up(joints, geometry, bodies, joint, count, b)
     for k in range(count):
         if geometry.taken[k] == NONE:
-            _bequeath(joints, contacts, geometry, k, remembers)
+            _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers)
     for point in range(first, last):
         stays = False
         for k in range(count):
@@ -214,3 +232,10 @@ def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     for m in range(3):
         geometry.markers[joint, m], geometry.markers[joint, 3 + m] = one[m], two[m]
     return count
+
+
+@inline
+def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
+    """As _renew, for the loops that are made for a law: the cache knows these by all that they name, and a kernel has
+    another name in each process. A plain function has not."""
+    return _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh)

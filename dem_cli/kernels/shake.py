@@ -1,7 +1,8 @@
 """n steps of a time history in one compiled call: contact forces, ground motion, dampers, kick, drift.
 
 Leapfrog with real masses, in the frame that moves with the base: positions and forces at whole steps, velocities half
-a step behind. The ledger sums what each group of forces really did, force × mean velocity.
+a step behind. The ledger sums what each group of forces really did, force × mean velocity. In space torques kick with
+the tensors of inertia of the whole step, before and after which blocks turn freely (kernels/spin.py).
 """
 
 from __future__ import annotations
@@ -24,19 +25,21 @@ from dem_cli.kernels.records import (
     TRAVEL_LIMIT,
     UNBALANCED,
 )
+from dem_cli.kernels.spin import add_gyration, add_spin_powers, kick_spins, rotation
 
 TURNS_OF_IMPACT = 6  # pairs of sweeps where points have met, which have no impulse of the step before to start from
 
 
 @always_inline
 def _kick(
-    velocities, forces, unbalanced, dead_loads, inverse_masses, masses, old, drags, pulled, base, damp, rate, dt, d
+    velocities, forces, unbalanced, dead_loads, inverse_masses, masses, mobilities, old, drags, pulled, base, damp,
+    rate, dt, like, like_rotation,
 ):  # fmt: skip
     """Velocities from forces, loads and the acceleration of the base; leaves the old ones and the drag of each.
 
     rate: mass-proportional damping, −rate·m·v at the mean velocity of the step. damp: local damping. Without branches.
     """
-    n_dof = velocities.shape[1]
+    n_dof, d = velocities.shape[1], len(like)
     keep, gain = (1.0 - 0.5 * rate * dt) / (1.0 + 0.5 * rate * dt), dt / (1.0 + 0.5 * rate * dt)
     for block in range(velocities.shape[0]):
         for k in range(n_dof):
@@ -48,11 +51,15 @@ def _kick(
             new = keep * before + gain * inverse * (total - drag)
             velocities[block, k] = new
             pulled[i] = new
+        kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, block, like_rotation)
 
 
 @always_inline
-def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, drags, rate, dt, ledger):
-    """Work of one step into the ledger; turns `old` velocities into means.
+def _book(
+    velocities, forces, unbalanced, inverse_masses, masses, shape, turns, old, pulled, drags, rate, dt, ledger,
+    like_rotation,
+):  # fmt: skip
+    """Work of one step into the ledger; turns `old` velocities into means and `pulled` ones into those of the end.
 
     pulled: velocities before the dashpots, whose mean with the old ones is what mass damping acted on; what came
     after them is impulse of the dashpots. Supports have their own velocity, and what they push is their work.
@@ -60,6 +67,9 @@ def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, d
     n_dof = velocities.shape[1]
     contact = external = local = drained = support = dashpots = 0.0
     for block in range(velocities.shape[0]):
+        drained, dashpots = add_spin_powers(
+            drained, dashpots, velocities, old, pulled, shape, turns, block, like_rotation
+        )  # fmt: skip
         for k in range(n_dof):
             i = block * n_dof + k
             before, after, force = old[i], velocities[block, k], forces[block, k]
@@ -72,6 +82,7 @@ def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, d
             local += free * drags[i] * mean
             drained += masses[block, k] * (before + pulled[i]) * mean
             dashpots += masses[block, k] * (after - pulled[i]) * mean
+            pulled[i] = after
     ledger[CONTACT] += dt * contact
     ledger[EXTERNAL] += dt * external
     ledger[DAMPING] += dt * local
@@ -81,17 +92,20 @@ def _book(velocities, forces, unbalanced, inverse_masses, masses, old, pulled, d
 
 
 @inline
-def _sample(step, dt, positions, orientations, velocities, means, watch):
+def _sample(step, dt, bodies, shape, watch, like_rotation):
     """Place, mean velocity and acceleration of the watched blocks at this step."""
+    positions, velocities, means, samples = bodies.positions, bodies.velocities, bodies.means, watch.samples
     n_dof, d = velocities.shape[1], positions.shape[1]
     row = step // watch.every
     for j in range(watch.blocks.shape[0]):
         block = watch.blocks[j]
+        turned = rotation(bodies.orientations, block, like_rotation)
         for k in range(n_dof):
             mean = means[block * n_dof + k]
-            watch.samples[row, j, 0, k] = positions[block, k] if k < d else orientations[block, k - d]
-            watch.samples[row, j, 1, k] = mean
-            watch.samples[row, j, 2, k] = 2.0 * (velocities[block, k] - mean) / dt
+            samples[row, j, 0, k] = positions[block, k] if k < d else turned[k - d]
+            samples[row, j, 1, k] = mean
+            samples[row, j, 2, k] = 2.0 * (velocities[block, k] - mean) / dt
+        add_gyration(samples, row, j, shape, bodies.turns, block, like_rotation)
 
 
 def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Callable:
@@ -106,36 +120,37 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
         velocities, forces, unbalanced = bodies.velocities, bodies.forces, bodies.unbalanced
         means, drags, pulled = bodies.means, bodies.drags, bodies.pulled
         dead_loads, inverse_masses, scales = loads.dead, loads.inverse_masses, loads.force_scales
-        damp, rate, d, n_dof = control[DAMP], control[MASS_RATE], len(like), velocities.shape[1]
+        damp, rate, n_dof = control[DAMP], control[MASS_RATE], velocities.shape[1]
         n_moving = ground.moving.shape[0]
         done = 0
         for step in range(first, first + n_steps):
             forces[:] = 0.0
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if damped:
-                met = meet(joints, contacts, velocities, forces, inverse_masses, dampers, dt, like, like_rotation)
+                met = meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
-                velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, means, drags, pulled,
-                ground.accelerations[step], damp, rate, dt, d,
+                velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, bodies.mobilities, means,
+                drags, pulled, ground.accelerations[step], damp, rate, dt, like, like_rotation,
             )  # fmt: skip
             for j in range(n_moving):
                 for k in range(n_dof):
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
-                resist(joints, contacts, velocities, inverse_masses, dampers, dt, turns, like, like_rotation)
+                resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
                 if dampers.elements.shape[0] > 0:
-                    book_elements(joints, contacts, velocities, dampers, dt, ledger, like, like_rotation)
+                    book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
                 if n_moving > 0:
                     old = means.reshape(velocities.shape)
                     book_supports(
-                        joints, contacts, velocities, old, inverse_masses, dampers, ledger, like, like_rotation
+                        joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip
             _book(
-                velocities, forces, unbalanced, inverse_masses, dampers.masses, means, pulled, drags, rate, dt, ledger
+                velocities, forces, unbalanced, inverse_masses, dampers.masses, shape, bodies.turns, means, pulled,
+                drags, rate, dt, ledger, like_rotation,
             )  # fmt: skip
             if step % watch.every == 0:
-                _sample(step, dt, bodies.positions, bodies.orientations, velocities, means, watch)
+                _sample(step, dt, bodies, shape, watch, like_rotation)
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import always_inline
-from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, FACES
+from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import cross3, minus3, row3, unit3
 from dem_cli.kernels.vec import axpy, dot
 
@@ -136,8 +136,10 @@ def crossing_alone(vertices, ends, point, sign):
     d, e = minus3(row3(vertices, ends[point, 1]), on_a), minus3(row3(vertices, ends[point, 3]), on_b)
     c, r = cross3(d, e), minus3(on_b, on_a)
     square = dot(c, c)
-    if square <= 1e-8 * dot(d, d) * dot(e, e):  # parallel: they cross nowhere
-        return (0.0, 0.0, 1.0), math.inf, on_a
+    if square <= 1e-8 * dot(d, d) * dot(
+        e, e
+    ):  # parallel: they cross nowhere, and are open; finite, as rates are formed
+        return (0.0, 0.0, 1.0), math.sqrt(dot(d, d)), on_a
     s = min(max(dot(cross3(r, e), c) / square, 0.0), 1.0)
     length = sign / math.sqrt(square)
     normal = (length * c[0], length * c[1], length * c[2])
@@ -172,6 +174,32 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
     height = dot(minus3(corner, row3(vertices, geometry.face_corners[geometry.face_starts[face]])), normal_a)
     normal = corner_normal(vertices, corners, point, corner, normal_a, normal_a, normal_b, middle, band)
     return normal, height / dot(normal, normal_a), corner
+
+
+@always_inline
+def height_inside(geometry, vertices, face, outwards, corner, slack):
+    """Whether a point lies over a face, but for `slack` [m²], and how high [m]."""
+    first = geometry.face_starts[face]
+    count = geometry.face_starts[face + 1] - first
+    height = dot(minus3(corner, row3(vertices, geometry.face_corners[first])), outwards)
+    for k in range(count):
+        origin = row3(vertices, geometry.face_corners[first + k])
+        after = row3(vertices, geometry.face_corners[first + (k + 1 if k + 1 < count else 0)])
+        if dot(minus3(corner, origin), cross3(outwards, minus3(after, origin))) < -slack:
+            return False, height
+    return True, height
+
+
+@always_inline
+def on_cap(geometry, bodies, joint, point, gap, place, normal_a):
+    """Gap of a point where block b has a cap: its outline lies higher, its inner points carry over face a alone."""
+    rise = geometry.rises[joint]
+    if rise == 0.0:
+        return gap
+    if geometry.types[point] != FIXED_TO_B:
+        return gap + rise
+    inside, _ = height_inside(geometry, bodies.corners, geometry.faces[joint, 0], normal_a, place, 0.0)
+    return gap if inside else max(gap, 0.0)
 
 
 @always_inline

@@ -14,7 +14,7 @@ from dem_cli.kernels.contact_point import make_press, meeting, push_apart
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.renewal import is_due, renew
-from dem_cli.kernels.spatial_features import feature_of, frame_of, tangents3
+from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tangents3
 from dem_cli.kernels.vec import axpy, compose, dot, load, scale
 
 
@@ -25,11 +25,12 @@ def make_spatial_forces(
     meets: bool = False,
     rigid: bool = False,
     remembers: int = 0,
+    capped: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and places of the points that touch are kept up to date, for dampers. meets, rigid: as in
-    planar_forces.py. remembers: numbers of a point's memory that belong to the law.
+    planar_forces.py. remembers: numbers of a point's memory that belong to the law. capped: joints may have caps.
     """
     press = make_press(law, bonded)
 
@@ -63,6 +64,8 @@ def make_spatial_forces(
                 if stiffness[point] == 0.0:
                     continue
                 normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+                if capped:
+                    gap = on_cap(geometry, bodies, joint, point, gap, place, frame[0])
                 opened = gap - gaps[point]
                 gaps[point] = gap
                 if meets and not bonded:
@@ -90,7 +93,7 @@ def make_spatial_forces(
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
-    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid}
+    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "capped": capped}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 
 
@@ -113,7 +116,8 @@ def measure_spatial(joints, geometry, contacts, bodies):
             if joints.kn[point] == 0.0:
                 frames[point, :], levers[point, :], places[point, :] = 0.0, 0.0, 0.0
                 continue
-            normal, contacts.gaps[point], place = feature_of(geometry, bodies, joint, point, a, b, frame)
+            normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+            contacts.gaps[point] = on_cap(geometry, bodies, joint, point, gap, place, frame[0])
             t1, t2 = tangents3(normal, along)
             arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
             k = 0

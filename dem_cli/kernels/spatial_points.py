@@ -13,7 +13,7 @@ from dem_cli.kernels.jit import inline, kernel
 from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, simplify
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
-from dem_cli.kernels.spatial_features import NONE, tangents3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, height_inside, tangents3, turned_back3
 from dem_cli.kernels.spatial_geometry import STEEP
 from dem_cli.kernels.vec import axpy, dot
 
@@ -29,6 +29,7 @@ CENTRED = 7  # 1: face joints have a point at their centroid as well
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
 SLIVER = 1e-3  # of FLOOR: overlaps below it are none
 LOCAL = 1024  # corners of a part that features tell apart
+CAP = 2 * LOCAL + LOCAL**4  # features of caps: from here on, beyond those of crossings
 LABEL = 2  # column of row 2: what a corner of the overlap is
 
 
@@ -184,21 +185,22 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
         numbers[count, 0], numbers[count, 1] = centre_area, 0.0
         numbers[count, 2], numbers[count, 3], numbers[count, 4] = arm
         count += 1
-    return count
+    return _with_cap(geometry, joint, count, found, labels, numbers) if count > 0 else 0
 
 
 @inline
-def _height_inside(geometry, vertices, face, outwards, corner, slack):
-    """Whether a corner lies over a face, but for `slack`, and how high."""
-    first = geometry.face_starts[face]
-    count = geometry.face_starts[face + 1] - first
-    height = dot(minus3(corner, row3(vertices, geometry.face_corners[first])), outwards)
-    for k in range(count):
-        origin = row3(vertices, geometry.face_corners[first + k])
-        after = row3(vertices, geometry.face_corners[first + (k + 1 if k + 1 < count else 0)])
-        if dot(minus3(corner, origin), cross3(outwards, minus3(after, origin))) < -slack:
-            return False, height
-    return True, height
+def _with_cap(geometry, joint, count, found, labels, numbers):
+    """Adds the inner points of the cap of a joint; returns how many points there are."""
+    first = geometry.cap_starts[joint]
+    for k in range(first, geometry.cap_starts[joint + 1]):
+        for m in range(5):
+            found[count, m] = NONE
+        labels[count, 0], labels[count, 1] = CAP + k - first, FIXED_TO_B
+        numbers[count, 0], numbers[count, 1] = geometry.cap_areas[k], 0.0
+        for m in range(3):
+            numbers[count, 2 + m] = geometry.cap_arms[k, m]
+        count += 1
+    return count
 
 
 @inline
@@ -216,7 +218,7 @@ def on_rim(geometry, bodies, joint, frame, room, out):
     reach, size, count = scales[joint, REACH], scales[joint, SIZE], 0
     for corner in range(geometry.part_starts[other], geometry.part_starts[other + 1]):
         place = row3(vertices, corner)
-        inside, height = _height_inside(geometry, vertices, face, outwards, place, ROUND_OFF * size * size)
+        inside, height = height_inside(geometry, vertices, face, outwards, place, ROUND_OFF * size * size)
         if inside and abs(height) <= reach and count < room:
             for m in range(5):
                 found[count, m] = NONE

@@ -6,14 +6,17 @@ A block that nothing touches turns by (implicit midpoint, in the principal axes)
 
 It keeps energy and the spatial angular momentum, whatever k: the quaternion is the Cayley turn of the same vector.
 With k = dt/2 that is the midpoint rule itself; as it is, a spin about a principal axis turns by exactly |w| dt.
+
+What time histories do otherwise in space than in the plane is here, by the length of `like_rotation`: a torque changes
+all components of a spin, and energies need the tensor of inertia, whose terms in the plane stand with the masses.
 """
 
 from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import always_inline, inline
-from dem_cli.kernels.vec import dot, scale
+from dem_cli.kernels.jit import always_inline, inline, overload
+from dem_cli.kernels.vec import axpy, dot, load, norm, scale
 
 ITERATIONS = 8  # of the midpoint, at most; each gains as many digits as a step turns by less than a radian
 CHANGE = 1e-30  # of |w|²: smaller changes of the midpoint, squared, are round-off
@@ -139,3 +142,121 @@ def store_mobility(mobilities, row, axes, moments):
     mobilities[row, 1] = mobilities[row, 3] = xy
     mobilities[row, 2] = mobilities[row, 6] = xz
     mobilities[row, 5] = mobilities[row, 7] = yz
+
+
+@always_inline
+def _kick_in_space(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row):
+    first = 6 * row + 3
+    x = unbalanced[row, 3] - drags[first]
+    y = unbalanced[row, 4] - drags[first + 1]
+    z = unbalanced[row, 5] - drags[first + 2]
+    for k in range(3):
+        m = 3 * k
+        change = mobilities[row, m] * x + mobilities[row, m + 1] * y + mobilities[row, m + 2] * z
+        velocities[row, 3 + k] = pulled[first + k] = keep * old[first + k] + gain * change
+
+
+def kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row, like_rotation):
+    """Spins of a block after a step of torque, damped; in the plane they stand where all velocities do.
+
+    keep: of the velocity before; gain: time over which torques act [s].
+    """
+    if len(like_rotation) == 3:
+        _kick_in_space(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row)
+
+
+@overload(kick_spins)
+def _kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row, like_rotation):
+    if len(like_rotation) == 1:
+        return lambda velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row, like_rotation: None
+    return lambda velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row, like_rotation: (
+        _kick_in_space(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row)
+    )
+
+
+@always_inline
+def _powers_in_space(drained, dashpots, velocities, old, pulled, shape, turns, row):
+    moments = load(shape.inertias, row, 0, (0.0, 0.0, 0.0))
+    if moments[0] == 0.0:
+        return drained, dashpots
+    first, after = 6 * row + 3, load(velocities, row, 3, moments)
+    before = (old[first], old[first + 1], old[first + 2])
+    kicked = (pulled[first], pulled[first + 1], pulled[first + 2])
+    axes = principal_axes(turns, shape.axes, row)
+    a, b, c = along(axes, scale(0.5, axpy(1.0, before, after)))
+    momentum = (moments[0] * a, moments[1] * b, moments[2] * c)
+    drained += dot(momentum, along(axes, axpy(1.0, before, kicked)))
+    dashpots += dot(momentum, along(axes, axpy(-1.0, kicked, after)))
+    return drained, dashpots
+
+
+def add_spin_powers(drained, dashpots, velocities, old, pulled, shape, turns, row, like_rotation):
+    """Adds what mass damping and dashpots took from the spin of a block; in the plane that is with the masses.
+
+    drained: (velocity before + that after the kick) × inertia × mean velocity; dashpots: their impulse × mean velocity.
+    """
+    if len(like_rotation) == 1:
+        return drained, dashpots
+    return _powers_in_space(drained, dashpots, velocities, old, pulled, shape, turns, row)
+
+
+@overload(add_spin_powers)
+def _add_spin_powers(drained, dashpots, velocities, old, pulled, shape, turns, row, like_rotation):
+    if len(like_rotation) == 1:
+        return lambda drained, dashpots, velocities, old, pulled, shape, turns, row, like_rotation: (drained, dashpots)
+    return lambda drained, dashpots, velocities, old, pulled, shape, turns, row, like_rotation: _powers_in_space(
+        drained, dashpots, velocities, old, pulled, shape, turns, row
+    )
+
+
+@always_inline
+def _rotation_vector(orientations, row):
+    w, vector = orientations[row, 0], load(orientations, row, 1, (0.0, 0.0, 0.0))
+    sine = norm(vector)
+    if sine == 0.0:
+        return vector
+    return scale(2.0 * math.atan2(sine, abs(w)) / sine * (-1.0 if w < 0.0 else 1.0), vector)
+
+
+def rotation(orientations, row, like_rotation):
+    """The angle of a block, or the rotation vector of its quaternion, the shorter way round [rad]."""
+    return (orientations[row, 0],) if len(like_rotation) == 1 else _rotation_vector(orientations, row)
+
+
+@overload(rotation)
+def _rotation(orientations, row, like_rotation):
+    if len(like_rotation) == 1:
+        return lambda orientations, row, like_rotation: (orientations[row, 0],)
+    return lambda orientations, row, like_rotation: _rotation_vector(orientations, row)
+
+
+@always_inline
+def _gyrate(samples, sample, place, shape, turns, row):
+    moments = load(shape.inertias, row, 0, (0.0, 0.0, 0.0))
+    if moments[0] == 0.0:
+        return
+    axes = principal_axes(turns, shape.axes, row)
+    mean = (samples[sample, place, 1, 3], samples[sample, place, 1, 4], samples[sample, place, 1, 5])
+    a, b, c = along(axes, mean)
+    change = (
+        (moments[1] - moments[2]) / moments[0] * b * c,
+        (moments[2] - moments[0]) / moments[1] * c * a,
+        (moments[0] - moments[1]) / moments[2] * a * b,
+    )
+    for k, part in enumerate(combined(axes, change)):
+        samples[sample, place, 2, 3 + k] += part
+
+
+def add_gyration(samples, sample, place, shape, turns, row, like_rotation):
+    """Adds to the sampled angular acceleration of a block what it has without any torque: nothing in the plane."""
+    if len(like_rotation) == 3:
+        _gyrate(samples, sample, place, shape, turns, row)
+
+
+@overload(add_gyration)
+def _add_gyration(samples, sample, place, shape, turns, row, like_rotation):
+    if len(like_rotation) == 1:
+        return lambda samples, sample, place, shape, turns, row, like_rotation: None
+    return lambda samples, sample, place, shape, turns, row, like_rotation: _gyrate(
+        samples, sample, place, shape, turns, row
+    )

@@ -21,7 +21,9 @@ EC8_KEYS = ("soil", "ag")
 class MotionTable(CaseModel):
     """What every kind of motion accepts."""
 
-    direction: Vector = Field(default=(1.0, 0.0), description="of positive values; its length does not matter [-]")
+    direction: Vector = Field(
+        default=(1.0, 0.0), description="of positive values, in 3D any in space; its length does not matter [-]"
+    )
     blocks: tuple[str, ...] = Field(
         default=(), description="ids of the fixed blocks that move; default: all of them", examples=[["ground"]]
     )
@@ -30,7 +32,8 @@ class MotionTable(CaseModel):
     @model_validator(mode="after")
     def _has_direction(self) -> MotionTable:
         if not any(self.direction):
-            raise KeyProblem("[0, 0] is not allowed; must point somewhere", "direction")
+            zeros = ", ".join("0" for _ in self.direction)
+            raise KeyProblem(f"[{zeros}] is not allowed; must point somewhere", "direction")
         return self
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from dem_cli.engine.measures import displacements
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
+from dem_cli.geometry.rotation import turned_since
 from dem_cli.kernels import records as slot
 
 
@@ -21,7 +22,8 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
-    angle = np.sqrt(((sim.bodies.orientations - bodies.orientations) ** 2).sum(axis=1))
+    rotation = turned_since(sim.bodies.orientations, bodies.orientations)
+    angle = np.sqrt((rotation**2).sum(axis=1))
     motion = np.maximum(shift, angle * sim.shape.radii)
     weights = -sim.loads.dead[sim.free, d - 1]
     lifted = float((weights * (sim.bodies.positions - bodies.positions)[sim.free, d - 1]).sum())
@@ -35,15 +37,17 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
     # Whether anything turns over, about a horizontal axis, not the share: friction takes nearly all that hinges and one
     # slipping joint release, and little of what lifts blocks up a slope. What turns about the vertical slides.
-    over = (sim.bodies.orientations - bodies.orientations)[:, : d - 1]
-    turned = float(np.sqrt((over**2).sum(axis=1)).max(initial=0.0)) * _size(sim)
+    turned = float(np.sqrt((rotation[:, : d - 1] ** 2).sum(axis=1)).max(initial=0.0)) * _size(sim)
     translates = turned < settings.turns * motion.max(initial=0.0)
     mode = "sliding" if translates else "rocking" if share < settings.rocking else "mixed"
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
-        slip = np.maximum.reduceat(sim.contacts.slip - contacts.slip, joints.starts[:-1])
-        opening = np.maximum.reduceat(sim.contacts.gaps - contacts.gaps, joints.starts[:-1])
+        both = (joints.kn > 0.0) & (sim.joints.kn > 0.0)  # of joints in space: slots that hold a point
+        slip, opening = (
+            np.maximum.reduceat(np.where(both, now - then, 0.0), joints.starts[:-1])
+            for now, then in ((sim.contacts.slip, contacts.slip), (sim.contacts.gaps, contacts.gaps))
+        )
         for key, values in (("sliding_joints", slip), ("opening_joints", opening)):
             parts[key] = _pairs(sim, np.flatnonzero(values > settings.takes_part * motion.max(initial=0.0)))
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}

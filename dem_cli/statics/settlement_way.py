@@ -24,7 +24,8 @@ class SettlementWay:
     def __init__(self, sim: Simulation, motion: np.ndarray):
         self.sim, settlement = sim, sim.settings.settlement
         self.rows, self.done = settlement.rows, 0
-        reach = np.column_stack([np.ones((len(motion), sim.model.dimension)), sim.shape.radii])
+        d, n_turns = sim.model.dimension, sim.model.inertias.shape[1]
+        reach = np.column_stack([np.ones((len(motion), d)), *[sim.shape.radii] * n_turns])
         self.largest = float(np.abs(motion * reach).max())
         elastic = max(measures.largest_elastic(sim), 1e-9 * sim.smallest)
         steps = max(self.largest / (settlement.per_step * elastic), settlement.fewest)

@@ -1,12 +1,15 @@
-"""[[initial]]: the initial state of blocks that start tilted, displaced or moving; 2D."""
+"""[[initial]]: the initial state of blocks that start tilted, displaced or moving."""
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, Twist, Vector
+from dem_cli.case.base import CaseModel, KeyProblem, Twist, Vector
+
+TOWARDS_LEFT = (0.0, -1.0, 0.0)  # axis of a tilt towards −x, which is counter-clockwise in the plane of x and z
 
 
 class InitialState(CaseModel):
@@ -22,13 +25,20 @@ class InitialState(CaseModel):
         default=0.0,
         gt=-1.6,
         lt=1.6,
-        description="turn about the corner on which they then stand, counter-clockwise [rad]",
+        description="turn about the corner on which they then stand, counter-clockwise; in 3D about the line along "
+        "axis through the corner or edge on which they then stand, right-handed [rad]",
         examples=[0.1],
+    )
+    axis: tuple[float, float, float] = Field(
+        default=TOWARDS_LEFT,
+        description="direction of the axis of tilt, not vertical; its length does not matter [-]; default: "
+        "[0.0, -1.0, 0.0], which tilts towards −x as in 2D",
+        examples=[[1.0, 0.0, 0.0]],
     )
     displacement: Vector = Field(default=(0.0, 0.0), description="how far they are moved [m]", examples=[[0.01, 0.0]])
     velocity: Twist = Field(
         default=(0.0, 0.0, 0.0),
-        description="of each centroid [m/s], and of the turn, counter-clockwise [rad/s]",
+        description="of each centroid [m/s], and of the turn, counter-clockwise; in 3D spins about x, y and z [rad/s]",
         examples=[[0.1, 0.0, 0.0]],
     )
 
@@ -39,7 +49,20 @@ class InitialState(CaseModel):
             raise ValueError(f"{found} given; one of them says what moves")
         if not (self.tilt or any(self.displacement) or any(self.velocity)):
             raise ValueError("nothing moves; give tilt, displacement or velocity")
+        if not any(self.axis[:2]):
+            found = ", ".join(f"{x:g}" for x in self.axis)
+            raise KeyProblem(f"[{found}] is not allowed; must not be vertical: nothing tilts about it", "axis")
+        if self.axis != TOWARDS_LEFT and not self.tilt:
+            raise KeyProblem("not used without tilt", "axis")
         return self
+
+    @property
+    def turn(self) -> tuple[float, ...]:
+        """Turn of the tilt [rad]: counter-clockwise in the plane, in space axis times angle."""
+        if len(self.displacement) == 2:
+            return (self.tilt,)
+        length = math.hypot(*self.axis)
+        return tuple(self.tilt * component / length for component in self.axis)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "laws": ("studies.laws.study", "a page and a picture of every joint law"),
     "loads": ("studies.loads.study", "failure loads by limit analysis and by DEM"),
     "motions": ("studies.motions", "artificial accelerograms and response spectra"),
+    "motion_in_space": ("studies.motion_in_space.study", "blocks that move in space: exact motions, twins, structures"),
     "profile": ("studies.profile", "the moment that a joint with a profile carries"),
     "pulses": ("studies.pulses.study", "published pulse tests of a column and two arches"),
     "random_structures": (

@@ -22,27 +22,53 @@ def spatial_case(**tables: Any) -> Case:
 
 
 def extruded_tables(tables: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a static case in 2D as one in 3D: x stays, y becomes z, blocks are prisms about y = 0."""
+    """The tables of a case in 2D as one in 3D: x stays, y becomes z, blocks are prisms about y = 0.
+
+    An angle of the plane, from x to its y, is one about −y: a monitor of a rotation has the other sign.
+    """
     found = copy.deepcopy(tables) | {"dimension": 3}
     for key, name in VECTORS:
-        one = found.get(key, [])
-        for table in one if isinstance(one, list) else [one]:
+        for table in _each(found, key):
             if name in table:
                 table[name] = [table[name][0], 0.0, table[name][1]]
-    for block in found.get("block", []):
+    for block in _each(found, "block"):
         half = block.pop("thickness", 1.0) / 2.0
         if "vertices" in block:
             block |= {"polygon": block.pop("vertices"), "y": [-half, half]}
         else:
             sides = [[[[x, y, z] for x, z in part] for y in (-half, half)] for part in block["parts"]]
             block["parts"] = [near + far for near, far in sides]
-    for monitor in found.get("monitor", []):
-        if monitor.get("component") == "y":
-            monitor["component"] = "z"
-    found.get("analysis", {}).pop("follow", None)
+    for key, turned in (("monitor", _monitor), ("settlement", _settlement), ("initial", _initial)):
+        for table in _each(found, key):
+            turned(table)
     return found
+
+
+def _each(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables of a name, one or several."""
+    one = tables.get(key, [])
+    return one if isinstance(one, list) else [one]
+
+
+def _monitor(table: dict[str, Any]) -> None:
+    if table.get("component") == "y":
+        table["component"] = "z"
+    if table.get("quantity") == "rotation":
+        table["component"] = "y"
+
+
+def _settlement(table: dict[str, Any]) -> None:
+    if "rotation_deg" in table:
+        table["rotation_deg"] = [0.0, -table["rotation_deg"], 0.0]
+
+
+def _initial(table: dict[str, Any]) -> None:
+    if "velocity" in table:
+        x, y, turn = table["velocity"]
+        table["velocity"] = [x, 0.0, y, 0.0, -turn, 0.0]
 
 
 VECTORS = (
     ("structure", "origin"), ("load", "force"), ("load", "at"), ("monitor", "point"), ("analysis", "direction"),
+    ("settlement", "displacement"), ("motion", "direction"), ("initial", "displacement"),
 )  # fmt: skip

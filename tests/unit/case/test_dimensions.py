@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from synthetic.spatial_case import spatial_case
+from synthetic.spatial_case import extruded_tables, spatial_case
 
 from dem_cli.api import make_case_model
 from dem_cli.case.dimensions import NAME, SCOPES, in_space, known_in
@@ -37,14 +38,16 @@ def test_every_key_of_the_table_exists(scope):
 
 def test_what_is_known_in_one_dimension_is_said_in_the_schema():
     schema = json_schema(make_case_model())
-    blocks, wall, modes = (schema["$defs"][name] for name in ("BlockTable", "Wall", "ModesAnalysis"))
+    blocks, wall, profiles = (schema["$defs"][name] for name in ("BlockTable", "Wall", "Calibration"))
     assert blocks["properties"]["thickness"]["description"].endswith("(2D only)")
     assert blocks["properties"]["polygon"]["description"].endswith("(3D only)")
     assert wall["properties"]["sides"]["description"].endswith("(3D only)")
-    assert "(2D only)" in modes["description"]
+    assert "(2D only)" in profiles["description"]
     assert (schema["properties"]["dimension"]["enum"], known_in(("load", "force"))) == ([2, 3], None)
     origin = wall["properties"]["origin"]
     assert (origin["minItems"], origin["maxItems"]) == (2, 3)
+    number, turns = schema["$defs"]["Settlement"]["properties"]["rotation_deg"]["anyOf"]
+    assert (number["type"], turns["minItems"], turns["maxItems"]) == ("number", 3, 3)
 
 
 @given(values=st.lists(numbers, max_size=5), dimension=st.sampled_from([2, 3]))
@@ -69,6 +72,7 @@ def test_vectors_that_are_left_out_have_three_components():
     assert "origin" not in case.structure[0].model_fields_set
     assert in_space(case) is case
     assert VectorLength(3, 6).padded((0.0, 0.0, 0.0)) == (0.0,) * 6
+    assert VectorLength(1, 3).padded(2.0) == (2.0, 0.0, 0.0)
 
 
 def test_the_effective_case_gives_itself():
@@ -77,13 +81,42 @@ def test_the_effective_case_gives_itself():
         structure=[WALL | {"sides": [{"face": "-y", "strip": 0.4}]}],
         block=[{"id": "a", "polygon": [[0, 1], [1, 1], [1, 2]], "y": [0, 1]}],
         monitor=[{"block": "a", "quantity": "rotation", "component": "z"}, {"point": [0.1, 0.1, 0.1]}],
+        settlement=[{"block": "wall-base"}, {"block": "wall-base", "rotation_deg": [1.0, 0.0, 0.0]}],
+        initial=[{"block": "a", "tilt": 0.1}, {"block": "a", "velocity": [1, 0, 0, 0, 0, 0]}],
     )
     text = case_text(case)
     again = validate(tomllib.loads(text), make_case_model(), CaseSource(Path("case.toml"), text))
     assert again.model_copy(update={"dem": None}) == case
     assert case_text(again) == text
-    assert "follow" not in text
     assert case.monitor[1].place == "(0.1, 0.1, 0.1)"
+
+
+def test_turns_of_the_plane_and_of_space():
+    """A turn is a number in the plane, axis times angle in space; the plane one is about −y there."""
+    plane = {"settlement": [{"block": "base", "rotation_deg": 90}], "initial": [{"block": "a", "tilt": -0.1}]}
+    space = extruded_tables(plane)
+    askew = {"block": "a", "tilt": 0.5, "axis": [3, 4, 0], "velocity": [1, 2, 3, 4, 5, 6]}
+    settled, turned = (
+        spatial_case(structure=[WALL], settlement=space["settlement"], initial=[table])
+        for table in (*space["initial"], askew)
+    )
+    flat = spatial_case(dimension=2, structure=[WALL], **plane)
+    assert flat.settlement[0].rotation == pytest.approx((math.pi / 2,))
+    assert settled.settlement[0].rotation == pytest.approx((0.0, -math.pi / 2, 0.0))
+    assert (flat.initial[0].turn, settled.initial[0].turn) == ((-0.1,), (0.0, 0.1, 0.0))
+    assert turned.initial[0].turn == pytest.approx((0.3, 0.4, 0.0))
+    assert turned.initial[0].velocity == (1, 2, 3, 4, 5, 6)
+    still = spatial_case(structure=[WALL], settlement=[{"block": "base", "displacement": [0.0, 0.0, -0.1]}])
+    assert still.settlement[0].rotation == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("turn", [True, "1", [1.0], [1.0, 2.0], [0.0, 0.0, 0.0, 0.0]])
+def test_a_turn_is_a_number_or_three(turn, dimension):
+    """Whatever else it is, what is allowed is said."""
+    allowed = "a number" if dimension == 2 else "a list of 3 numbers in a case with dimension = 3"
+    with pytest.raises(CaseError, match=f"is not allowed; must be {allowed}$"):
+        spatial_case(dimension=dimension, structure=[WALL], settlement=[{"block": "base", "rotation_deg": turn}])
 
 
 def test_a_case_that_varies_keeps_its_vectors():

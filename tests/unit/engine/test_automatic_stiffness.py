@@ -34,6 +34,23 @@ def test_a_stack_leans_as_the_sum_says(blocks, width, height):
     assert leaning(sim) == pytest.approx(share(blocks, width, height), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("pushed", "side"),
+    [([1.0, 0.0, 0.0], 0.5), ([0.0, 1.0, 0.0], 0.3), ([3.0, 4.0, 0.0], np.hypot(0.5 * 0.6, 0.3 * 0.8)), (None, 0.3)],
+)
+def test_a_stack_in_space_leans_where_it_is_pushed(pushed, side):
+    """Feet c × d of 0.5 m × 0.3 m: Σ k (r·e)² = kn c d (c² e_x² + d² e_y²)/4, of the worst e without a live load."""
+    stones = [
+        {"id": f"b{i}", "polygon": rectangle(0.0, i, 0.5, i + 1.0), "y": [0.0, 0.3], "fixed": i == 0} for i in range(6)
+    ]
+    live = {"load": [{"block": "b5", "force": pushed, "kind": "live"}], "analysis": {"pattern": "live"}}
+    case = {**tables(*stones), "dimension": 3, **(live if pushed else {"analysis": {"kind": "gravity"}})}
+    sim = simulation(case, "fixed", RATIO)
+    moments = np.arange(1, 6) ** 2 * 0.5
+    stiffness = RATIO / (0.15 ** (2 / 3) * 0.3) * 0.15 * side**2 / 4.0
+    assert leaning(sim) == pytest.approx(float((moments**2).sum() / stiffness / moments[-1]), rel=1e-9)
+
+
 def test_many_courses_lean_as_the_third_power():
     """n³ h W / 10 K, in the limit."""
     kn = RATIO / (np.sqrt(0.5) * 0.5)

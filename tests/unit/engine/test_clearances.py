@@ -8,11 +8,13 @@ from engine import block, rectangle, running_wall, simulation, tables, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracle import rolling_polygons as statics
+from scipy.spatial.transform import Rotation
 
 from dem_cli.contact.detect import find_joints
-from dem_cli.contact.edges import edges_of
+from dem_cli.contact.edges import widest_gaps
+from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.planar import microrotations
-from dem_cli.engine.clearances import beyond, gap_play, open_gaps, play
+from dem_cli.engine.clearances import beyond, gap_play, play
 from dem_cli.engine.settings import DEFAULT
 
 CLEARANCE = DEFAULT.clearance
@@ -120,7 +122,9 @@ def test_beyond_play():
 def gap_of(*blocks: dict, reach: float = 0.25) -> float:
     sim = simulation(tables(*blocks), "large")
     faces = find_joints(sim.model, sim.bodies.corners, reach)
-    return float(open_gaps(sim.bodies.corners, edges_of(sim.model, faces)).max(initial=0.0))
+    corners, narrow = sim.bodies.corners, geometry_of(2)
+    found = narrow.open_gaps(sim.model, faces, corners, CLEARANCE.steepest, CLEARANCE.bare)
+    return float(found.max(initial=0.0))
 
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
@@ -152,6 +156,27 @@ def test_gap_only_where_faces_overlap():
         assert found == pytest.approx(expected, rel=0.02)  # across the slant of 0.1
 
 
+CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for x in (0.0, 1.0) for y in (0.0, 1.0)])
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "expected"),
+    [(0.0, 0.0, 0.05), (0.1, 0.0, 0.05 + np.sin(0.1)), (0.1, 0.2, None), (0.4, 0.0, 0.0)],
+)
+def test_gap_in_space_is_that_of_the_corner_furthest_off(roll, pitch, expected):
+    """A cube turned about an edge of its foot, over a slab and beyond it, and steeper than what closes."""
+    turn = Rotation.from_euler("xy", [roll, pitch])
+    foot = turn.apply(CUBE[:4] * (1.0, 1.0, 0.0))
+    corners = turn.apply(CUBE) + np.array([0.0, 0.0, 0.05 - foot[:, 2].min()])
+    slab = {"id": "slab", "polygon": rectangle(-3, -1, 6, 0), "y": [-3.0, 3.0], "fixed": True}
+    sim = simulation({**tables(slab, block("b", corners)), "dimension": 3})
+    faces = find_joints(sim.model, sim.bodies.corners, 0.25)
+    found = geometry_of(3).open_gaps(sim.model, faces, sim.bodies.corners, CLEARANCE.steepest, CLEARANCE.bare)
+    highest = corners[:4, 2].max() if expected is None else expected
+    assert found == pytest.approx([highest], rel=0.02)  # across the bisector of both faces
+    assert geometry_of(3).open_gaps(sim.model, faces.where(found < 0.0), sim.bodies.corners, 0.3, 1e-3).shape == (0,)
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     angle=st.floats(-0.25, 0.25), lean=st.floats(-np.pi, np.pi), x=st.floats(-0.8, 0.8), y=st.floats(0.0, 0.2),
@@ -166,7 +191,7 @@ def test_gap_is_the_largest_distance_of_points(angle, lean, x, y, width):
     over = points[(points[:, 0] >= 0.0) & (points[:, 0] <= 1.0)]
     expected = max(0.0, over[:, 1].max(initial=0.0)) if len(over) > 50 else None
     corners = np.array(turned(np.concatenate([top, foot]), lean))
-    found = open_gaps(corners, np.array([[0, 1, 2, 3]]))[0]
+    found = widest_gaps(np.array([[0, 1, 2, 3]]), corners, CLEARANCE.steepest, CLEARANCE.bare)[0]
     if expected is not None:
         assert found == pytest.approx(expected, abs=1e-4)
 

@@ -1,0 +1,147 @@
+"""Joints in space that are not plane: a convex polyhedral cap of block b over the outline of the joint; a is flat.
+
+The cap of thesis 7.2.3 carried to space: on the way from the centroid of the outline to each of its corners it rises as
+half of the profile of a plane joint does, so that its rings are the outline, scaled about the centroid. Its height is
+then a convex, growing function of the scale: the cap is convex whatever the outline, and its facets are plane.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.contact.joints import Faces, JointProperties, points_of
+from dem_cli.contact.keys import face_names, same_rows
+from dem_cli.contact.layout import SAMPLES, PointLayout, draw
+from dem_cli.contact.meetings import meetings
+from dem_cli.kernels.records import FACES
+from dem_cli.model.model import Model
+
+STEEP = np.cos(np.pi / 4) - 1e-9  # a bed joint has its normal within 45° of the vertical
+
+
+class JointCap(NamedTuple):
+    """Contact points of one joint, ring by ring, the outline first; each ring starts at the first corner of it."""
+
+    places: np.ndarray  # on b at the start [m], (n, 3)
+    rises: np.ndarray  # above the plane of a, 0: in contact at the start [m], (n,)
+    shares: np.ndarray  # of the area of the joint, (n,)
+
+
+class Caps(NamedTuple):
+    """The caps of the joints of the start, which come back wherever the same two faces meet again."""
+
+    parts: np.ndarray  # the two parts of each, (n, 2)
+    faces: np.ndarray  # and their faces, (n, 2)
+    rises: np.ndarray  # of the outline [m], (n,)
+    slopes: np.ndarray  # of the steepest side, (n,)
+    starts: np.ndarray  # each has the points starts[i]:starts[i + 1] within its outline, (n + 1,)
+    arms: np.ndarray  # of these, from the centroid of block b as it stands at the start [m], (n_points, 3)
+    areas: np.ndarray  # of the joint that belong to each [m²], (n_points,)
+
+
+def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
+    """Caps of the joints of the start, by the layout of their named joint; None: no joint may have one."""
+    if not any(layout is not None and layout.sides is not None for layout in properties.layouts):
+        return None
+    found, named = meetings(model, faces, corners), properties.between(model, model.part_blocks[faces.parts])
+    names = face_names(model)
+    made, rows, inner = [], [], [np.zeros((0, 4))]
+    for i in np.flatnonzero(found.kinds == FACES):
+        layout, normal = properties.layouts[named[i]], found.frames[i, :3]
+        if layout is None or not has_cap(layout, normal):
+            continue
+        points = slice(found.starts[i], found.starts[i + 1])
+        outline, area = found.places[points], found.weights[points].sum()
+        key = (names[faces.faces[i, 1]], names[faces.faces[i, 0]])
+        cap = cap_over(outline, found.weights[points] / area, normal, layout, key)
+        steep = slopes(outline, *half_profile(layout, key, outline)).max(initial=0.0)
+        vertex = model.topology.face_corners[model.topology.face_starts[faces.faces[i, 1]]]
+        arms = cap.places - (corners[vertex] - model.vertices[vertex])
+        made.append(i)
+        rows.append((cap.rises[0], steep))
+        inner.append(np.column_stack([arms, area * cap.shares])[len(outline) :])
+    starts = np.cumsum([len(each) for each in inner]).astype(np.int64)
+    sizes, points_inside = np.array(rows).reshape(-1, 2), np.concatenate(inner)
+    return Caps(
+        faces.parts[made], faces.faces[made], sizes[:, 0].copy(), sizes[:, 1].copy(), starts,
+        points_inside[:, :3].copy(), points_inside[:, 3].copy(),
+    )  # fmt: skip
+
+
+def caps_of(caps: Caps | None, faces: Faces) -> Caps:
+    """The caps of these pairs of faces, row by row: none but where the faces of one meet.
+
+    Two parts that meet by other faces keep the rise alone: the outline of their cap is higher than the faces drawn.
+    """
+    n = len(faces.parts)
+    if caps is None:
+        none = np.zeros(n)
+        return Caps(faces.parts, faces.faces, none, none, np.zeros(n + 1, np.int64), np.zeros((0, 3)), np.zeros(0))
+    by_parts, by_faces = same_rows(caps.parts, faces.parts), same_rows(caps.faces, faces.faces)
+    rises = np.where(by_parts >= 0, caps.rises[by_parts], 0.0) if len(caps.rises) else np.zeros(n)
+    slope = np.where(by_faces >= 0, caps.slopes[by_faces], 0.0) if len(caps.rises) else np.zeros(n)
+    here = by_faces[by_faces >= 0]
+    counts = np.zeros(n, np.int64)
+    counts[by_faces >= 0] = np.diff(caps.starts)[here]
+    points = points_of(caps.starts, here)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    return Caps(faces.parts, faces.faces, rises, slope, starts, caps.arms[points], caps.areas[points])
+
+
+def cap_over(
+    outline: np.ndarray, weights: np.ndarray, normal: np.ndarray, layout: PointLayout, key: tuple[int, ...]
+) -> JointCap:
+    """The cap over a joint.
+
+    outline: corners in order, (k, 3) [m]; weights: share of the area of each in a plane joint, (k,); normal: unit, from
+    a to b; key: what tells this joint from others of its kind, as `draw` takes it. Each point has the share of its
+    corner: pressed on one side, or rolling over one ring, a rectangle is as stiff as its profile in the plane.
+    """
+    ways, rises = half_profile(layout, key, outline)
+    middle, rising = centroid(outline), np.repeat(rises, len(outline))
+    rings = middle + ways[:, None, None] * (outline - middle)
+    return JointCap(rings.reshape(-1, 3) + rising[:, None] * normal, rising, np.tile(weights, len(ways)))
+
+
+def half_profile(layout: PointLayout, key: tuple[int, ...], outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Scale of each ring (1: the outline) and its rise above the plane of a [m], from outside in, each (m,).
+
+    The joint is as long as twice the way from its centroid to the corner that is furthest away.
+    """
+    length = 2.0 * float(np.linalg.norm(outline - centroid(outline), axis=1).max())
+    places, rises, _ = draw(layout, key, length, mirrored=True)
+    outer = slice(None, len(places) // 2 - 1, -1)
+    return 2.0 * places[outer] / length - 1.0, rises[outer]
+
+
+def slopes(outline: np.ndarray, ways: np.ndarray, rises: np.ndarray) -> np.ndarray:
+    """Slope of each side of the cap: from each ring to the next one inside, over each side of the outline, (m − 1, k).
+
+    It is the rotation by which the block comes to rest there from the innermost ring.
+    """
+    middle, along = centroid(outline), np.roll(outline, -1, axis=0) - outline
+    apothems = np.linalg.norm(np.cross(along, outline - middle), axis=1) / np.linalg.norm(along, axis=1)
+    return np.divide.outer(np.diff(rises) / np.diff(ways), apothems)
+
+
+def steepest(layout: PointLayout, outline: np.ndarray) -> float:
+    """Largest slope of a side of the cap over a joint [-]; of layouts with ranges: the largest of many drawn ones."""
+    drawn = (slopes(outline, *half_profile(layout, (i,), outline)) for i in range(SAMPLES))
+    return max(float(each.max(initial=0.0)) for each in drawn)
+
+
+def has_cap(layout: PointLayout | None, normal: np.ndarray) -> bool:
+    """Whether a joint of two faces with this unit normal has a cap: `only` of its layout says which."""
+    kind = "bed" if abs(normal[2]) >= STEEP else "head"
+    return layout is not None and layout.sides is not None and layout.only in ("all", kind)
+
+
+def centroid(outline: np.ndarray) -> np.ndarray:
+    """Centroid of the area of a plane polygon (k, 3) [m], (3,)."""
+    near = outline - outline[0]
+    doubled = np.cross(near[1:-1], near[2:])
+    whole = doubled.sum(axis=0)
+    parts = doubled @ whole / (whole @ whole)
+    return outline[0] + parts @ (near[1:-1] + near[2:]) / 3.0

@@ -1,0 +1,1 @@
+"""Study of blocks that move in space: closed forms, integrals, planar twins, structures and their books of energy."""

@@ -1,0 +1,187 @@
+"""Dashpots of contact points against dense linear algebra: one block a point, sweeps, bounds; 2D and 3D."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from dem_cli.kernels.dashpots import SLIPS, STARTS, STICKS, gained, meet, put_gains, resist
+
+RANDOM = np.random.default_rng(5)
+
+
+def turned(rng) -> np.ndarray:
+    """Any rotation matrix."""
+    matrix, _ = np.linalg.qr(rng.standard_normal((3, 3)))
+    return matrix * np.sign(np.linalg.det(matrix))
+
+
+def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
+    """Three blocks, the first a support, on two joints in space with points, frames and inertia of any kind."""
+    rng = np.random.default_rng(seed)
+    moments = [np.zeros((3, 3))]
+    for _ in range(2):
+        axes = turned(rng)
+        moments.append(axes @ np.diag(1.0 / rng.uniform(0.5, 2.0, 3)) @ axes.T)
+    inverse = np.zeros((3, 6))
+    inverse[1:, :3] = 1.0 / np.array([[2.0], [3.0]])
+    n = 2 * n_points
+    joints = SimpleNamespace(
+        blocks=np.array([[0, 1], [1, 2]]), starts=np.array([0, n_points, n]), kn=rng.uniform(1e3, 4e3, n),
+        ks=rng.uniform(1e3, 4e3, n), frames=np.array([turned(rng).ravel() for _ in range(n)]),
+        levers=np.zeros((n, 18)), points=rng.uniform(-1.0, 1.0, (n, 3)),
+    )  # fmt: skip
+    bodies = SimpleNamespace(
+        positions=rng.uniform(-1.0, 1.0, (3, 3)), velocities=rng.uniform(-1.0, 1.0, (3, 6)), forces=np.zeros((3, 6)),
+        mobilities=np.array(moments).reshape(3, 9),
+    )  # fmt: skip
+    bodies.velocities[0] = 0.0
+    contacts = SimpleNamespace(
+        normal=np.full(n, 1e9), memory=np.zeros((n, 3)), slip=np.zeros(n), gaps=np.zeros(n)
+    )  # fmt: skip
+    dampers = SimpleNamespace(
+        first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
+        gains=np.ones((n, 9)), shares=np.ones(n), slips=np.zeros(n), states=np.full(n, STICKS, np.int8),
+        pushes=np.zeros((3, 6)),
+    )  # fmt: skip
+    return joints, bodies, contacts, inverse, dampers
+
+
+def rows_of(joints, bodies) -> np.ndarray:
+    """Rates at all points from the velocities of all blocks, (n_points·3, 18)."""
+    found = np.zeros((len(joints.kn), 3, 3, 6))
+    for point, owner in enumerate(np.repeat([0, 1], np.diff(joints.starts))):
+        frame = joints.frames[point].reshape(3, 3)
+        for block, sign in zip(joints.blocks[owner], (-1.0, 1.0), strict=True):
+            found[point, :, block, :3] = sign * frame
+            found[point, :, block, 3:] = sign * np.cross(joints.points[point] - bodies.positions[block], frame)
+    return found.reshape(-1, 18)
+
+
+def inverse_masses(bodies, inverse) -> np.ndarray:
+    """Of all blocks, (18, 18)."""
+    found = np.zeros((18, 18))
+    for block in range(3):
+        found[6 * block : 6 * block + 3, 6 * block : 6 * block + 3] = np.diag(inverse[block, :3])
+        moving = slice(6 * block + 3, 6 * block + 6)
+        found[moving, moving] = bodies.mobilities[block].reshape(3, 3)
+    return found
+
+
+LIKE = (0.0, 0.0, 0.0)
+
+
+def step(joints, bodies, contacts, inverse, dampers, turns: int, kick: np.ndarray, dt: float = 1e-2) -> None:
+    """What a step does: rates before, velocities after the kick, dashpots."""
+    meet(joints, contacts, bodies, inverse, dampers, dt, LIKE, LIKE)
+    bodies.velocities += kick
+    resist(joints, contacts, bodies, inverse, dampers, dt, turns, LIKE, LIKE)
+
+
+def exact(joints, bodies, inverse, before: np.ndarray, kicked: np.ndarray, dt: float = 1e-2):
+    """Impulses J = −C (rates before + after) and velocities after them, all at once."""
+    rows, masses = rows_of(joints, bodies), inverse_masses(bodies, inverse)
+    half = 0.5 * dt * np.column_stack([joints.kn, joints.ks, joints.ks]).ravel()
+    around = rows @ masses @ rows.T
+    right = -half * (rows @ (before + kicked).ravel())
+    found = np.linalg.solve(np.eye(len(half)) + half[:, None] * around, right)
+    return found, kicked + (masses @ rows.T @ found).reshape(3, 6)
+
+
+def test_one_point_is_solved_at_once():
+    """A block on one point: one sweep gives the impulse of the implicit dashpot exactly."""
+    joints, bodies, contacts, inverse, dampers = scene(1)
+    joints.kn[1] = joints.ks[1] = 0.0
+    contacts.normal[1] = 0.0
+    before, kick = bodies.velocities.copy(), np.zeros((3, 6))
+    kick[1:] = 0.3
+    rows = rows_of(joints, bodies)
+    impulses, after = exact(joints, bodies, inverse, before, before + kick)
+    step(joints, bodies, contacts, inverse, dampers, 1, kick)
+    assert contacts.memory[0] == pytest.approx(impulses[:3], rel=1e-12)
+    assert bodies.velocities == pytest.approx(after, abs=1e-12)
+    assert dampers.rates[0] == pytest.approx((rows @ before.ravel())[:3], rel=1e-12)
+
+
+def test_sweeps_find_the_impulses_of_all_points():
+    joints, bodies, contacts, inverse, dampers = scene()
+    before, kick = bodies.velocities.copy(), RANDOM.uniform(-1.0, 1.0, (3, 6))
+    kick[0] = 0.0
+    impulses, after = exact(joints, bodies, inverse, before, before + kick)
+    step(joints, bodies, contacts, inverse, dampers, 600, kick)
+    assert bodies.velocities == pytest.approx(after, abs=1e-9)
+    assert contacts.memory.ravel() == pytest.approx(impulses, abs=1e-6 * np.abs(impulses).max())
+    contacts.memory[:] = impulses.reshape(-1, 3)  # a perfect guess: one pair of sweeps changes nothing
+    bodies.velocities[:] = before
+    step(joints, bodies, contacts, inverse, dampers, 1, kick)
+    assert bodies.velocities == pytest.approx(after, abs=1e-10)
+
+
+def test_spring_and_dashpot_do_not_pull():
+    """Impulses across joints are at least −N dt, and what is left satisfies all other equations."""
+    joints, bodies, contacts, inverse, dampers = scene()
+    contacts.normal[:], dt = 20.0, 1e-2
+    before, kick = bodies.velocities.copy(), np.zeros((3, 6))
+    step(joints, bodies, contacts, inverse, dampers, 800, kick, dt)
+    rows, impulses = rows_of(joints, bodies), contacts.memory
+    half = 0.5 * dt * np.column_stack([joints.kn, joints.ks, joints.ks])
+    left = impulses + half * (rows @ (before + bodies.velocities).ravel()).reshape(-1, 3)
+    bound = impulses[:, 0] <= -contacts.normal * dt * (1.0 - 1e-12)
+    assert bound.any()
+    assert not bound.all()
+    assert (impulses[:, 0] >= -contacts.normal * dt).all()
+    assert np.abs(left[:, 1:]).max() < 1e-8
+    assert np.abs(left[~bound, 0]).max() < 1e-8
+    assert (left[bound, 0] >= 0.0).all()  # they would pull more
+
+
+def test_points_that_slip_have_no_dashpot_along_the_joint():
+    joints, bodies, contacts, inverse, dampers = scene()
+    contacts.memory[:] = 1.0
+    contacts.slip[::2] = 1.0
+    step(joints, bodies, contacts, inverse, dampers, 2, np.zeros((3, 6)))
+    assert (dampers.states[::2] == SLIPS).all()
+    assert (contacts.memory[::2, 1:] == 0.0).all()
+    assert (np.abs(contacts.memory[1::2, 1:]) > 0.0).all()
+
+
+def test_open_slots_hold_nothing():
+    """A slot that no point uses, without stiffness and force, forgets and gives nothing."""
+    joints, bodies, contacts, inverse, dampers = scene()
+    contacts.memory[:] = 1.0
+    contacts.normal[:] = joints.kn[:] = joints.ks[:] = 0.0
+    before = bodies.velocities.copy()
+    step(joints, bodies, contacts, inverse, dampers, 2, np.zeros((3, 6)))
+    assert (bodies.velocities == before).all()
+    assert (contacts.memory == 0.0).all()
+
+
+def test_impulses_take_energy_whatever_the_stiffness():
+    """Energy only falls, from soft to next to rigid dashpots, after one pair of sweeps."""
+    for viscosity in (1e-3, 1.0, 1e3, 1e6):
+        joints, bodies, contacts, inverse, dampers = scene(viscosity=viscosity, seed=8)
+        dampers.states[:] = STARTS
+        masses = np.linalg.pinv(inverse_masses(bodies, inverse))
+        before = bodies.velocities.ravel() @ masses @ bodies.velocities.ravel()
+        step(joints, bodies, contacts, inverse, dampers, 1, np.zeros((3, 6)))
+        assert bodies.velocities.ravel() @ masses @ bodies.velocities.ravel() < before
+
+
+@pytest.mark.parametrize("slips", [False, True])
+def test_block_of_a_point_is_the_inverse(slips):
+    joints, bodies, _, inverse, _ = scene(1)
+    reaches = tuple(tuple(joints.points[1] - bodies.positions[block]) for block in (1, 2))
+    mobilities = tuple(tuple(map(tuple, bodies.mobilities[block].reshape(3, 3))) for block in (1, 2))
+    frame, gains = tuple(map(tuple, joints.frames[1].reshape(3, 3))), np.zeros((1, 9))
+    put_gains(gains, 0, frame, reaches, inverse[1, 0] + inverse[2, 0], mobilities, (7.0, 3.0), slips)
+    rows = rows_of(joints, bodies)[3:]
+    matrix = np.eye(3) + np.diag([7.0, 3.0, 3.0]) @ rows @ inverse_masses(bodies, inverse) @ rows.T
+    expected = np.linalg.inv(matrix)
+    if slips:
+        expected = np.zeros((3, 3))
+        expected[0, 0] = 1.0 / matrix[0, 0]
+    assert gains.reshape(3, 3) == pytest.approx(expected, rel=1e-12, abs=1e-15)
+    free, along = gained(gains, 0, 0.0, (0.0, 0.0), 1.0, (2.0, -3.0), -np.inf)
+    assert (free, *along) == pytest.approx(-expected @ [1.0, 2.0, -3.0], rel=1e-10)
