@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dem_cli.contact.assemble import JointArrays
 
 __all__ = [
-    "book", "carry", "chains_of", "corner_shares", "corners_of", "drawn", "facing", "find", "microrotations",
+    "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
     "open_gaps", "place", "points", "sink", "take_over", "touching",
 ]  # fmt: skip
 
@@ -117,7 +117,8 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
         np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach), centred,
+        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach),
+        centred,
     ])  # fmt: skip
 
 
@@ -184,8 +185,3 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
     """Largest microrotation of each joint from the plane that it rests on at the start [rad], (n_joints,)."""
     return geometry.slopes
-
-
-def corner_shares(joints: Joints, geometry: SpatialMotion, corners: np.ndarray) -> np.ndarray:
-    """Not known yet."""
-    raise NotImplementedError
