@@ -10,7 +10,6 @@ import numpy as np
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import Meetings, meetings, polyhedra
 from dem_cli.contact.near_boxes import near_boxes
-from dem_cli.errors import UsageError
 from dem_cli.geometry.outlines import furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
@@ -184,8 +183,3 @@ def sink(geometry: SpatialGeometry, joint: int, depth: float) -> None:
 def microrotations(joints: Joints, geometry: SpatialGeometry) -> np.ndarray:
     """None: joints in space have no profile, (n_joints,)."""
     return np.zeros(len(joints.blocks))
-
-
-def corner_shares(joints: Joints, geometry: SpatialGeometry, corners: np.ndarray) -> np.ndarray:
-    """Not known. Raises UsageError: it says how normals turn with the blocks, and here they do not."""
-    raise UsageError("blocks in space keep the geometry of the start: how their contact normals turn is not known")
