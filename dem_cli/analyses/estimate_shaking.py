@@ -12,8 +12,8 @@ from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.record_search import runs_per_record
-from dem_cli.motion.ground_motions import motions_of, suites_of
+from dem_cli.ensembles.record_search import records_of, runs_per_record
+from dem_cli.motion.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -89,7 +89,7 @@ def _runs(case: Case) -> tuple[int, str]:
     words = f" × {repeats} with repeats" if repeats > 1 else ""
     if analysis.kind != "fragility":
         return repeats, f"{repeats} with repeats" if repeats > 1 else ""
-    records = sum(map(len, suites_of(case)))
+    records = len(records_of(case))
     levels = runs_per_record(analysis)
     name = "steps of bisection" if analysis.bisects else "intensities"
     runs = records * levels * repeats
