@@ -12,15 +12,18 @@ from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.record_search import runs_per_record
-from dem_cli.motion.ground_motions import motions_of, suites_of
+from dem_cli.ensembles.record_search import records_of, runs_per_record
+from dem_cli.motion.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
 
-NANOSECONDS = {False: 20, True: 55}  # per contact point and step, one core, without and with dashpots
+NANOSECONDS = {  # per contact point and step, one core, by dimension, without and with dashpots
+    2: {False: 20, True: 55},
+    3: {False: 90, True: 160},
+}
 PER_STEP = 0.4  # µs beside them
 
 
@@ -67,7 +70,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
         return rows
     steps = math.ceil(length / step.step)
     more = math.ceil(analysis.coda / step.step)
-    each_point = NANOSECONDS[sim.damping.in_joints]
+    each_point = NANOSECONDS[sim.model.dimension][sim.damping.in_joints]
     seconds = (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
     work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
     each = f"{runs:,} runs × " if runs > 1 else ""
@@ -86,7 +89,7 @@ def _runs(case: Case) -> tuple[int, str]:
     words = f" × {repeats} with repeats" if repeats > 1 else ""
     if analysis.kind != "fragility":
         return repeats, f"{repeats} with repeats" if repeats > 1 else ""
-    records = sum(map(len, suites_of(case)))
+    records = len(records_of(case))
     levels = runs_per_record(analysis)
     name = "steps of bisection" if analysis.bisects else "intensities"
     runs = records * levels * repeats

@@ -96,10 +96,6 @@ class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Ret
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""
 
-    def corner_shares(self, joints: Joints, geometry: Geometry, corners: np.ndarray) -> np.ndarray:
-        """1: a point is a corner of b on the face of a; 0: the other way round; between: its normal is of both,
-        (n_points,)."""
-
     def sink(self, geometry: Geometry, joint: int, depth: float) -> None:
         """A joint that takes over from another one starts from its penetration [m]."""
 
