@@ -69,7 +69,7 @@ def test_shapes_are_orthogonal_with_the_tensor_of_inertia():
 
 
 def test_a_centre_makes_a_joint_elastic_all_over():
-    """Four corners are three times as stiff against turning as a joint that is elastic all over, a fifth point exact."""
+    """Four corners are three times as stiff against turning as an elastic joint; with a centre it is exact."""
     slow = []
     for points in ("vertices", "vertices+centre"):
         joints = {"dry": {"friction": 0.6, "kn": 1e9, "ks": 1e12, "points": points}}
