@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import scipy.linalg
-from engine import block, real_masses, rectangle, simulation, steps, tables
+from engine import block, real_masses, rectangle, simulation, solve, steps, tables
 
 from dem_cli.analyses.modes import closed_points, touching_points
 from dem_cli.contact.detect import world_corners
@@ -208,3 +208,41 @@ def test_points_without_a_gap_are_counted_once():
     sim = settled(STONES["slender"])
     assert closed_points(sim).sum() == touching_points(sim).sum() == 4
     assert len(sim.joints.kn) > 4
+
+
+def case(stones: list[dict], **analysis) -> dict:
+    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS}}
+    more = {"joints": joints, "analysis": {"kind": "modes", **analysis}, "output": {"frames": 5}}
+    return {"dimension": 3, **tables(GROUND, *stones, **more)}
+
+
+def test_answers_and_frames_of_a_run():
+    summary, records = solve(case(STONES["slender"], count=6))
+    total = summary["total_mass"]
+    assert total == pytest.approx(0.5 * 0.8 * 1.5 * 2000.0)
+    assert {axis: sum(masses) for axis, masses in summary["effective_masses"].items()} == pytest.approx(
+        dict.fromkeys("xyz", total), rel=1e-6
+    )
+    assert summary["springs"] == {"pressed": 4, "touching": 4}
+    shown = [frame for frame in records.frames if frame.stage == "mode"]
+    assert [frame.step for frame in shown] == [1, 2, 3, 4, 5, 6]
+    rest = next(frame for frame in records.frames if frame.stage != "mode")
+    free = [i for i, place in enumerate(rest.positions) if place[2] > 0.0]
+    for frame in shown:
+        assert frame.orientations.shape == (2, 4)
+        assert np.linalg.norm(frame.orientations, axis=1) == pytest.approx(np.ones(2))
+        moved = np.abs(frame.positions - rest.positions).max() + np.abs(frame.orientations - rest.orientations).max()
+        assert 0.01 < moved < 0.5
+        assert np.abs(frame.positions - rest.positions)[free].max() == np.abs(frame.positions - rest.positions).max()
+
+
+def test_stiffness_from_a_measured_frequency():
+    """Sway across the narrow side, less the moment of the weight: 2 × 2 by hand, at the calibrated stiffness."""
+    found = solve(case(STONES["slender"], measured=3.0))[0]["calibration"]
+    assert found["met"]
+    width, depth, height, mass = 0.5, 0.8, 1.5, 0.5 * 0.8 * 1.5 * 2000.0
+    stiff, shear = (found["joints"]["dry"][key] * width * depth for key in ("kn", "ks"))
+    sway = np.array([[shear, shear * height / 2], [shear * height / 2, shear * height**2 / 4 + stiff * width**2 / 4]])
+    sway[1, 1] -= mass * 9.81 * height / 2
+    masses = np.diag([mass, mass * (width**2 + height**2) / 12.0])
+    assert math.sqrt(scipy.linalg.eigh(sway, masses)[0][0]) / (2 * math.pi) == pytest.approx(3.0, rel=2e-4)

@@ -68,6 +68,21 @@ def test_shapes_are_orthogonal_with_the_tensor_of_inertia():
     assert shapes @ stiffness @ shapes.T == pytest.approx(np.diag(omega**2), abs=1e-9 * omega[-1] ** 2)
 
 
+def test_a_centre_makes_a_joint_elastic_all_over():
+    """Four corners are three times as stiff against turning as an elastic joint; with a centre it is exact."""
+    slow = []
+    for points in ("vertices", "vertices+centre"):
+        joints = {"dry": {"friction": 0.6, "kn": 1e9, "ks": 1e12, "points": points}}
+        sim = simulation({"dimension": 3, **tables(*stones(Rotation.identity()), joints=joints)})
+        slow.append(modes(system(sim), 2, 3, sim.model.n_blocks).frequencies)
+    mass, area = 2000.0 * SIDES.prod(), SIDES[0] * SIDES[1]
+    for frequencies, share in zip(slow, (4.0, 12.0), strict=True):
+        for frequency, side in zip(frequencies, SIDES[:2], strict=True):
+            about_base = mass * (side**2 + SIDES[2] ** 2) / 12.0 + mass * (SIDES[2] / 2) ** 2
+            expected = math.sqrt(1e9 * area * side**2 / share / about_base) / (2.0 * math.pi)
+            assert frequency == pytest.approx(expected, rel=1e-3)  # ks is 1000 times kn, not infinite
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.4, math.pi / 4, 1.3])
 def test_rocking_stiffness_in_any_plan(angle):
     """ε = 2 ρ g (h/b)²/kn of the narrower side b, however the block lies in plan."""
