@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.dynamics.frequencies import principal_directions
+from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.kernels.records import Joints, Watch
 from dem_cli.model.model import Model
