@@ -13,7 +13,17 @@ import numpy as np
 from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, touching
+from dem_cli.contact.spatial import (
+    LONE,
+    corners_of,
+    drawn,
+    facing,
+    find,
+    median_face,
+    open_gaps,
+    profile_fault,
+    touching,
+)
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT
@@ -25,8 +35,22 @@ if TYPE_CHECKING:
     from dem_cli.contact.assemble import JointArrays
 
 __all__ = [
-    "book", "carry", "chains_of", "corner_shares", "corners_of", "drawn", "facing", "find", "microrotations", "place",
-    "points", "sink", "take_over", "touching",
+    "book",
+    "carry",
+    "chains_of",
+    "corner_shares",
+    "corners_of",
+    "drawn",
+    "facing",
+    "find",
+    "microrotations",
+    "open_gaps",
+    "place",
+    "points",
+    "profile_fault",
+    "sink",
+    "take_over",
+    "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
