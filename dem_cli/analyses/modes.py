@@ -19,7 +19,6 @@ from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError, CaseProblem, SolverError
-from dem_cli.geometry.rotation import turned_further
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight
 from dem_cli.output.record import FALLS, Frame, Observer
@@ -137,11 +136,9 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     turn = float(turns.max())
     amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
-    return rest._replace(
+    return rest.moved(amplitude * shape)._replace(
         step=number,
         displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
-        positions=rest.positions + amplitude * shape[:, :d],
-        orientations=turned_further(rest.orientations, amplitude * shape[:, rotations]),
         velocities=np.zeros_like(rest.velocities),
     )
 

@@ -191,7 +191,7 @@ def _found(geometry, bodies, joint, pair, frame, along, room):
 
 
 @kernel
-def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
+def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     """Finds the contact points of a joint anew; returns how many there are.
 
     remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
@@ -232,3 +232,10 @@ def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     for m in range(3):
         geometry.markers[joint, m], geometry.markers[joint, 3 + m] = one[m], two[m]
     return count
+
+
+@inline
+def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
+    """As _renew, for the loops that are made for a law: the cache knows these by all that they name, and a kernel has
+    another name in each process. A plain function has not."""
+    return _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh)

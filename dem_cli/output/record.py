@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import tangents_of
+from dem_cli.geometry.rotation import tangents_of, turned_further
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
@@ -108,6 +108,12 @@ class Frame(NamedTuple):
     velocities: np.ndarray  # per unit of the solver's time, (n_blocks, n_dof)
     contacts: ContactRecord
     time: float = 0.0  # since the start of a time history [s]; places and velocities are relative to its base
+
+    def moved(self, motion: np.ndarray) -> Frame:
+        """The same with blocks moved, and turned along the axes of the world [m, rad], (n_blocks, n_dof)."""
+        d = self.positions.shape[1]
+        turned = turned_further(self.orientations, motion[:, d:])
+        return self._replace(positions=self.positions + motion[:, :d], orientations=turned)
 
 
 class Energy(NamedTuple):

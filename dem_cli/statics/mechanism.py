@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.measures import displacements
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
@@ -44,7 +43,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):
-        both = points_in_use(joints) & points_in_use(sim.joints)  # a slot of joints in space may hold none
+        both = (joints.kn > 0.0) & (sim.joints.kn > 0.0)  # of joints in space: slots that hold a point
         slip, opening = (
             np.maximum.reduceat(np.where(both, now - then, 0.0), joints.starts[:-1])
             for now, then in ((sim.contacts.slip, contacts.slip), (sim.contacts.gaps, contacts.gaps))

@@ -193,3 +193,14 @@ def test_a_block_loses_what_was_wanted(wanted, height):
 def test_a_restitution_out_of_reach_is_refused():
     with pytest.raises(CaseError, match=r"0.6 is not allowed for block 'b': .* give 0.(69|70)\d\d to 0.83\d\d"):
         engine.solve(rocking({"restitution": 0.6}))
+
+
+def test_restitution_of_a_structure_far_from_the_origin():
+    """Ends of the joint were counted from another origin than the block: 0.9995 instead of 0.7."""
+    from dem_cli.dynamics.history import damping_of_start
+
+    for x in (0.0, 1000.0):
+        stones = block("base", rectangle(x - 3, -1, x + 3, 0), fixed=True), block("b", rectangle(x, 0, x + 0.5, 1))
+        analysis = {"kind": "time-history", "duration": 1.0}
+        made = engine.scene(tables(*stones, damping={"restitution": "housner"}, analysis=analysis))
+        assert damping_of_start(made.case, made.model).words == "restitution of Housner, 0.7 for block 'b'"

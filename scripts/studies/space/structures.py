@@ -165,3 +165,21 @@ def tee_wall(n: int = 6, t: float = 0.2, leg: int = 2) -> list[dict]:
         return sides + along_y(stem, 0.0, 2 * t * leg, t)
 
     return courses(runs, n, t, (-t, 9 * t, -t, 2 * t * leg + t))
+
+
+def bonded_barrel(voussoirs: int = 15, length: float = 1.5, radius: float = 1.0, ring: float = 0.2) -> list[dict]:
+    """A barrel vault over 150° along y: voussoirs of 0.5 m in staggered rows, between two fixed springings."""
+    half = math.radians(75.0)
+    angles, blocks = np.linspace(-half, half, voussoirs + 1), []
+
+    def voussoir(name: str, k: int, low: float, high: float, **more) -> dict:
+        first = -half + (angles[1] - angles[0]) * k
+        ends = [(r, a) for a in (first, first + angles[1] - angles[0]) for r in (radius, radius + ring)]
+        return solid(name, [(r * math.sin(a), y, r * math.cos(a)) for y in (low, high) for r, a in ends], **more)
+
+    for k in range(voussoirs):
+        for i, (low, high) in enumerate(cut(0.0, length, 0.5, 0.5 if k % 2 == 0 else 0.25)):
+            blocks.append(voussoir(f"v{k}-{i}", k, low, high))
+    blocks.append(voussoir("left", -1, -0.1, length + 0.1, fixed=True))
+    blocks.append(voussoir("right", voussoirs, -0.1, length + 0.1, fixed=True))
+    return blocks
