@@ -14,7 +14,15 @@ from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
 from dem_cli.contact.spatial import (
-    LONE, corners_of, drawn, facing, find, median_face, open_gaps, profile_fault, touching,
+    LONE,
+    corners_of,
+    drawn,
+    facing,
+    find,
+    median_face,
+    open_gaps,
+    profile_fault,
+    touching,
 )  # fmt: skip
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
@@ -119,7 +127,8 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
         np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach), centred,
+        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach),
+        centred,
     ])  # fmt: skip
 
 
