@@ -20,7 +20,10 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
 
-NANOSECONDS = {False: 20, True: 55}  # per contact point and step, one core, without and with dashpots
+NANOSECONDS = {  # per contact point and step, one core, by dimension, without and with dashpots
+    2: {False: 20, True: 55},
+    3: {False: 90, True: 160},
+}
 PER_STEP = 0.4  # µs beside them
 
 
@@ -67,7 +70,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
         return rows
     steps = math.ceil(length / step.step)
     more = math.ceil(analysis.coda / step.step)
-    each_point = NANOSECONDS[sim.damping.in_joints]
+    each_point = NANOSECONDS[sim.model.dimension][sim.damping.in_joints]
     seconds = (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
     work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
     each = f"{runs:,} runs × " if runs > 1 else ""

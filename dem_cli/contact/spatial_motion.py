@@ -13,7 +13,17 @@ import numpy as np
 from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, open_gaps, touching
+from dem_cli.contact.spatial import (
+    LONE,
+    corners_of,
+    drawn,
+    facing,
+    find,
+    median_face,
+    open_gaps,
+    profile_fault,
+    touching,
+)  # fmt: skip
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT
@@ -26,11 +36,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "book", "carry", "chains_of", "corner_shares", "corners_of", "drawn", "facing", "find", "microrotations",
-    "open_gaps", "place", "points", "sink", "take_over", "touching",
+    "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
-FLOOR = 0.25  # of the median face: area of a face joint, at least
+FLOOR = 0.25  # of the median face, or of the smaller one of a joint: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
 SPARE = 4  # slots of a joint beside one for each corner of both faces
 REMEMBERED = 32  # numbers of memory of a law, at most
@@ -113,11 +123,12 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)
-    n = len(faces.parts)
+    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)  # a small block on a large one is no sliver
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
         np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), np.full(n, FLOOR * median), np.full(n, reach), centred,
+        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach),
+        centred,
     ])  # fmt: skip
 
 
