@@ -123,12 +123,12 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)
-    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)  # a small block on a large one is no sliver
+    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)
+    face = np.minimum(median, smaller)  # a small block on a large one is no sliver, and its corners are no pillars
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
-        np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach),
-        centred,
+        np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), properties.kn[named], properties.ks[named],
+        LONE * face, FLOOR * face, np.full(n, reach), centred,
     ])  # fmt: skip
 
 
