@@ -79,6 +79,28 @@ def column_of_drums(duration: float = 20.0, sides: int = 8) -> dict[str, Any]:
     return {"name": name, "figure": "largest motion of the top [m]", "exact": None, "found": top} | found.books
 
 
+def rocks_two_ways(duration: float = 6.0) -> dict[str, Any]:
+    """A prism 0.4 × 0.5 × 1.5 m under a sine along each axis, out of phase: it rocks on edges and corners."""
+    motions = [
+        {"kind": "harmonic", "amplitude": a, "frequency": f, "duration": 3.0, "direction": d, "phase_deg": p}
+        for a, f, d, p in ((4.0, 1.4, [1, 0, 0], 0.0), (4.5, 1.1, [0, 1, 0], 40.0))
+    ]
+    case = history(
+        ground(),
+        box("block", (-0.2, -0.25, 0.0), (0.2, 0.25, 1.5)),
+        duration=duration,
+        friction=0.8,
+        damping=DASHPOTS,
+        motion=motions,
+        output={"frames": 0, "rate": 500.0},
+    )
+    case["monitor"] = [{"block": "block", "quantity": "rotation", "component": c} for c in "xyz"]
+    found = run(case)
+    tilt = float(np.linalg.norm(found.seen.values[:, :2], axis=1).max())
+    return {"name": "prism rocks under two components", "figure": "largest tilt [rad]", "exact": None,
+            "found": tilt} | found.books  # fmt: skip
+
+
 def corner_opens() -> dict[str, Any]:
     """An L of two walls on a base that shakes across both: the corner opens."""
     case = history(
