@@ -33,7 +33,7 @@ class BookedRun(NamedTuple):
     def books(self) -> dict[str, Any]:
         """What each row of the study's tables ends with."""
         return {
-            **(self._in_time() if self.summary.get("time_step") else self._at_rest()),
+            **(self._in_time() if self.summary.get("largest_time_step") else self._at_rest()),
             "steps": self.summary["steps"],
             "seconds": round(self.seconds, 2),
             "blocks": self.blocks,

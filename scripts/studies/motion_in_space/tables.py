@@ -22,7 +22,7 @@ def values(found: Mapping[str, Any]) -> dict[str, Any]:
     rows = [(case, each) for case in found.get("twins", []) for each in case["quantities"]]
     told = [each for _, each in rows if each["allowed"] is not None or isinstance(each["plane"], bool)]
     return shown | {
-        "structures": table((*SINGLE[:2], "dem", *BOOKS, "blocks"), map(built_cells, found.get("structures", []))),
+        "structures": table((*SINGLE, "blocks"), map(built_cells, found.get("structures", []))),
         "twins": table(TWINS, [twin_cells(case, each) for case, each in rows]),
         "laws": table(LAWS, [law_cells(c, each) for c in found.get("laws", []) for each in c["quantities"]]),
         "n_twins": len(found.get("twins", [])),
@@ -39,7 +39,7 @@ def cells(row: Mapping[str, Any]) -> list[str]:
 
 def built_cells(row: Mapping[str, Any]) -> list[str]:
     """A structure."""
-    return [row["name"], row["figure"], number(row["found"]), *books(row), str(row["blocks"])]
+    return [*cells(row), str(row["blocks"])]
 
 
 def twin_cells(case: Mapping[str, Any], row: Mapping[str, Any]) -> list[str]:
