@@ -48,7 +48,6 @@ class Scope(NamedTuple):
 
 SCOPES = (
     Scope("calibration", 2, YET),
-    Scope("joints.NAME.profile", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),

@@ -12,6 +12,7 @@ import numpy as np
 
 from dem_cli.contact import planar, spatial, spatial_motion
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
+from dem_cli.contact.layout import PointLayout, ProfileFault
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
@@ -92,6 +93,11 @@ class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Ret
     def book(self, old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
         """Books the elastic energy that came or went with other points (Contacts.exchanged); known: those that were
         there before, (n_points,) bool."""
+
+    def profile_fault(
+        self, model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
+    ) -> ProfileFault | None:
+        """Why these joints (n,) bool of the start cannot have a profile; None: they can."""
 
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.contact.caps import apothems, has_cap, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.layout import PointLayout, ProfileFault, too_steep
 from dem_cli.contact.meetings import Meetings, meetings, polyhedra
 from dem_cli.contact.near_boxes import near_boxes
 from dem_cli.geometry.outlines import furthest
@@ -174,3 +176,19 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:
     """Nothing comes back: joints in space have no profile."""
+
+
+def profile_fault(
+    model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
+) -> ProfileFault | None:
+    """Whether a cap is none that space knows, or too steep on the narrowest of these joints (n,) bool that has it."""
+    found = meetings(model, faces, corners)
+    has_it = among & (found.kinds == FACES) & np.array([has_cap(layout, frame[:3]) for frame in found.frames], bool)
+    if fault := odd_or_uneven(layout):
+        return fault
+    if not has_it.any():
+        return None
+    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in np.flatnonzero(has_it)}
+    k = min(outlines, key=lambda i: float(apothems(outlines[i]).min()))
+    between = [model.block_ids[i] for i in model.part_blocks[faces.parts[k]]]
+    return too_steep(between, 2.0 * float(apothems(outlines[k]).min()), steepest(layout, outlines[k]))

@@ -13,7 +13,17 @@ import numpy as np
 from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, open_gaps, touching
+from dem_cli.contact.spatial import (
+    LONE,
+    corners_of,
+    drawn,
+    facing,
+    find,
+    median_face,
+    open_gaps,
+    profile_fault,
+    touching,
+)  # fmt: skip
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT
@@ -26,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
-    "open_gaps", "place", "points", "sink", "take_over", "touching",
+    "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
@@ -113,12 +123,12 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)
-    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)  # a small block on a large one is no sliver
+    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)
+    face = np.minimum(median, smaller)  # a small block on a large one is no sliver, and its corners are no pillars
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
-        np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), FLOOR * np.minimum(median, smaller), np.full(n, reach),
-        centred,
+        np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), properties.kn[named], properties.ks[named],
+        LONE * face, FLOOR * face, np.full(n, reach), centred,
     ])  # fmt: skip
 
 
