@@ -34,7 +34,10 @@ STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of case
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
-NANOSECONDS = {2: {"fixed": 10, "large": 20}, 3: {"fixed": 10, "large": 120}}  # per contact point and step, one core
+NANOSECONDS = {  # per contact point and step, one core (scripts/benchmark), by dimension
+    2: {"fixed": 10, "large": 20},
+    3: {"fixed": 10, "large": 90},
+}
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
 
 
@@ -195,14 +198,14 @@ def _cost(case: Case, sim: Simulation) -> str:
         from dem_cli.ensembles.static_values import expected
 
         few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
-    by_kinematics = NANOSECONDS[sim.model.dimension]
-    nanoseconds, moving = by_kinematics[sim.kinematics], by_kinematics["large"]
+    costs = NANOSECONDS[sim.model.dimension]
+    nanoseconds = costs[sim.kinematics]
     seconds = [1e-9 * steps * points * nanoseconds for steps in (few, many)]
     basis = f"{few:,} to {many:,} steps × {points:,} points × {nanoseconds} ns"
     if getattr(case.analysis, "follow", 0.0) > 0.0:
         fewest, most = FOLLOW_STEPS
-        seconds = [s + 1e-9 * n * points * moving for s, n in zip(seconds, FOLLOW_STEPS)]
-        basis += f", then {fewest:,} to {most:,} × {moving} ns for the collapse"
+        seconds = [s + 1e-9 * n * points * costs["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
+        basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
     return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis})"
 
 

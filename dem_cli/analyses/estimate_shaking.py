@@ -13,8 +13,8 @@ from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.record_search import runs_per_record
-from dem_cli.motion.ground_motions import motions_of, suites_of
+from dem_cli.ensembles.record_search import records_of, runs_per_record
+from dem_cli.motion.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from dem_cli.model.model import Model
     from dem_cli.motion.motion import Motion
 
-NANOSECONDS = {  # by dimension: per contact point and step, one core, without and with dashpots
+NANOSECONDS = {  # per contact point and step, one core, by dimension, without and with dashpots
     2: {False: 20, True: 55},
-    3: {False: 100, True: 230},
+    3: {False: 90, True: 160},
 }
 PER_STEP = 0.4  # µs beside them
 MOST_MOTIONS = 6  # that are listed
@@ -109,7 +109,7 @@ def _runs(case: Case) -> tuple[int, str]:
     words = f" × {repeats} with repeats" if repeats > 1 else ""
     if analysis.kind != "fragility":
         return repeats, f"{repeats} with repeats" if repeats > 1 else ""
-    records = sum(map(len, suites_of(case)))
+    records = len(records_of(case))
     levels = runs_per_record(analysis)
     name = "steps of bisection" if analysis.bisects else "intensities"
     runs = records * levels * repeats

@@ -52,7 +52,8 @@ class FragilityStudy:
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
-        duration_of(case, GroundMotion(self.records, model))  # which must be known
+        self.motions = [motion for record in self.records for motion in record.components]
+        duration_of(case, GroundMotion(self.motions, model))  # which must be known
         self.stiffness = rocking_stiffness(case, model, settings)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
@@ -88,10 +89,10 @@ class FragilityStudy:
     def _rested(self, number: int, quiet: Observer) -> RestedStructure:
         """One structure of the set, at rest under its dead loads."""
         variant = Variant(self.case, self.model, number, self.settings.statistics.largest_draw)
-        return RestedStructure(variant, self.records, quiet, self.settings)
+        return RestedStructure(variant, self.motions, quiet, self.settings)
 
     def _motion(self, trial: ShakingTrial) -> list[Motion]:
-        return [scaled(self.records[trial.record], trial.intensity, self.analysis)]
+        return scaled(self.records[trial.record], trial.intensity, self.analysis)
 
     def _plan(self, pairs: Sequence[tuple[int, int]]) -> tuple[list[Task], int]:
         """Tasks, and how many runs they will ask for (of a bisection: at most)."""
@@ -105,7 +106,7 @@ class FragilityStudy:
         """All runs in the order of records, structures and intensities, whatever the order in which they came."""
         rows = []
         for trial in sorted(self.batcher.done, key=lambda t: (t.record, t.structure, t.intensity)):
-            run, peak = self.batcher.done[trial], self._motion(trial)[0].peak
+            run, peak = self.batcher.done[trial], max(motion.peak for motion in self._motion(trial))
             acceleration = peak * self.rested[trial.structure].variant.motion
             rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
                                run.collapsed, run.time, run.how, run.peaks))  # fmt: skip

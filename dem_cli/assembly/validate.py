@@ -11,7 +11,7 @@ from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
 from dem_cli.contact.gaps import CLOSING_GAP, joined, joint_reach
-from dem_cli.contact.layout import PointLayout, steepest
+from dem_cli.contact.layout import PointLayout
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.geometry.parts import shapes_of
@@ -27,7 +27,6 @@ DEEPEST_OVERLAP = 1e-6  # of the smaller block: deeper is a mistake
 SLIVER_WIDTH = 1e-3  # width over length of a block
 SIZE_RATIO = 1e3  # largest over smallest free block
 MASS_RATIO = 1e6  # heaviest over lightest free block
-STEEPEST_SIDE = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
 REMOTE_STRUCTURE = 1e8  # distance from the origin over the size of a typical free part
 SHOWN_MISTAKES = 5  # mistakes of one sort that are reported one by one
 
@@ -94,37 +93,23 @@ def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Profiles that are too steep on the shortest joint that has them."""
+    """Profiles that are too steep on a joint that has them, or that no joint of this dimension can have."""
     profiles = {name: table.profile for name, table in case.joints.items() if getattr(table, "profile", None)}
     if not profiles:
         return []
-    from dem_cli.contact.chains import END_TO_END, STEEP
-    from dem_cli.contact.edges import edges_of, lengths_of, overlap_lengths
+    from dem_cli.contact.geometry import motion_of
 
     corners = undeformed(model)
     faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
-    edges = edges_of(model, faces)
-    along = corners[edges[:, 1]] - corners[edges[:, 0]]
-    beds = np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)
-    blocks, lengths = model.part_blocks[faces.parts], overlap_lengths(edges, corners)
-    whole = lengths_of(edges, corners)[:, 1]
+    blocks = model.part_blocks[faces.parts]
     pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
     named = np.array([case.joint_between(*pair) for pair in pairs])
     found = []
     for name, table in profiles.items():
-        has_it = (named == name) & (lengths > END_TO_END * whole)
-        if table.only != "all":
-            has_it &= beds == (table.only == "bed")
-        if has_it.any():
-            k = np.flatnonzero(has_it)[lengths[has_it].argmin()]
-            slope = steepest(PointLayout(seed=case.seed, **table.ranges), float(lengths[k]))
-            if slope > STEEPEST_SIDE:
-                a, b = (model.block_ids[i] for i in blocks[k])
-                message = f"too large for the joint of '{a}' and '{b}', {lengths[k]:.3g} m long: "
-                message += (
-                    f"a side of the profile has a slope of {slope:.2g} there, at most {STEEPEST_SIDE:g} is allowed"
-                )
-                found.append(CaseProblem(("joints", name, "profile", "aperture"), message))
+        layout = PointLayout(seed=case.seed, **table.ranges)
+        fault = motion_of(model.dimension).profile_fault(model, faces, corners, layout, named == name)
+        if fault is not None:
+            found.append(CaseProblem(("joints", name, "profile", fault.key), fault.why))
     return found
 
 

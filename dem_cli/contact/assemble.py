@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
-from dem_cli.contact.geometry import JointGeometry, geometry_of
-from dem_cli.contact.joints import Faces, JointProperties, empty_contacts
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.contact.geometry import geometry_of, motion_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties, empty_contacts
+from dem_cli.kernels.records import Bodies
 from dem_cli.model.model import Model
-
-
-class JointArrays(NamedTuple):
-    """All that there is of the joints of one moment."""
-
-    joints: Joints
-    geometry: JointGeometry
-    contacts: Contacts
 
 
 def build_joints(
@@ -32,7 +24,7 @@ def build_joints(
     chains: what comes back of the joints of the start (NarrowPhase.chains_of); None: these are they. moves: whether
     geometry does, else it is that of the start.
     """
-    narrow = geometry_of(model.dimension, moves)
+    narrow = (motion_of if moves else geometry_of)(model.dimension)
     joints, geometry = narrow.points(model, faces, bodies.corners, properties, chains)
     contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, n_memory)
     narrow.place(joints, geometry, contacts, bodies)

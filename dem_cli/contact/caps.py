@@ -13,7 +13,7 @@ import numpy as np
 
 from dem_cli.contact.joints import Faces, JointProperties, points_of
 from dem_cli.contact.keys import face_names, same_rows
-from dem_cli.contact.layout import SAMPLES, PointLayout, draw
+from dem_cli.contact.layout import SAMPLES, PointLayout, ProfileFault, draw
 from dem_cli.contact.meetings import meetings
 from dem_cli.kernels.records import FACES
 from dem_cli.model.model import Model
@@ -121,15 +121,32 @@ def slopes(outline: np.ndarray, ways: np.ndarray, rises: np.ndarray) -> np.ndarr
 
     It is the rotation by which the block comes to rest there from the innermost ring.
     """
-    middle, along = centroid(outline), np.roll(outline, -1, axis=0) - outline
-    apothems = np.linalg.norm(np.cross(along, outline - middle), axis=1) / np.linalg.norm(along, axis=1)
-    return np.divide.outer(np.diff(rises) / np.diff(ways), apothems)
+    return np.divide.outer(np.diff(rises) / np.diff(ways), apothems(outline))
+
+
+def apothems(outline: np.ndarray) -> np.ndarray:
+    """Distance of each side of an outline (k, 3) from its centroid [m], (k,)."""
+    along = np.roll(outline, -1, axis=0) - outline
+    return np.linalg.norm(np.cross(along, outline - centroid(outline)), axis=1) / np.linalg.norm(along, axis=1)
 
 
 def steepest(layout: PointLayout, outline: np.ndarray) -> float:
     """Largest slope of a side of the cap over a joint [-]; of layouts with ranges: the largest of many drawn ones."""
     drawn = (slopes(outline, *half_profile(layout, (i,), outline)) for i in range(SAMPLES))
     return max(float(each.max(initial=0.0)) for each in drawn)
+
+
+def odd_or_uneven(layout: PointLayout) -> ProfileFault | None:
+    """Why a profile is none of a cap, which is the same on both sides of its middle; None: it is."""
+    low, high = layout.sides or (1, 1)
+    if layout.over == "face":
+        return ProfileFault("over", "'face' is not allowed in 3D; must be 'joint': each joint has a cap of its own")
+    if low % 2 == 0 or high % 2 == 0:
+        even = low if low % 2 == 0 else high
+        return ProfileFault("sides", f"{even} is not allowed in 3D; must be odd: a block does not rest on an apex")
+    if len(layout.lengths) > 1 and layout.lengths != layout.lengths[::-1]:
+        return ProfileFault("lengths", "not the same from both ends; in 3D a cap rises alike on all sides")
+    return None
 
 
 def has_cap(layout: PointLayout | None, normal: np.ndarray) -> bool:

@@ -6,37 +6,16 @@ Everything else in the package asks for it by `geometry_of` and does not know ho
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from dem_cli.contact import planar, spatial, spatial_motion
-from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointGeometry, JointProperties
+from dem_cli.contact.layout import PointLayout, ProfileFault
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
-
-
-class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
-
-    @property
-    def keys(self) -> np.ndarray:
-        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
-
-    @property
-    def features(self) -> np.ndarray:
-        """What each point is within its joint, (n_points,)."""
-
-    def kept(self) -> Self:
-        """The same with a copy of what changes."""
-
-    def settled(self) -> Self:
-        """What is still asked for when points stay where they were placed."""
-
 
 Geometry = TypeVar("Geometry", bound=JointGeometry)
 Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing
@@ -79,6 +58,10 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     ) -> Returning | None:
         """What of the joints of the start comes back wherever the same faces meet again; None: nothing."""
 
+
+class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Returning]):
+    """What it has to know beside that where blocks move: how new contact points go on from old ones."""
+
     def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
         """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
 
@@ -89,25 +72,32 @@ class NarrowPhase(Protocol[Geometry, Returning]):
         """Books the elastic energy that came or went with other points (Contacts.exchanged); known: those that were
         there before, (n_points,) bool."""
 
+    def profile_fault(
+        self, model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
+    ) -> ProfileFault | None:
+        """Why these joints (n,) bool of the start cannot have a profile; None: they can."""
+
     def microrotations(self, joints: Joints, geometry: Geometry) -> np.ndarray:
         """Largest rotation of each joint before it rests on another side of its profile [rad], (n_joints,)."""
-
-    def corner_shares(self, joints: Joints, geometry: Geometry, corners: np.ndarray) -> np.ndarray:
-        """1: a point is a corner of b on the face of a; 0: the other way round; between: its normal is of both,
-        (n_points,)."""
 
     def sink(self, geometry: Geometry, joint: int, depth: float) -> None:
         """A joint that takes over from another one starts from its penetration [m]."""
 
 
 AnyNarrowPhase = NarrowPhase[Any, Any]  # the dimension is known when a case is
+AnyMovingNarrowPhase = MovingNarrowPhase[Any, Any]
 GEOMETRY: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial}  # of the start
-MOVING: dict[int, AnyNarrowPhase] = {2: planar, 3: spatial_motion}  # that moves
+MOTION: dict[int, AnyMovingNarrowPhase] = {2: planar, 3: spatial_motion}
 
 
-def geometry_of(dimension: int, moves: bool = False) -> AnyNarrowPhase:
-    """The narrow phase for blocks in so many dimensions, that move or not. Raises UsageError where there is none."""
+def geometry_of(dimension: int) -> AnyNarrowPhase:
+    """The narrow phase for blocks in so many dimensions. Raises UsageError where there is none."""
     if dimension not in GEOMETRY:
         known = " or ".join(map(str, sorted(GEOMETRY)))
         raise UsageError(f"blocks in {dimension} dimensions cannot touch: contact is known in {known} dimensions")
-    return (MOVING if moves else GEOMETRY)[dimension]
+    return GEOMETRY[dimension]
+
+
+def motion_of(dimension: int) -> AnyMovingNarrowPhase:
+    """The narrow phase for blocks that move; joints of the start that stay there are those of `geometry_of`."""
+    return MOTION[dimension]

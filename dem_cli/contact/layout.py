@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ from dem_cli.geometry import profile
 Range = tuple[float, float]  # lowest and highest value; the same twice: always this one
 
 SAMPLES = 100  # profiles drawn to see how steep they may be
+
+STEEPEST_SIDE = 0.2  # slope of a side of a profile: beyond it the small angles of a profile are wrong by more than 1 %
 
 # A profile pressed onto one side is as stiff as a plane joint with points at both ends.
 VERTEX_SHARE = 0.5
@@ -32,6 +35,25 @@ class PointLayout(NamedTuple):
     over: Literal["joint", "face"] = "joint"  # what the polygon spans: each joint, or the whole edge of block b
     only: Literal["bed", "head", "all"] = "all"  # joints flatter or steeper than 45°: which have the profile
     seed: int = 0
+
+
+class ProfileFault(NamedTuple):
+    """Why joints cannot have a profile."""
+
+    key: str  # of its table
+    why: str  # as users read it
+
+
+def too_steep(between: Sequence[str], length: float, slope: float) -> ProfileFault | None:
+    """Of the profile over a joint of this length [m] whose steepest side has this slope; None: it is not."""
+    if slope <= STEEPEST_SIDE:
+        return None
+    a, b = between
+    return ProfileFault(
+        "aperture",
+        f"too large for the joint of '{a}' and '{b}', {length:.3g} m long: a side of the profile has a slope of "
+        f"{slope:.2g} there, at most {STEEPEST_SIDE:g} is allowed",
+    )
 
 
 def draw(

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointArrays
-from dem_cli.contact.geometry import NarrowPhase
-from dem_cli.contact.joints import points_of
+from dem_cli.contact.geometry import AnyMovingNarrowPhase
+from dem_cli.contact.joints import JointArrays, points_of
 from dem_cli.contact.keys import same_rows
 
 
-def carry_memory(narrow: NarrowPhase, old: JointArrays, new: JointArrays) -> None:
+def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays) -> None:
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
@@ -48,13 +47,17 @@ def _loaded(of: JointArrays) -> np.ndarray:
     return np.maximum.reduceat(np.abs(of.contacts.normal), of.joints.starts[:-1]) > 0.0
 
 
-def _copy(narrow: NarrowPhase, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
+def _copy(
+    narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray
+) -> None:
     narrow.carry(old, new, target, source)
     for name in ("slip", "memory", "closure"):
         getattr(new.contacts, name)[target] = getattr(old.contacts, name)[source]
 
 
-def _adopt(narrow: NarrowPhase, old: JointArrays, new: JointArrays, orphans: np.ndarray, newborn: np.ndarray) -> None:
+def _adopt(
+    narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, orphans: np.ndarray, newborn: np.ndarray
+) -> None:
     """Memory of loaded joints whose faces changed goes to the nearest point of a new joint of the same blocks."""
     joints, contacts, memory = new.joints, new.contacts, old.contacts
     for i in orphans:

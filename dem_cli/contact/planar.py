@@ -4,22 +4,20 @@ these are when the blocks move. One of the modules of contact/geometry.py.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import cast
 
 import numpy as np
 
-from dem_cli.contact.chains import Chains, come_back, made_chains
+from dem_cli.contact.chains import END_TO_END, STEEP, Chains, come_back, made_chains
 from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths, widest_gaps
-from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointProperties, joints_of
+from dem_cli.contact.layout import PointLayout, ProfileFault, steepest, too_steep
 from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
 from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 NARROWEST = 0.1  # of the shorter edge: the overlap that a joint has stiffness for at least
@@ -158,8 +156,9 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
     known = np.flatnonzero(match >= 0)
-    new.geometry.sunk[:] = np.inf
-    new.geometry.sunk[known] = old.geometry.sunk[match[known]]
+    before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)
+    now.sunk[:] = np.inf
+    now.sunk[known] = before.sunk[match[known]]
 
 
 def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
@@ -187,6 +186,23 @@ def microrotations(joints: Joints, geometry: PlanarGeometry) -> np.ndarray:
     inner[joints.starts[1:-1] - 1] = False  # from the last point of a joint to the first of the next
     np.maximum.at(angles, joints.owners[:-1][inner], np.abs(sides[inner, 1] / sides[inner, 0]))
     return angles
+
+
+def profile_fault(
+    model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
+) -> ProfileFault | None:
+    """Whether a profile is too steep on the shortest of these joints (n,) bool that has it."""
+    edges = edges_of(model, faces)
+    along = corners[edges[:, 1]] - corners[edges[:, 0]]
+    lengths, whole = overlap_lengths(edges, corners), lengths_of(edges, corners)[:, 1]
+    has_it = among & (lengths > END_TO_END * whole)
+    if layout.only != "all":
+        has_it &= (np.abs(along[:, 0]) >= STEEP * np.hypot(*along.T)) == (layout.only == "bed")
+    if not has_it.any():
+        return None
+    k = np.flatnonzero(has_it)[lengths[has_it].argmin()]
+    between = [model.block_ids[i] for i in model.part_blocks[faces.parts[k]]]
+    return too_steep(between, float(lengths[k]), steepest(layout, float(lengths[k])))
 
 
 def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:

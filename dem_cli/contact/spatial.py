@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.contact.caps import apothems, has_cap, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.layout import PointLayout, ProfileFault, too_steep
 from dem_cli.contact.meetings import Meetings, meetings, polyhedra
 from dem_cli.contact.near_boxes import near_boxes
-from dem_cli.errors import UsageError
 from dem_cli.geometry.outlines import furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
@@ -177,15 +178,17 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
     """Nothing comes back: joints in space have no profile."""
 
 
-def sink(geometry: SpatialGeometry, joint: int, depth: float) -> None:
-    """Nothing: only profiles have a recess."""
-
-
-def microrotations(joints: Joints, geometry: SpatialGeometry) -> np.ndarray:
-    """None: joints in space have no profile, (n_joints,)."""
-    return np.zeros(len(joints.blocks))
-
-
-def corner_shares(joints: Joints, geometry: SpatialGeometry, corners: np.ndarray) -> np.ndarray:
-    """Not known. Raises UsageError: it says how normals turn with the blocks, and here they do not."""
-    raise UsageError("blocks in space keep the geometry of the start: how their contact normals turn is not known")
+def profile_fault(
+    model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
+) -> ProfileFault | None:
+    """Whether a cap is none that space knows, or too steep on the narrowest of these joints (n,) bool that has it."""
+    found = meetings(model, faces, corners)
+    has_it = among & (found.kinds == FACES) & np.array([has_cap(layout, frame[:3]) for frame in found.frames], bool)
+    if fault := odd_or_uneven(layout):
+        return fault
+    if not has_it.any():
+        return None
+    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in np.flatnonzero(has_it)}
+    k = min(outlines, key=lambda i: float(apothems(outlines[i]).min()))
+    between = [model.block_ids[i] for i in model.part_blocks[faces.parts[k]]]
+    return too_steep(between, 2.0 * float(apothems(outlines[k]).min()), steepest(layout, outlines[k]))

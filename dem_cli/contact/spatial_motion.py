@@ -6,14 +6,22 @@ of contact/geometry.py; what does not depend on motion is that of contact/spatia
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from dem_cli.contact.caps import Caps, caps_of, made_caps
-from dem_cli.contact.joints import Faces, JointProperties, joints_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
-from dem_cli.contact.spatial import LONE, corners_of, drawn, facing, find, median_face, touching
+from dem_cli.contact.spatial import (
+    LONE,
+    corners_of,
+    drawn,
+    facing,
+    find,
+    median_face,
+    open_gaps,
+    profile_fault,
+    touching,
+)  # fmt: skip
 from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT
@@ -21,16 +29,13 @@ from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
 
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
-
 __all__ = [
-    "book", "carry", "chains_of", "corner_shares", "corners_of", "drawn", "facing", "find", "microrotations", "place",
-    "points", "sink", "take_over", "touching",
+    "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
+    "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
-FLOOR = 0.25  # of the median face: area of a face joint, at least
+FLOOR = 0.25  # of the median face, or of the smaller one of a joint: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
 SPARE = 4  # slots of a joint beside one for each corner of both faces
 REMEMBERED = 32  # numbers of memory of a law, at most
@@ -113,11 +118,12 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)
-    n = len(faces.parts)
+    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)
+    face = np.minimum(median, smaller)  # a small block on a large one is no sliver, and its corners are no pillars
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
-        np.sqrt(areas[faces.faces].min(axis=1)), BAND * shortest[faces.faces].min(axis=1), properties.kn[named],
-        properties.ks[named], np.full(n, LONE * median), np.full(n, FLOOR * median), np.full(n, reach), centred,
+        np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), properties.kn[named], properties.ks[named],
+        LONE * face, FLOOR * face, np.full(n, reach), centred,
     ])  # fmt: skip
 
 
@@ -184,8 +190,3 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
     """Largest microrotation of each joint from the plane that it rests on at the start [rad], (n_joints,)."""
     return geometry.slopes
-
-
-def corner_shares(joints: Joints, geometry: SpatialMotion, corners: np.ndarray) -> np.ndarray:
-    """Not known yet."""
-    raise NotImplementedError

@@ -20,14 +20,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.compatibility import directions, free_columns
-from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.joints import JointGeometry
+from dem_cli.contact.planar import corner_shares
 from dem_cli.dynamics.spatial_stiffness import attachment, second_derivatives
 from dem_cli.geometry.rotation import across
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from scipy.sparse import csr_array
 
-    from dem_cli.kernels.records import Bodies, Contacts, Joints
+    from dem_cli.kernels.records import Bodies, Contacts, Joints, PlanarGeometry
     from dem_cli.model.model import Model
 
 
@@ -45,14 +48,14 @@ def geometric_stiffness(
     return coo_array((-local[used], (rows[used], columns[used])), shape=(n, n)).tocsr()
 
 
-def _in_plane(model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
+def _in_plane(model: Model, joints: Joints, geometry: PlanarGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
     """Second derivatives times forces, (n_points, 6, 6): x, y, θ of a, then of b."""
     blocks = joints.blocks[joints.owners]
     frames = directions(joints, 2)
     forces = np.column_stack([contacts.normal, contacts.shear])
     along = np.einsum("pd,pdk->pk", forces, frames)  # force on b [N], (n_points, 2)
     normal = across(along)
-    share = geometry_of(model.dimension).corner_shares(joints, geometry, bodies.corners)[:, None]
+    share = corner_shares(joints, geometry, bodies.corners)[:, None]
     arms = joints.points[:, None] - bodies.positions[blocks]
     lever_a, lever_b = np.einsum("pk,psk->sp", along, arms)
     one, two = share[:, 0], 1.0 - share[:, 0]
@@ -74,4 +77,4 @@ def _in_space(model: Model, joints: Joints, geometry: JointGeometry, contacts: C
     return second_derivatives(along, arms, attachment(model, joints, geometry, contacts, bodies))
 
 
-SECOND_DERIVATIVES = {2: _in_plane, 3: _in_space}
+SECOND_DERIVATIVES: dict[int, Callable[..., np.ndarray]] = {2: _in_plane, 3: _in_space}

@@ -25,7 +25,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.geometry import motion_of
+from dem_cli.contact.joints import JointGeometry
 from dem_cli.geometry.rotation import turned_further, turns_of
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class _Moved:
     def __init__(
         self, model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies
     ) -> None:
-        self.narrow, self.shape = geometry_of(model.dimension, moves=True), block_shape(model)
+        self.narrow, self.shape = motion_of(model.dimension), block_shape(model)
         self.joints = joints._replace(**{name: getattr(joints, name).copy() for name in ("frames", "levers", "points")})
         self.contacts = contacts._replace(gaps=contacts.gaps.copy())
         self.geometry, self.bodies = geometry, bodies

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.geometry import JointGeometry, geometry_of
+from dem_cli.contact.geometry import geometry_of, motion_of
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.engine.tracking import JointTracking
@@ -27,9 +27,10 @@ class Play(NamedTuple):
 def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
     """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
     model, smallest = tracking.model, tracking.smallest
-    found = play(model, tracking.joints, tracking.geometry, bodies.positions, clearance)
     if not tracking.moves:
-        return found
+        return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
+    angles = motion_of(model.dimension).microrotations(tracking.joints, tracking.geometry)
+    found = play(model, tracking.joints, angles, bodies.positions, clearance)
     faces = tracking.faces_within(bodies, clearance.widest * smallest)
     gaps = geometry_of(model.dimension).open_gaps(model, faces, bodies.corners, clearance.steepest, clearance.bare)
     gaps = gaps[(gaps > TOUCHING_GAP * smallest) & (gaps <= clearance.widest * smallest)]
@@ -56,23 +57,23 @@ def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: Clearance
 def play(
     model: Model,
     joints: Joints,
-    geometry: JointGeometry,
+    angles: np.ndarray,
     positions: np.ndarray,
     clearance: ClearanceSettings = DEFAULT.clearance,
 ) -> Play:
     """Of every block on the way from the supports on which it can move least; joints: those of the start.
 
-    A block that turns by θ against its neighbour takes along what stands on it. positions: centroids [m].
+    A block that turns by θ against its neighbour takes along what stands on it. angles: microrotations of the joints
+    [rad], (n_joints,); positions: centroids [m].
     """
     found = Play(np.where(model.fixed, 0.0, np.inf), np.where(model.fixed, 0.0, np.inf))
-    angles = geometry_of(model.dimension).microrotations(joints, geometry)
     if not angles.any():
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
-    owner = joints.owners
+    owner, used = joints.owners, joints.kn > 0.0
     reach = np.zeros(joints.blocks.shape)  # from the centroids of both blocks to the farthest point of the joint
     for side in (0, 1):
         arms = joints.points - positions[joints.blocks[owner, side]]
-        np.maximum.at(reach[:, side], owner, np.sqrt((arms**2).sum(axis=1)))
+        np.maximum.at(reach[:, side], owner[used], np.sqrt((arms**2).sum(axis=1))[used])
     near = model.fixed.copy()
     while True:
         reached = near[joints.blocks]

@@ -9,8 +9,9 @@ import numpy as np
 
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import quaternions, rotation_vectors, turning
+from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
+from dem_cli.kernels.records import Bodies
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -26,6 +27,11 @@ class EnergySums(NamedTuple):
 def displacements(sim: Simulation) -> np.ndarray:
     """Displacement of all centroids [m], (n_blocks, d)."""
     return sim.bodies.positions - sim.reference_positions
+
+
+def rotations_since(sim: Simulation, before: Bodies) -> np.ndarray:
+    """How all blocks have turned since a saved state [rad], (n_blocks, r)."""
+    return turned_since(sim.bodies.orientations, before.orientations)
 
 
 def largest_displacement(sim: Simulation) -> float:

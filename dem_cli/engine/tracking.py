@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dem_cli.contact.assemble import JointArrays, build_joints
-from dem_cli.contact.geometry import NarrowPhase, geometry_of
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.assemble import build_joints
+from dem_cli.contact.geometry import NarrowPhase, geometry_of, motion_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties
 from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
@@ -37,7 +37,7 @@ class JointTracking:
     @property
     def narrow(self) -> NarrowPhase:
         """Who finds and places contact points; a module, which no copy of a simulation could take along."""
-        return geometry_of(self.model.dimension, self.moves)
+        return (motion_of if self.moves else geometry_of)(self.model.dimension)
 
     def take(self, arrays: JointArrays) -> None:
         """From here on these are the joints."""
@@ -78,7 +78,7 @@ class JointTracking:
         self.measured(bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
-        carry_memory(self.narrow, old, new)
+        carry_memory(motion_of(self.model.dimension), old, new)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = old.geometry.keys[old.contacts.stale[:-1] == 1]

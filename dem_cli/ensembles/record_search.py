@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.ensembles.batch import Answer, ShakingTrial, Task
 from dem_cli.errors import CaseError, CaseProblem
@@ -15,18 +16,52 @@ if TYPE_CHECKING:
     from dem_cli.tables.analysis import FragilityAnalysis
 
 
-def records_of(case: Case) -> list[Motion]:
-    """Every record of every [[motion]]. Raises CaseError where there is none, or one that does not move."""
-    records = [motion for suite in suites_of(case) for motion in suite]
-    if not records:
+class GroundRecord(NamedTuple):
+    """A record of the set: one motion, or the components of one event, which are scaled together."""
+
+    name: str
+    components: tuple[Motion, ...]
+
+    @property
+    def peak(self) -> float:
+        """Peak acceleration of the strongest component [m/s²]."""
+        return max(motion.peak for motion in self.components)
+
+
+def records_of(case: Case) -> list[GroundRecord]:
+    """Every record of every [[motion]], those of one event together, in the order of the first of their tables.
+
+    Raises CaseError where there is none, one that does not move, or an event with suites of different length.
+    """
+    events: dict[tuple[str, int], list[tuple[int, list[Motion]]]] = {}
+    tables = [(i, table) for i, table in enumerate(case.motion) if table.kind != "none"]
+    for (i, table), suite in zip(tables, suites_of(case), strict=True):
+        events.setdefault((table.event or "", 0 if table.event else i + 1), []).append((i, suite))
+    if not events:
         message = "missing; kind = 'fragility' needs a [[motion]]: its set of records"
         raise CaseError([CaseProblem(("motion",), message)])
-    return records
+    found = []
+    for (event, _), parts in events.items():
+        _check_lengths(event, parts)
+        for k, components in enumerate(zip(*(suite for _, suite in parts), strict=True)):
+            name = (event if len(parts[0][1]) == 1 else f"{event} {k + 1}") if event else components[0].name
+            found.append(GroundRecord(name, components))
+    return found
 
 
-def scaled(record: Motion, intensity: float, analysis: FragilityAnalysis) -> Motion:
-    """A record with the peak acceleration of an intensity."""
-    return record.scaled(intensity * analysis.unit_acceleration / record.peak)
+def _check_lengths(event: str, parts: Sequence[tuple[int, list[Motion]]]) -> None:
+    """Raises CaseError where tables of an event have different numbers of records."""
+    first = len(parts[0][1])
+    for i, suite in parts[1:]:
+        if len(suite) != first:
+            message = f"'{event}' has {first} record(s) in motion.{parts[0][0]} and {len(suite)} here"
+            raise CaseError([CaseProblem(("motion", i, "event"), message)])
+
+
+def scaled(record: GroundRecord, intensity: float, analysis: FragilityAnalysis) -> list[Motion]:
+    """The components of a record with the peak acceleration of an intensity."""
+    factor = intensity * analysis.unit_acceleration / record.peak
+    return [motion.scaled(factor) for motion in record.components]
 
 
 def runs_per_record(analysis: FragilityAnalysis) -> int:

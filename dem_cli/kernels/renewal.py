@@ -154,7 +154,7 @@ def _gap_of(joints, geometry, bodies, joint, point, frame):
     """Where the blocks are now."""
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
     _, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
-    return on_cap(geometry, bodies, joint, point, gap, place, frame[0])
+    return on_cap(geometry, bodies, joint, point, gap, place, frame)[0]
 
 
 @inline

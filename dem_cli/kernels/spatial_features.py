@@ -191,15 +191,15 @@ def height_inside(geometry, vertices, face, outwards, corner, slack):
 
 
 @always_inline
-def on_cap(geometry, bodies, joint, point, gap, place, normal_a):
-    """Gap of a point where block b has a cap: its outline lies higher, its inner points carry over face a alone."""
+def on_cap(geometry, bodies, joint, point, gap, place, frame):
+    """Gap and place of a point where b has a cap: its outline lies higher, its inner points carry over face a alone."""
     rise = geometry.rises[joint]
     if rise == 0.0:
-        return gap
+        return gap, place
     if geometry.types[point] != FIXED_TO_B:
-        return gap + rise
-    inside, _ = height_inside(geometry, bodies.corners, geometry.faces[joint, 0], normal_a, place, 0.0)
-    return gap if inside else max(gap, 0.0)
+        return gap + rise, axpy(rise, frame[1], place)
+    inside, _ = height_inside(geometry, bodies.corners, geometry.faces[joint, 0], frame[0], place, 0.0)
+    return gap if inside else max(gap, 0.0), place
 
 
 @always_inline

@@ -65,7 +65,7 @@ def make_spatial_forces(
                     continue
                 normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
                 if capped:
-                    gap = on_cap(geometry, bodies, joint, point, gap, place, frame[0])
+                    gap, place = on_cap(geometry, bodies, joint, point, gap, place, frame)
                 opened = gap - gaps[point]
                 gaps[point] = gap
                 if meets and not bonded:
@@ -117,7 +117,7 @@ def measure_spatial(joints, geometry, contacts, bodies):
                 frames[point, :], levers[point, :], places[point, :] = 0.0, 0.0, 0.0
                 continue
             normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
-            contacts.gaps[point] = on_cap(geometry, bodies, joint, point, gap, place, frame[0])
+            contacts.gaps[point], place = on_cap(geometry, bodies, joint, point, gap, place, frame)
             t1, t2 = tangents3(normal, along)
             arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
             k = 0

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Vector
+from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
 from dem_cli.motion.units import SI_FACTORS
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
@@ -28,6 +28,12 @@ class MotionTable(CaseModel):
         default=(), description="ids of the fixed blocks that move; default: all of them", examples=[["ground"]]
     )
     start: NonNegative = Field(default=0.0, description="time at which it begins [s]")
+    event: Name | None = Field(
+        default=None,
+        description="fragility: name of the record that this is a component of; components of one event are scaled "
+        "together, and its peak is that of the strongest; default: a record by itself",
+        examples=["kobe"],
+    )
 
     @model_validator(mode="after")
     def _has_direction(self) -> MotionTable:

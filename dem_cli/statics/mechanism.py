@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.engine.measures import displacements
+from dem_cli.engine.measures import displacements, rotations_since
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
-from dem_cli.geometry.rotation import turned_since
 from dem_cli.kernels import records as slot
 
 
@@ -22,7 +21,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     bodies, contacts, joints, ledger = held.bodies, held.contacts, held.joints, held.ledger
     d = sim.model.dimension
     shift = np.sqrt(((sim.bodies.positions - bodies.positions) ** 2).sum(axis=1))
-    rotation = turned_since(sim.bodies.orientations, bodies.orientations)
+    rotation = rotations_since(sim, bodies)
     angle = np.sqrt((rotation**2).sum(axis=1))
     motion = np.maximum(shift, angle * sim.shape.radii)
     weights = -sim.loads.dead[sim.free, d - 1]

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 import scipy.linalg
-from engine import block, real_masses, simulation, steps, tables
+from engine import block, real_masses, rectangle, simulation, solve, steps, tables
 
-from dem_cli.analyses.modes import closed_points
+from dem_cli.analyses.modes import closed_points, touching_points
 from dem_cli.contact.detect import world_corners
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.time_step import time_step
@@ -173,3 +173,76 @@ def test_the_engine_vibrates_at_the_frequency(name):
         period = dt * (exact[-1] - exact[0]) / (len(exact) - 1)
         assert len(exact) >= 19
         assert period * frequency == pytest.approx(1.0 - (omega * dt) ** 2 / 24.0, abs=5e-5)
+
+
+DEPTH = (0, 0.8)
+TWINS = {  # rectangles, and by how much the twin may differ
+    "slender": ([rectangle(0, 0, 0.5, 1.5)], 1e-9),
+    "narrower above": ([rectangle(0, 0, 0.5, 1.5), rectangle(0.1, 1.5, 0.4, 2.5)], 1e-6),
+    # Where corners meet, a point goes on with one of the blocks; in the plane from half-way on with the other one.
+    "corner on corner": ([rectangle(0, 0, 0.5, 1), rectangle(0, 1, 0.5, 2)], 1e-3),
+    "2.5 mm off": ([rectangle(0, 0, 0.5, 1), rectangle(0.0025, 1, 0.5025, 2)], 3e-5),
+}
+
+
+@pytest.mark.parametrize("name", list(TWINS))
+def test_planar_twin(name):
+    """Modes of rectangles are among those of their prisms: motions in the plane of x and z."""
+    rectangles, error = TWINS[name]
+    ground = block("ground", rectangle(-4, -1, 4, 0), fixed=True)
+    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS}}
+    flat = [block("ab"[i], corners) for i, corners in enumerate(rectangles)]
+    planar = simulation(tables(ground, *flat, joints=joints), "large")
+    assert stand(planar, Budget(10**6)).state == "equilibrium"
+    expected = modes(system(planar, closed_points(planar), geometric=True), 6, 2, planar.model.n_blocks).frequencies
+    sides = [np.array(corners) for corners in rectangles]
+    prisms = [box("ab"[i], np.unique(c[:, 0]), DEPTH, np.unique(c[:, 1])) for i, c in enumerate(sides)]
+    sim = settled(prisms)
+    found = modes(system(sim, closed_points(sim), geometric=True), 12, 3, sim.model.n_blocks)
+    others = np.abs(found.shapes[:, :, [1, 3, 5]]).max(axis=(1, 2)) / np.abs(found.shapes).max(axis=(1, 2))
+    assert found.frequencies[others < 1e-2] == pytest.approx(expected, rel=error)
+
+
+def test_points_without_a_gap_are_counted_once():
+    """A slot of a joint that no point uses has no gap, and is no spring."""
+    sim = settled(STONES["slender"])
+    assert closed_points(sim).sum() == touching_points(sim).sum() == 4
+    assert len(sim.joints.kn) > 4
+
+
+def case(stones: list[dict], **analysis) -> dict:
+    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS}}
+    more = {"joints": joints, "analysis": {"kind": "modes", **analysis}, "output": {"frames": 5}}
+    return {"dimension": 3, **tables(GROUND, *stones, **more)}
+
+
+def test_answers_and_frames_of_a_run():
+    summary, records = solve(case(STONES["slender"], count=6))
+    total = summary["total_mass"]
+    assert total == pytest.approx(0.5 * 0.8 * 1.5 * 2000.0)
+    assert {axis: sum(masses) for axis, masses in summary["effective_masses"].items()} == pytest.approx(
+        dict.fromkeys("xyz", total), rel=1e-6
+    )
+    assert summary["springs"] == {"pressed": 4, "touching": 4}
+    shown = [frame for frame in records.frames if frame.stage == "mode"]
+    assert [frame.step for frame in shown] == [1, 2, 3, 4, 5, 6]
+    rest = next(frame for frame in records.frames if frame.stage != "mode")
+    free = [i for i, place in enumerate(rest.positions) if place[2] > 0.0]
+    for frame in shown:
+        assert frame.orientations.shape == (2, 4)
+        assert np.linalg.norm(frame.orientations, axis=1) == pytest.approx(np.ones(2))
+        moved = np.abs(frame.positions - rest.positions).max() + np.abs(frame.orientations - rest.orientations).max()
+        assert 0.01 < moved < 0.5
+        assert np.abs(frame.positions - rest.positions)[free].max() == np.abs(frame.positions - rest.positions).max()
+
+
+def test_stiffness_from_a_measured_frequency():
+    """Sway across the narrow side, less the moment of the weight: 2 × 2 by hand, at the calibrated stiffness."""
+    found = solve(case(STONES["slender"], measured=3.0))[0]["calibration"]
+    assert found["met"]
+    width, depth, height, mass = 0.5, 0.8, 1.5, 0.5 * 0.8 * 1.5 * 2000.0
+    stiff, shear = (found["joints"]["dry"][key] * width * depth for key in ("kn", "ks"))
+    sway = np.array([[shear, shear * height / 2], [shear * height / 2, shear * height**2 / 4 + stiff * width**2 / 4]])
+    sway[1, 1] -= mass * 9.81 * height / 2
+    masses = np.diag([mass, mass * (width**2 + height**2) / 12.0])
+    assert math.sqrt(scipy.linalg.eigh(sway, masses)[0][0]) / (2 * math.pi) == pytest.approx(3.0, rel=2e-4)

@@ -107,7 +107,7 @@ def test_twins_collapse_as_walls_and_arches_of_the_plane(name):
 
 
 def test_a_wall_turns_over_its_foot_with_geometry_that_moves():
-    """Out of plane at t / H = 0.125, and on soft joints at what a stack of the plane carries (P-Δ takes a third)."""
+    """Out of plane at t / H = 0.125, and on soft joints at what a stack of the plane carries (P-Δ takes half)."""
     case = read(CASES / "verification" / "space" / "panel.toml")
     case["structure"][0] |= {"courses": 4, "blocks_per_course": 2}
     case["analysis"]["kinematics"] = "large"
@@ -119,22 +119,26 @@ def test_a_wall_turns_over_its_foot_with_geometry_that_moves():
     flat["analysis"] = {"kind": "pushover", "direction": [1.0, 0.0], "resolution": 0.002}
     (space, _), (plane, _) = solved(case), solved(flat)
     assert space["kinematics"] == plane["kinematics"] == "large"
-    assert plane["failure_load"] < 0.22
+    assert plane["failure_load"] < 0.125
     assert space["failure_load"] == pytest.approx(plane["failure_load"], rel=4e-3)  # both brackets
 
 
 def test_a_load_path_moves_a_twin_as_the_wall_of_the_plane():
-    """To and fro on joints of given stiffness, until blocks slip: displacements at the turns within 1 %."""
+    """To and fro on joints of given stiffness: displacements at the turns within 2 %, what stays of them within 5 %.
+
+    What stays is the slip of head joints, which hangs on the steps of pseudo-time.
+    """
     flat = read(CASES / "verification" / "wall_21.toml")
     flat.pop("reference")
     flat["joints"]["dry"]["kn"] = 1e9
     flat["analysis"] = {
-        "kind": "cycle", "direction": [1.0, 0.0], "path": [0.55, -0.55, 0.0], "step": 0.1, "kinematics": "large",
+        "kind": "cycle", "direction": [1.0, 0.0], "path": [0.4, -0.4, 0.0], "step": 0.1, "kinematics": "large",
     }  # fmt: skip
     (plane, _), (space, _) = solved(flat), solved(extruded_tables(flat))
-    assert [turn["load"] for turn in space["turning_points"]] == [0.55, -0.55, 0.0]
+    assert [turn["load"] for turn in space["turning_points"]] == [0.4, -0.4, 0.0]
     for one, other in zip(space["turning_points"], plane["turning_points"], strict=True):
-        assert one["displacement"] == pytest.approx(other["displacement"], rel=0.01)
+        within = 0.02 if one["load"] else 0.05
+        assert one["displacement"] == pytest.approx(other["displacement"], rel=within)
 
 
 def test_a_slab_comes_down_on_its_short_leg():
@@ -151,7 +155,7 @@ def test_a_slab_comes_down_on_its_short_leg():
     slab, ground = box("slab", (0, 0, 1.0), (1, 1, 1.1)), box("base", (-0.5, -0.5, -0.5), (1.5, 1.5, 0.0), fixed=True)
     push = {"block": "slab", "force": [0.0, 0.0, -2000.0], "at": [0.1, 0.1, 1.1]}
     case = tables(ground, *legs, slab, analysis={"kind": "gravity"}, load=[push], monitor=of_block("slab"))
-    summary, seen = solved(case)
+    summary, seen = solved(case, 5e-3)  # half a millimetre, in some hundred steps of pseudo-time
     assert "may close" in " ".join(summary["skipped"])
     angle = math.asin(gap / reach)
     expected = angle * np.array([1.0, -1.0, 0.0]) / math.sqrt(2.0)
@@ -195,7 +199,10 @@ def test_a_barrel_spreads_as_an_arch_of_the_plane():
 
 
 def test_a_barrel_twists_with_its_support():
-    """A springing that moves out, sinks and turns in plan: the mirror image of the run is the run of the mirror image."""
+    """A springing that moves out, sinks and turns in plan: the mirror image moves as the mirror image of the run.
+
+    By 2 % of how far it goes: how much slips hangs on the order of joints, whose blocks and tangents are others there.
+    """
     way = {"displacement": [0.03, 0.0, -0.01], "rotation_deg": [0.0, 0.0, 0.6]}
     back = {"displacement": [0.03, 0.0, -0.01], "rotation_deg": [0.0, 0.0, -0.6]}
     blocks = bonded_barrel(9)
@@ -205,7 +212,9 @@ def test_a_barrel_twists_with_its_support():
         for solids, moves in ((blocks, way), (other, back))
     ]
     assert abs(found[0][3:]).min() > 1e-4  # it turns about all three axes
-    assert found[1] * (1, -1, 1, -1, 1, -1) == pytest.approx(found[0], abs=1e-4)
+    apart = found[1] * (1, -1, 1, -1, 1, -1) - found[0]
+    for part in (slice(0, 3), slice(3, 6)):
+        assert np.linalg.norm(apart[part]) < 0.02 * np.linalg.norm(found[0][part])
 
 
 def test_a_state_that_comes_back_goes_on_to_the_same_bytes():

@@ -33,7 +33,7 @@ class BookedRun(NamedTuple):
     def books(self) -> dict[str, Any]:
         """What each row of the study's tables ends with."""
         return {
-            **book_of([row.energy for row in self.seen.rows]),
+            **book_of([row.energy for row in self.seen.rows], real=bool(self.summary.get("time_step"))),
             "steps": self.summary["steps"],
             "seconds": round(self.seconds, 2),
             "blocks": self.blocks,
@@ -93,10 +93,11 @@ def solved(loaded: LoadedCase, model: Model) -> BookedRun:
     return BookedRun(summary, seen, seconds, int((~model.fixed).sum()))
 
 
-def book_of(rows: list[Energy]) -> dict[str, float | None]:
+def book_of(rows: list[Energy], real: bool) -> dict[str, float | None]:
     """Error of the book, energy that re-weighting took (net) and moved (sum of amounts), over the kinetic at most.
 
-    Net and sum are those of the rows: a sum of what changed between them.
+    real: of a time history; else over the largest energy in the ledger. Net and sum are those of the rows: a sum of
+    what changed between them.
     """
     if not rows:
         return {"book": None, "net": None, "moved": None, "kinetic": None}
@@ -106,7 +107,8 @@ def book_of(rows: list[Energy]) -> dict[str, float | None]:
     given = sums["external"] + sums["supports"]
     error = sum(values for name, values in sums.items() if name not in ("external", "supports")) - given
     kinetic = float(sums["kinetic"].max())
-    scale = kinetic if kinetic > 0.0 else float(np.abs(given).max()) or 1.0
+    scale = kinetic if real else float(np.abs(table).max())
+    scale = scale or 1.0
     changed = np.diff(sums["reweighting"], prepend=0.0) if "reweighting" in sums else np.zeros(len(rows))
     return {
         "book": float(np.abs(error - error[0]).max()) / scale,

@@ -256,7 +256,7 @@ def cube_on_corner(damping: dict | None = None, size: float = 0.1) -> dict[str, 
     case = history(
         ground(1.0),
         box("block", (-0.5 * size, -0.5 * size, 0.0), (0.5 * size, 0.5 * size, size)),
-        duration=2.0,
+        duration=3.0,
         friction=0.6,
         analysis={"settle": False, "fallen_deg": 1e9, "dropped": 1e9},
         stiffness=STIFF,

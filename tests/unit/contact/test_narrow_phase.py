@@ -10,7 +10,6 @@ from engine import block, rectangle, running_wall, simulation, tables
 
 from dem_cli.contact.geometry import GEOMETRY, NarrowPhase
 from dem_cli.contact.keys import same_rows
-from dem_cli.contact.memory import point_keys
 
 
 @pytest.mark.parametrize("dimension", GEOMETRY)
@@ -49,7 +48,7 @@ def test_edges_of_a_pair_are_the_ends_of_its_faces():
 
 def test_no_two_points_have_one_key():
     sim = simulation(tables(*running_wall(3, 3)), "large")
-    keys = point_keys(sim.tracking.arrays())
+    keys = np.column_stack([sim.geometry.keys[sim.joints.owners], sim.geometry.features])
     assert len(np.unique(keys, axis=0)) == len(keys) == len(sim.joints.kn)
 
 

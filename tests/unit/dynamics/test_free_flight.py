@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from engine import scene, tables
+from scipy.integrate import solve_ivp
 
 from dem_cli.dynamics.initial_state import tilt
 from dem_cli.engine import measures
@@ -90,6 +91,39 @@ def test_a_symmetric_top_precesses():
         errors.append(np.linalg.norm(principal(sim)[:, 0] - turn @ axis))
     assert errors[1] < 1e-4
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
+
+
+def test_a_thrown_block_is_where_eulers_equations_take_it():
+    """Under gravity and a torque from the velocities of time 0, beside a Runge–Kutta integration; second order."""
+    velocity, torque, time = np.array([1.0, -0.5, 4.0, 1.0, 4.0, -2.0]), np.array([20.0, -10.0, 15.0]), 1.0
+    errors = []
+    for step in (2e-3, 1e-3):
+        sim = flying(WEDGE, step)
+        sim.loads.dead[FREE, 2], sim.loads.dead[FREE, 3:] = -9.81 * sim.model.masses[FREE], torque
+        start = sim.bodies.positions[FREE].copy()
+        sim.throw(np.array([FREE]), velocity)
+        sim.start_moving()
+        first = fly(sim, round(time / step))[0]
+        assert first[1] == pytest.approx(velocity, rel=1e-12)
+        flight = start + velocity[:3] * time - [0.0, 0.0, 0.5 * 9.81 * time**2]
+        assert sim.bodies.positions[FREE] == pytest.approx(flight, rel=1e-12)
+        turn, own = matrices(sim.bodies.orientations)[FREE], matrices(sim.model.principal_axes)[FREE]
+        tensor = own @ np.diag(sim.model.inertias[FREE]) @ own.T
+        errors.append(np.abs(turn - tumbled(tensor, velocity[3:], torque, time)).max())
+    assert errors[1] < 1e-5
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
+
+
+def tumbled(tensor: np.ndarray, spin: np.ndarray, torque: np.ndarray, time: float) -> np.ndarray:
+    """Rotation matrix of a body with a tensor of inertia at the start and a torque along the axes of the world."""
+
+    def change(_: float, state: np.ndarray) -> np.ndarray:
+        turn, momentum = state[:9].reshape(3, 3), state[9:]
+        spin = turn @ np.linalg.solve(tensor, turn.T @ momentum)
+        return np.concatenate([np.cross(spin, turn, axisb=0, axisc=0).ravel(), torque])
+
+    state = np.concatenate([np.eye(3).ravel(), tensor @ spin])
+    return solve_ivp(change, (0.0, time), state, method="DOP853", rtol=1e-12, atol=1e-12).y[:9, -1].reshape(3, 3)
 
 
 @pytest.mark.parametrize("damping", [Damping(), Damping(mass=0.3, local=0.1)], ids=["undamped", "damped"])
