@@ -272,9 +272,7 @@ def test_the_view_of_motion_in_space(tmp_path):
     series, times = results.series, [frame.time for frame in results.frames]
     ground = np.stack([np.interp(times, series.time, path) for path in series.base[:, 2].T], axis=1)
     np.testing.assert_allclose(scene["ground"], ground, atol=1e-6)
-    assert not view(read(write_shaken_column(tmp_path / "few", 12)))[
-        "follows"
-    ]  # which way round they went is not known
+    assert not view(read(write_shaken_column(tmp_path / "few", 12)))["follows"]  # who knows which way round
     places = np.stack([frame.positions[1:] for frame in results.frames]) + ground[:, np.newaxis]
     low, high = np.array(scene["window"])
     assert (places.min(axis=(0, 1)) > low).all()
