@@ -6,38 +6,16 @@ Everything else in the package asks for it by `geometry_of` and does not know ho
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from dem_cli.contact import planar, spatial, spatial_motion
-from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointGeometry, JointProperties
 from dem_cli.contact.layout import PointLayout, ProfileFault
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
-
-
-class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
-
-    @property
-    def keys(self) -> np.ndarray:
-        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
-
-    @property
-    def features(self) -> np.ndarray:
-        """What each point is within its joint, (n_points,)."""
-
-    def kept(self) -> Self:
-        """The same with a copy of what changes."""
-
-    def settled(self) -> Self:
-        """What is still asked for when points stay where they were placed."""
-
 
 Geometry = TypeVar("Geometry", bound=JointGeometry)
 Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.geometry import AnyMovingNarrowPhase
-from dem_cli.contact.joints import points_of
+from dem_cli.contact.joints import JointArrays, points_of
 from dem_cli.contact.keys import same_rows
 
 

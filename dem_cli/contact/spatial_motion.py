@@ -6,12 +6,10 @@ of contact/geometry.py; what does not depend on motion is that of contact/spatia
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from dem_cli.contact.caps import Caps, caps_of, made_caps
-from dem_cli.contact.joints import Faces, JointProperties, joints_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties, joints_of
 from dem_cli.contact.meetings import polyhedra
 from dem_cli.contact.spatial import (
     LONE,
@@ -30,9 +28,6 @@ from dem_cli.kernels.renewal import LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
 
 __all__ = [
     "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
