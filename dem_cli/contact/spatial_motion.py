@@ -72,6 +72,7 @@ def points(
         types=np.zeros(n_points, np.int8),
         corners=np.full((n_points, 5), -1),
         shares=np.zeros(n_points),
+        spans=np.zeros((n_points, 2)),
         arms=np.zeros((n_points, 3)),
         rises=caps.rises,
         slopes=caps.slopes,

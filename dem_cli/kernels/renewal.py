@@ -65,7 +65,7 @@ def _place_of(geometry, bodies, point, b):
 
 
 @always_inline
-def _put(geometry, point, k):
+def _put(geometry, vertices, point, k):
     """What a slot holds from now on."""
     found, labels, numbers = geometry.found, geometry.labels, geometry.numbers
     geometry.features[point], geometry.types[point] = labels[k, 0], labels[k, 1]
@@ -74,6 +74,11 @@ def _put(geometry, point, k):
     geometry.shares[point] = numbers[k, 1]
     for m in range(3):
         geometry.arms[point, m] = numbers[k, 2 + m]
+    if labels[k, 1] != CROSSING:
+        for m in range(2):
+            if found[k, 2 * m + 1] != NONE:
+                side = minus3(row3(vertices, found[k, 2 * m + 2]), row3(vertices, found[k, 2 * m + 1]))
+                geometry.spans[point, m] = 1.0 / math.sqrt(dot(side, side))
 
 
 @always_inline
@@ -161,7 +166,7 @@ def _gap_of(joints, geometry, bodies, joint, point, frame):
 def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remembers, bonded, fresh):
     """A new point in its slot: its own gap, and what the nearest one left it."""
     numbers = geometry.numbers
-    _put(geometry, point, k)
+    _put(geometry, bodies.corners, point, k)
     _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
     gap = _gap_of(joints, geometry, bodies, joint, point, frame)
     if fresh:
@@ -216,7 +221,7 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     free = first
     for k in range(count):
         if geometry.taken[k] != NONE:
-            _put(geometry, geometry.taken[k], k)
+            _put(geometry, bodies.corners, geometry.taken[k], k)
             _resize(joints, contacts, geometry, joint, geometry.taken[k], geometry.numbers[k, 0])
     for k in range(count):
         if geometry.taken[k] == NONE:
