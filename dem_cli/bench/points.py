@@ -9,8 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointArrays
-from dem_cli.contact.joints import empty_contacts
+from dem_cli.contact.joints import JointArrays, empty_contacts
 from dem_cli.kernels.records import Contacts, FixedJoints
 
 if TYPE_CHECKING:

@@ -14,7 +14,6 @@ from dem_cli.case.wording import kind_of, show
 from dem_cli.errors import CaseProblem, KeyPath
 
 NAME = "NAME"  # stands for a name of the user's choice in a key path
-YET = "not available in 3D yet"
 Table = TypeVar("Table", bound=CaseModel)
 
 
@@ -42,12 +41,10 @@ class Scope(NamedTuple):
         """What is wrong with it in the other dimension."""
         if not self.values:
             return self.why
-        found = show(value) + (" is " if self.why.startswith("not") else " is not allowed; ")
-        return found + self.why
+        return f"{show(value)} is not allowed; {self.why}"
 
 
 SCOPES = (
-    Scope("calibration", 2, YET),
     Scope("joints.NAME.points", 2, "must be 'vertices' or 'vertices+centre' in 3D", tuple(range(2, 10))),
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),

@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
-from dem_cli.contact.geometry import JointGeometry, geometry_of, motion_of
-from dem_cli.contact.joints import Faces, JointProperties, empty_contacts
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.contact.geometry import geometry_of, motion_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties, empty_contacts
+from dem_cli.kernels.records import Bodies
 from dem_cli.model.model import Model
-
-
-class JointArrays(NamedTuple):
-    """All that there is of the joints of one moment."""
-
-    joints: Joints
-    geometry: JointGeometry
-    contacts: Contacts
 
 
 def build_joints(

@@ -6,38 +6,16 @@ Everything else in the package asks for it by `geometry_of` and does not know ho
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from dem_cli.contact import planar, spatial, spatial_motion
-from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointGeometry, JointProperties
 from dem_cli.contact.layout import PointLayout, ProfileFault
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
-
-
-class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
-
-    @property
-    def keys(self) -> np.ndarray:
-        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
-
-    @property
-    def features(self) -> np.ndarray:
-        """What each point is within its joint, (n_points,)."""
-
-    def kept(self) -> Self:
-        """The same with a copy of what changes."""
-
-    def settled(self) -> Self:
-        """What is still asked for when points stay where they were placed."""
-
 
 Geometry = TypeVar("Geometry", bound=JointGeometry)
 Returning = TypeVar("Returning")  # what of the joints of the start comes back; None: nothing
@@ -84,8 +62,11 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Returning]):
     """What it has to know beside that where blocks move: how new contact points go on from old ones."""
 
-    def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
-        """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
+    def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
+        """What new joints have from the old ones with the same faces; match: their numbers, −1: none.
+
+        known: points that were there before, (n_points,) bool.
+        """
 
     def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
         """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -75,6 +75,32 @@ class JointProperties(NamedTuple):
         """The named joint of each pair of blocks (n, 2), (n,) int64."""
         materials = model.block_material[blocks]
         return self.by_material[materials[:, 0], materials[:, 1]]
+
+
+class JointGeometry(Protocol):
+    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
+
+    @property
+    def keys(self) -> np.ndarray:
+        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
+
+    @property
+    def features(self) -> np.ndarray:
+        """What each point is within its joint, (n_points,)."""
+
+    def kept(self) -> Self:
+        """The same with a copy of what changes."""
+
+    def settled(self) -> Self:
+        """What is still asked for when points stay where they were placed."""
+
+
+class JointArrays(NamedTuple):
+    """All that there is of the joints of one moment."""
+
+    joints: Joints
+    geometry: JointGeometry
+    contacts: Contacts
 
 
 def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:

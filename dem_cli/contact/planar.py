@@ -4,13 +4,13 @@ these are when the blocks move. One of the modules of contact/geometry.py.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
 from dem_cli.contact.chains import END_TO_END, STEEP, Chains, come_back, made_chains
 from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths, widest_gaps
-from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointProperties, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, steepest, too_steep
 from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
@@ -18,9 +18,6 @@ from dem_cli.kernels.planar_geometry import BLEND, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.contact.assemble import JointArrays
 
 PARALLEL = 1e-2  # sine of the angle between edges that touch along their length
 NARROWEST = 0.1  # of the shorter edge: the overlap that a joint has stiffness for at least
@@ -156,7 +153,7 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
     return made_chains(model, faces, corners, properties) if properties.profiled else None
 
 
-def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
     known = np.flatnonzero(match >= 0)
     before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointArrays, build_joints
+from dem_cli.contact.assemble import build_joints
 from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joint_planes import in_planes
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.joints import JointArrays, JointProperties
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import turns_of, unturned
 from dem_cli.kernels.records import Bodies, Contacts, Joints

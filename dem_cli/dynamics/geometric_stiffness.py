@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.compatibility import directions, free_columns
-from dem_cli.contact.geometry import JointGeometry
+from dem_cli.contact.joints import JointGeometry
 from dem_cli.contact.planar import corner_shares
 from dem_cli.dynamics.spatial_stiffness import attachment, second_derivatives
 from dem_cli.geometry.rotation import across

@@ -25,7 +25,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.geometry import JointGeometry, motion_of
+from dem_cli.contact.geometry import motion_of
+from dem_cli.contact.joints import JointGeometry
 from dem_cli.geometry.rotation import turned_further, turns_of
 
 if TYPE_CHECKING:

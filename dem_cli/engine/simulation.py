@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.assemble import JointArrays
 from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.geometry import JointGeometry
-from dem_cli.contact.joints import JointProperties, points_in_use
+from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses

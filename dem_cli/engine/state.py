@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.geometry import JointGeometry
+from dem_cli.contact.joints import JointGeometry
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 
 

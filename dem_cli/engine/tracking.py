@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dem_cli.contact.assemble import JointArrays, build_joints
+from dem_cli.contact.assemble import build_joints
 from dem_cli.contact.geometry import NarrowPhase, geometry_of, motion_of
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties
 from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from dem_cli.contact.assemble import JointArrays
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.joints import JointArrays, JointProperties
 from dem_cli.contact.layout import PointLayout
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.geometry.polyhedron import Polyhedron, box, hull

@@ -38,11 +38,11 @@ def test_every_key_of_the_table_exists(scope):
 
 def test_what_is_known_in_one_dimension_is_said_in_the_schema():
     schema = json_schema(make_case_model())
-    blocks, wall, profiles = (schema["$defs"][name] for name in ("BlockTable", "Wall", "Calibration"))
+    blocks, wall, initial = (schema["$defs"][name] for name in ("BlockTable", "Wall", "InitialState"))
     assert blocks["properties"]["thickness"]["description"].endswith("(2D only)")
     assert blocks["properties"]["polygon"]["description"].endswith("(3D only)")
     assert wall["properties"]["sides"]["description"].endswith("(3D only)")
-    assert "(2D only)" in profiles["description"]
+    assert "(3D only)" in initial["properties"]["axis"]["description"]
     assert (schema["properties"]["dimension"]["enum"], known_in(("load", "force"))) == ([2, 3], None)
     origin = wall["properties"]["origin"]
     assert (origin["minItems"], origin["maxItems"]) == (2, 3)

@@ -80,10 +80,10 @@ def step(joints, bodies, contacts, inverse, dampers, turns: int, kick: np.ndarra
     resist(joints, contacts, bodies, inverse, dampers, dt, turns, LIKE, LIKE)
 
 
-def exact(joints, bodies, inverse, before: np.ndarray, kicked: np.ndarray, dt: float = 1e-2):
+def exact(joints, bodies, inverse, before: np.ndarray, kicked: np.ndarray, viscosity: float = 1.0):
     """Impulses J = −C (rates before + after) and velocities after them, all at once."""
     rows, masses = rows_of(joints, bodies), inverse_masses(bodies, inverse)
-    half = 0.5 * dt * np.column_stack([joints.kn, joints.ks, joints.ks]).ravel()
+    half = 0.5e-2 * viscosity * np.column_stack([joints.kn, joints.ks, joints.ks]).ravel()
     around = rows @ masses @ rows.T
     right = -half * (rows @ (before + kicked).ravel())
     found = np.linalg.solve(np.eye(len(half)) + half[:, None] * around, right)
@@ -106,11 +106,11 @@ def test_one_point_is_solved_at_once():
 
 
 def test_sweeps_find_the_impulses_of_all_points():
-    joints, bodies, contacts, inverse, dampers = scene()
+    joints, bodies, contacts, inverse, dampers = scene(viscosity=0.05)
     before, kick = bodies.velocities.copy(), RANDOM.uniform(-1.0, 1.0, (3, 6))
     kick[0] = 0.0
-    impulses, after = exact(joints, bodies, inverse, before, before + kick)
-    step(joints, bodies, contacts, inverse, dampers, 600, kick)
+    impulses, after = exact(joints, bodies, inverse, before, before + kick, 0.05)
+    step(joints, bodies, contacts, inverse, dampers, 200, kick)
     assert bodies.velocities == pytest.approx(after, abs=1e-9)
     assert contacts.memory.ravel() == pytest.approx(impulses, abs=1e-6 * np.abs(impulses).max())
     contacts.memory[:] = impulses.reshape(-1, 3)  # a perfect guess: one pair of sweeps changes nothing
@@ -121,12 +121,13 @@ def test_sweeps_find_the_impulses_of_all_points():
 
 def test_spring_and_dashpot_do_not_pull():
     """Impulses across joints are at least −N dt, and what is left satisfies all other equations."""
-    joints, bodies, contacts, inverse, dampers = scene()
-    contacts.normal[:], dt = 20.0, 1e-2
+    viscosity, dt = 0.05, 1e-2
+    joints, bodies, contacts, inverse, dampers = scene(viscosity=viscosity)
+    contacts.normal[:] = 20.0
     before, kick = bodies.velocities.copy(), np.zeros((3, 6))
-    step(joints, bodies, contacts, inverse, dampers, 800, kick, dt)
+    step(joints, bodies, contacts, inverse, dampers, 200, kick, dt)
     rows, impulses = rows_of(joints, bodies), contacts.memory
-    half = 0.5 * dt * np.column_stack([joints.kn, joints.ks, joints.ks])
+    half = 0.5 * viscosity * dt * np.column_stack([joints.kn, joints.ks, joints.ks])
     left = impulses + half * (rows @ (before + bodies.velocities).ravel()).reshape(-1, 3)
     bound = impulses[:, 0] <= -contacts.normal * dt * (1.0 - 1e-12)
     assert bound.any()
