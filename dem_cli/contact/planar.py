@@ -153,7 +153,7 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
     return made_chains(model, faces, corners, properties) if properties.profiled else None
 
 
-def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
     known = np.flatnonzero(match >= 0)
     before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)
