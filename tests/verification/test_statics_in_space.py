@@ -141,6 +141,18 @@ def test_a_load_path_moves_a_twin_as_the_wall_of_the_plane():
         assert one["displacement"] == pytest.approx(other["displacement"], rel=within)
 
 
+def test_a_block_rolls_over_its_cap_there_and_back():
+    """The polygon of five sides of the thesis as a cap on a square foot: two rotations move the block by 17.926 mm."""
+    flat = read(CASES / "validation" / "block_on_polygon_cycle.toml")
+    flat.pop("reference")
+    for one in flat["block"]:
+        one["thickness"] = 1.0
+    turns = solved(extruded_tables(flat))[0]["turning_points"]
+    assert [turn["load"] for turn in turns] == [0.8, 0.0, -0.8, 0.0]
+    assert [turns[i]["displacement"] for i in (0, 2)] == pytest.approx([0.017926] * 2, rel=2e-3)
+    assert [turns[i]["displacement"] for i in (1, 3)] == pytest.approx([0.0, 0.0], abs=4e-5)
+
+
 def test_a_slab_comes_down_on_its_short_leg():
     """Legs under the corners of a slab, one of them short by g: it turns about the diagonal until the corner rests.
 
