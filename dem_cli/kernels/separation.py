@@ -14,7 +14,7 @@ from dem_cli.kernels.vec import dot
 TIE = 1e-9  # of the size: separations that are the same
 EDGE_SHARE = 0.01  # of the separation by faces, and
 EDGE_SIZE = 1e-6  # of the size: by so much an axis of two edges must beat the faces, which make steadier joints
-ALIGNED = 1e-5  # sine of the angle between edges whose cross product is round-off: of blocks of one bond, turned
+ALIGNED = 0.05  # sine of the angle between edges that are parallel: where and how they cross swings with the blocks
 NO_EDGE = -1
 
 

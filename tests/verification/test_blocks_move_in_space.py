@@ -77,6 +77,22 @@ def test_column_of_drums_under_three_components():
     assert found["moved"] < 2e-2
 
 
+def test_blocks_that_meet_along_an_edge_make_no_energy():
+    """Edges that are nearly parallel cross anywhere: blocks that meet along one are held by their faces alone."""
+    found = structures.corner_opens()
+    assert found["found"] > 0.05  # it opens
+    assert found["book"] < 5e-3
+    assert found["moved"] < 5e-2
+
+
+def test_a_small_block_lands_on_its_corner():
+    """On a base whose faces are a hundred times its own."""
+    found = single.cube_on_corner(DASHPOTS)
+    assert error(found) == pytest.approx(0.0, abs=1e-3)
+    assert found["book"] < 5e-3
+    assert found["moved"] < 1e-3
+
+
 def test_oracle_of_the_spin():
     """Half of the spin of a pad is gone at 1 − √½ of the way: a check of the oracle, not of dem."""
     whole, half = (single.PAD.stops((0.0, 0.0), spin) for spin in (3.0, 3.0 * math.sqrt(0.5)))
