@@ -108,9 +108,16 @@ def _tangents(model: Model, faces: np.ndarray) -> np.ndarray:
     return along / np.linalg.norm(along, axis=1)[:, None]
 
 
+def _median_free_face(model: Model) -> float:
+    """Median area of the faces of blocks that can move [m²]: those of a large base say nothing of a stone on it."""
+    areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
+    free = ~model.inner_faces & ~model.fixed[model.part_blocks[model.topology.face_parts]]
+    return float(np.median(areas[free])) if free.any() else median_face(model)
+
+
 def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarray:
     """SpatialMotion.scales of pairs of faces, (n, 8)."""
-    topology, median = model.topology, median_face(model)
+    topology, median = model.topology, _median_free_face(model)
     areas = np.linalg.norm(face_areas(model.vertices, topology), axis=1)
     sides = topology.sides
     lengths = np.linalg.norm(model.vertices[sides[:, 1]] - model.vertices[sides[:, 0]], axis=1)
