@@ -151,16 +151,15 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
     new.contacts.shear[target] = grown[:, None] * np.einsum("nij,nj->ni", now, along)
 
 
-def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
-    known = np.isin(new.geometry.features, -1) | (match[new.joints.owners] < 0)
-    for j in np.unique(new.joints.owners[~known]):
+    owners = new.joints.owners
+    fresh = (new.geometry.features >= 0) & ~known & (match[owners] >= 0)
+    for j in np.unique(owners[fresh]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
-        features = new.geometry.features[now]
-        was = was[old.geometry.features[was] >= 0]
-        now = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])]
-        if len(was) and len(now):
+        was, now = was[old.geometry.features[was] >= 0], now[fresh[now]]
+        if len(was):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]
             carry(old, new, now, source)
