@@ -154,13 +154,14 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
     owners = new.joints.owners
-    for point in np.flatnonzero((new.geometry.features >= 0) & ~known & (match[owners] >= 0)):
-        before = match[owners[point]]
-        was = np.arange(old.joints.starts[before], old.joints.starts[before + 1])
-        was = was[old.geometry.features[was] >= 0]
+    fresh = (new.geometry.features >= 0) & ~known & (match[owners] >= 0)
+    for j in np.unique(owners[fresh]):
+        was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
+        now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
+        was, now = was[old.geometry.features[was] >= 0], now[fresh[now]]
         if len(was):
-            nearest = ((old.joints.points[was] - new.joints.points[point]) ** 2).sum(axis=1).argmin()
-            now, source = np.array([point]), was[[nearest]]
+            arms = new.joints.points[now][:, None] - old.joints.points[was]
+            source = was[(arms**2).sum(axis=2).argmin(axis=1)]
             carry(old, new, now, source)
             for name in ("slip", "memory", "closure"):
                 getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
