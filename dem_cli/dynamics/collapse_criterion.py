@@ -9,7 +9,7 @@ import numpy as np
 from dem_cli.engine import measures
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
-from dem_cli.geometry.rotation import angles_of
+from dem_cli.geometry.rotation import leans_of
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
@@ -44,11 +44,11 @@ def fallen_blocks(sim: DynamicSimulation, analysis: ShakingAnalysis) -> np.ndarr
 def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
     """What tells a fall, of the free blocks: values, limits, a word and a unit."""
     free, d = sim.free, sim.model.dimension
-    turned = np.degrees(np.abs(angles_of(sim.bodies.orientations[free])))
+    leans = np.degrees(leans_of(sim.bodies.orientations[free]))
     sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
     drops = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
     return [
-        (turned, np.full(len(free), analysis.fallen_deg), "turned by", "°"),
+        (leans, np.full(len(free), analysis.fallen_deg), "turned by", "°"),
         (sank, drops, "sank by", " m"),
     ]
 

@@ -126,6 +126,14 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
     return 2.0 * np.arctan2(np.linalg.norm(orientations[:, 1:], axis=1), np.abs(orientations[:, 0]))
 
 
+def leans_of(orientations: np.ndarray) -> np.ndarray:
+    """By how much what was upright leans now [rad], (n,): the angle in the plane, in space that of z, from 0 to π."""
+    if orientations.shape[1] == 1:
+        return np.abs(orientations[:, 0])
+    _, x, y, _ = quaternions(orientations).T
+    return 2.0 * np.arcsin(np.clip(np.hypot(x, y), 0.0, 1.0))
+
+
 def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """By how much each block has turned from one orientation to another [rad], (n,): in space from 0 to π."""
     if one.shape[1] == 4:

@@ -136,7 +136,11 @@ class ShakingAnalysis(CaseModel):
     )
     margin: float = Field(default=0.25, gt=0.0, le=0.95, description="time step over the largest stable one [-]")
     settle: bool = Field(default=True, description="come to rest under dead loads first; false: start as drawn")
-    fallen_deg: float = Field(default=60.0, gt=0.0, description="a block that turned by so much has collapsed [deg]")
+    fallen_deg: float = Field(
+        default=60.0,
+        gt=0.0,
+        description="a block that leans by so much has collapsed [deg]; turns about the vertical do not count",
+    )
     dropped: float | None = Field(
         default=None,
         gt=0.0,

@@ -93,3 +93,12 @@ def test_frames_in_the_plane_are_made_of_normals():
     stored = np.column_stack([PLANE, np.full((7, 2), np.nan)])
     assert np.array_equal(rotation.frames(stored, 2), np.stack([PLANE, rotation.across(PLANE)], axis=1))
     assert np.array_equal(rotation.frames(np.arange(18.0).reshape(2, 9), 3), np.arange(18.0).reshape(2, 3, 3))
+
+
+def test_what_leans_is_the_upright_axis():
+    """A turn about the vertical is none; in the plane the angle itself."""
+    found = quaternions(SPACE, ANGLES)
+    upright = rotation.matrices(found)[:, 2, 2]
+    assert np.cos(rotation.leans_of(found)) == pytest.approx(upright, abs=1e-14)
+    assert rotation.leans_of(quaternions(np.tile([0.0, 0.0, 1.0], (7, 1)), ANGLES)) == pytest.approx(0.0, abs=1e-15)
+    assert np.array_equal(rotation.leans_of(ANGLES[:, None]), np.abs(ANGLES))
