@@ -173,7 +173,7 @@ class Output(CaseModel):
 class ProgramStamp(CaseModel):
     """[dem]: put into the effective case by the program."""
 
-    version: str = Field(description="version of dem that wrote this file", examples=["0.5.0"])
+    version: str = Field(description="version of dem that wrote this file", examples=["0.6.0"])
 
 
 class Case(CaseModel):
