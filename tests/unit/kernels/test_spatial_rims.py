@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from dem_cli.geometry.rotation import quaternions
 
 DEEP = 1e-4  # m that the upper block is pressed into the lower one
+UP = np.array([0.0, 0.0, 1.0])
 
 
 def turn(*vector: float) -> Rotation:
@@ -96,12 +97,12 @@ def test_nothing_jumps_through_alignment(way):
 
 
 def test_a_tilted_block_passes_a_rim_without_a_jump():
-    """A sixteenth of the step, far less of the bend: the slope has a kink where the pressed edge leaves the block below."""
+    """A sixteenth of the step, far less of the bend: a kink of the slope where the pressed edge leaves the other block."""
     tilt, found = 0.05, []
     start = np.array([0.5 - 0.5 * np.cos(tilt), 0.0, 0.5 * np.sin(tilt) - DEEP])
     for step in (4e-6, 2.5e-7):
         near = np.arange(-80, 81) * step
-        places = [(start + [x, 0.0, 0.0], turn(0.0, tilt, 0.0)) for x in near]
+        places = [(start + np.array([x, 0.0, 0.0]), turn(0.0, tilt, 0.0)) for x in near]
         found.append(largest_jumps(places, Pair()))
     assert (found[1] < found[0] / 4.0).all()
     assert found[1].max() < 1.5e-4
@@ -116,7 +117,7 @@ def test_no_work_round_a_loop_on_a_base():
     """The foot slides and turns flat on a wide base, then on one of its edges, tilted by 0.1 rad."""
     pair = Pair(lower=6.0)
     yaws = 0.5 * np.sin(2.0 * np.pi * np.arange(40) / 40)
-    flat = [(at + [0.0, 0.0, -DEEP], turn(0.0, 0.0, yaw)) for at, yaw in zip(circle(0.5, 40), yaws)]
+    flat = [(at - DEEP * UP, turn(0.0, 0.0, yaw)) for at, yaw in zip(circle(0.5, 40), yaws)]
     work, elastic = work_round(flat, pair)
     assert abs(work) < 1e-12 * elastic
     up = 0.5 * np.sin(0.1) - DEEP
