@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from dem_cli.analyses.modes import touching_points
@@ -19,12 +20,14 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
+    from dem_cli.motion.motion import Motion
 
 NANOSECONDS = {  # per contact point and step, one core, by dimension, without and with dashpots
     2: {False: 20, True: 55},
     3: {False: 90, True: 160},
 }
 PER_STEP = 0.4  # µs beside them
+MOST_MOTIONS = 6  # that are listed
 
 
 def settings_of(case: Case, model: Model) -> Settings:
@@ -64,7 +67,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
     if length <= 0.0:
         return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
     runs, said = _runs(case)
-    peak = "" if analysis.kind == "fragility" else f", peak {ground.peak:.4g} m/s²"
+    peak = "" if analysis.kind == "fragility" else f", {ground_words(motions_of(case))}"
     rows = [("load", f"{length:g} s of motion{peak}"), *([("runs", said)] if said else [])]
     if not math.isfinite(step.step):
         return rows
@@ -80,6 +83,23 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
         *([("coda", f"up to {more:,} steps more, where it still moves then")] if more else []),
         ("cost", f"{duration_words(seconds)} on one core ({each}{steps:,} steps × ({work}))"),
     ]
+
+
+def ground_words(motions: Sequence[Motion]) -> str:
+    """Peaks of ground motions; where several come together, each with its direction."""
+    if len(motions) < 2:
+        return f"peak {max((motion.peak for motion in motions), default=0.0):.4g} m/s²"
+    shown = [f"{motion.peak:.4g} m/s² along {_way(motion.direction)}" for motion in motions[:MOST_MOTIONS]]
+    more = [f"{len(motions) - MOST_MOTIONS} more"] if len(motions) > MOST_MOTIONS else []
+    return "peaks " + ", ".join([*shown, *more])
+
+
+def _way(direction: Sequence[float]) -> str:
+    """An axis by its name, another direction by its components."""
+    along = [k for k, part in enumerate(direction) if part != 0.0]
+    if len(along) == 1:
+        return f"{'−' if direction[along[0]] < 0.0 else ''}{'xyz'[along[0]]}"
+    return f"[{', '.join(f'{part:.3g}' for part in direction)}]"
 
 
 def _runs(case: Case) -> tuple[int, str]:

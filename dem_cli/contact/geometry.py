@@ -62,8 +62,11 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Returning]):
     """What it has to know beside that where blocks move: how new contact points go on from old ones."""
 
-    def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
-        """What new joints have from the old ones with the same faces; match: their numbers, −1: none."""
+    def take_over(self, old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
+        """What new joints have from the old ones with the same faces; match: their numbers, −1: none.
+
+        known: points that were there before, (n_points,) bool.
+        """
 
     def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
         """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""

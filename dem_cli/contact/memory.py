@@ -19,7 +19,7 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
     points = _same_points(old, new, match)
     target = np.flatnonzero(points >= 0)
     _copy(narrow, old, new, target, points[target])
-    narrow.take_over(old, new, match)
+    narrow.take_over(old, new, match, points >= 0)
     orphans = np.setdiff1d(np.flatnonzero(_loaded(old)), match[match >= 0])
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):

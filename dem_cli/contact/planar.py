@@ -153,12 +153,12 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
     return made_chains(model, faces, corners, properties) if properties.profiled else None
 
 
-def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
-    known = np.flatnonzero(match >= 0)
+    go_on = np.flatnonzero(match >= 0)
     before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)
     now.sunk[:] = np.inf
-    now.sunk[known] = before.sunk[match[known]]
+    now.sunk[go_on] = before.sunk[match[go_on]]
 
 
 def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:

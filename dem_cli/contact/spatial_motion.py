@@ -37,7 +37,6 @@ __all__ = [
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
 FLOOR = 0.25  # of the median face, or of the smaller one of a joint: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
-SPARE = 4  # slots of a joint beside one for each corner of both faces
 REMEMBERED = 32  # numbers of memory of a law, at most
 
 
@@ -51,7 +50,7 @@ def points(
     caps = caps_of(chains or made_caps(model, faces, corners, properties), faces)
     solids, n = polyhedra(model, corners), len(faces.parts)
     counts = np.diff(solids.face_starts)
-    slots = counts[faces.faces].sum(axis=1) + np.diff(caps.starts) + SPARE
+    slots = counts[faces.faces].sum(axis=1) + np.diff(caps.starts) + 1  # corners, and a centre
     starts = np.concatenate([[0], np.cumsum(slots)]).astype(np.int64)
     most = int(slots.max(initial=0))
     work = np.zeros((7, 2 * most + 2, 4))
@@ -73,6 +72,7 @@ def points(
         types=np.zeros(n_points, np.int8),
         corners=np.full((n_points, 5), -1),
         shares=np.zeros(n_points),
+        spans=np.zeros((n_points, 2)),
         arms=np.zeros((n_points, 3)),
         rises=caps.rises,
         slopes=caps.slopes,
@@ -108,9 +108,16 @@ def _tangents(model: Model, faces: np.ndarray) -> np.ndarray:
     return along / np.linalg.norm(along, axis=1)[:, None]
 
 
+def _median_free_face(model: Model) -> float:
+    """Median area of the faces of blocks that can move [m²]: those of a large base say nothing of a stone on it."""
+    areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
+    free = ~model.inner_faces & ~model.fixed[model.part_blocks[model.topology.face_parts]]
+    return float(np.median(areas[free])) if free.any() else median_face(model)
+
+
 def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarray:
     """SpatialMotion.scales of pairs of faces, (n, 8)."""
-    topology, median = model.topology, median_face(model)
+    topology, median = model.topology, _median_free_face(model)
     areas = np.linalg.norm(face_areas(model.vertices, topology), axis=1)
     sides = topology.sides
     lengths = np.linalg.norm(model.vertices[sides[:, 1]] - model.vertices[sides[:, 0]], axis=1)
@@ -144,16 +151,15 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
     new.contacts.shear[target] = grown[:, None] * np.einsum("nij,nj->ni", now, along)
 
 
-def take_over(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
     """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
-    known = np.isin(new.geometry.features, -1) | (match[new.joints.owners] < 0)
-    for j in np.unique(new.joints.owners[~known]):
+    owners = new.joints.owners
+    fresh = (new.geometry.features >= 0) & ~known & (match[owners] >= 0)
+    for j in np.unique(owners[fresh]):
         was = np.arange(old.joints.starts[match[j]], old.joints.starts[match[j] + 1])
         now = np.arange(new.joints.starts[j], new.joints.starts[j + 1])
-        features = new.geometry.features[now]
-        was = was[old.geometry.features[was] >= 0]
-        now = now[(features >= 0) & ~np.isin(features, old.geometry.features[was])]
-        if len(was) and len(now):
+        was, now = was[old.geometry.features[was] >= 0], now[fresh[now]]
+        if len(was):
             arms = new.joints.points[now][:, None] - old.joints.points[was]
             source = was[(arms**2).sum(axis=2).argmin(axis=1)]
             carry(old, new, now, source)

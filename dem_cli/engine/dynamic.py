@@ -75,7 +75,7 @@ class DynamicSimulation(Simulation):
         self.ledger[slot.EXTERNAL] = self.elastic_energy()  # what the springs hold was given before
         self.centred = self.ledger.copy()
         bodies, shape = self.bodies, self.shape
-        bodies.means[:] = 0.0
+        bodies.means[:] = bodies.pulled[:] = 0.0
         bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
         self.turns_of_means = bodies.turns.copy()
         self.contacts.exchanged[:] = 0.0

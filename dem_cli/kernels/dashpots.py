@@ -3,7 +3,8 @@
 A dashpot beside each spring resists its mean rate over the step, J = −c dt (w₀ + w)/2, together with all others: two
 symmetric Gauss–Seidel sweeps over the impulses J, warm from the step before, leave the largest stable step that of
 the springs alone, however stiff the dashpots. Spring and dashpot together do not pull (J_n ≥ −N dt); points that
-slip have no dashpot along the joint, and open ones none at all.
+slip have no dashpot along the joint, and open ones none at all. In 3D, where a point has two tangents, its three
+impulses are solved at once.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.kernels.jit import always_inline, inline, overload
-from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, sweep, torque_at
+from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
 from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
 
@@ -50,8 +51,8 @@ def _put_diagonal(gains, point, frame, reaches, masses, mobilities, viscous, sli
 def _put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips):
     n, s, t = frame
     c, f = viscous
-    a_n, a_s, a_t = sweep(reaches[0], n), sweep(reaches[0], s), sweep(reaches[0], t)
-    b_n, b_s, b_t = sweep(reaches[1], n), sweep(reaches[1], s), sweep(reaches[1], t)
+    a_n, a_s, a_t = moment(reaches[0], n), moment(reaches[0], s), moment(reaches[0], t)
+    b_n, b_s, b_t = moment(reaches[1], n), moment(reaches[1], s), moment(reaches[1], t)
     by_a, by_b = spun(mobilities[0], a_n), spun(mobilities[1], b_n)
     nn = 1.0 + c * (masses + dot(by_a, a_n) + dot(by_b, b_n))
     if slips:

@@ -154,6 +154,7 @@ class SpatialMotion(NamedTuple):
     types: np.ndarray  # CORNER_OF_B, CORNER_OF_A, CROSSING or FIXED_TO_B, (n_points,) int8
     corners: np.ndarray  # that corner and up to two sides of the rim near it (−1: none), or two edges, (n_points, 5)
     shares: np.ndarray  # of crossings: place along the edge of a when renewed; lone: sign of the normal, (n_points,)
+    spans: np.ndarray  # one over the lengths of those sides of the rim [1/m], (n_points, 2)
     arms: np.ndarray  # of points fixed to b: in its frame, from its centroid [m], (n_points, 3)
     rises: np.ndarray  # of caps (contact/caps.py): how high the outline of b lies over its lowest ring [m], (n_joints,)
     slopes: np.ndarray  # of a cap, of its steepest side, (n_joints,)
@@ -178,7 +179,7 @@ class SpatialMotion(NamedTuple):
 
     def kept(self) -> SpatialMotion:
         """The same with a copy of what changes."""
-        changing = ("features", "markers", "types", "corners", "shares", "arms")
+        changing = ("features", "markers", "types", "corners", "shares", "spans", "arms")
         return self._replace(**{name: getattr(self, name).copy() for name in changing})
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap, turned3, turned_back3
@@ -20,7 +20,7 @@ CLOSED = 10  # how far the nearest point has closed since forces were found [m]
 LEFT = 11  # memory of the law, from here on
 
 
-@inline
+@always_inline
 def marks_of(geometry, bodies, joint, a):
     """Two corners of face b as block a sees them."""
     face = geometry.faces[joint, 1]
@@ -32,7 +32,7 @@ def marks_of(geometry, bodies, joint, a):
     return turned_back3(bodies.turns, a, one), turned_back3(bodies.turns, a, two)
 
 
-@inline
+@always_inline
 def is_due(geometry, bodies, joint, a):
     """Whether one block has moved along or turned against the other since the joint was renewed."""
     one, two = marks_of(geometry, bodies, joint, a)
@@ -43,7 +43,7 @@ def is_due(geometry, bodies, joint, a):
     return not (dot(first, first) <= far * far and dot(second, second) <= far * far)
 
 
-@inline
+@always_inline
 def _energy(joints, contacts, point):
     """In the springs of a point [J]."""
     if joints.kn[point] == 0.0:
@@ -52,7 +52,7 @@ def _energy(joints, contacts, point):
     return 0.5 * (normal * normal / joints.kn[point] + along / joints.ks[point])
 
 
-@inline
+@always_inline
 def _place_of(geometry, bodies, point, b):
     """About where the point of a slot is."""
     if geometry.types[point] == CROSSING:
@@ -64,8 +64,8 @@ def _place_of(geometry, bodies, point, b):
     return row3(bodies.corners, geometry.corners[point, 0])
 
 
-@inline
-def _put(geometry, point, k):
+@always_inline
+def _put(geometry, vertices, point, k):
     """What a slot holds from now on."""
     found, labels, numbers = geometry.found, geometry.labels, geometry.numbers
     geometry.features[point], geometry.types[point] = labels[k, 0], labels[k, 1]
@@ -74,9 +74,14 @@ def _put(geometry, point, k):
     geometry.shares[point] = numbers[k, 1]
     for m in range(3):
         geometry.arms[point, m] = numbers[k, 2 + m]
+    if labels[k, 1] != CROSSING:
+        for m in range(2):
+            if found[k, 2 * m + 1] != NONE:
+                side = minus3(row3(vertices, found[k, 2 * m + 2]), row3(vertices, found[k, 2 * m + 1]))
+                geometry.spans[point, m] = 1.0 / math.sqrt(dot(side, side))
 
 
-@inline
+@always_inline
 def _resize(joints, contacts, geometry, joint, point, area):
     """Stiffness of a point by its area; forces go with it."""
     kn, ks = area * geometry.scales[joint, KN], area * geometry.scales[joint, KS]
@@ -87,7 +92,7 @@ def _resize(joints, contacts, geometry, joint, point, area):
     joints.kn[point], joints.ks[point] = kn, ks
 
 
-@inline
+@always_inline
 def _forget(joints, contacts, geometry, point):
     """A slot without a point."""
     geometry.features[point], joints.kn[point], joints.ks[point] = NONE, 0.0, 0.0
@@ -97,7 +102,7 @@ def _forget(joints, contacts, geometry, point):
         contacts.memory[point, k] = 0.0
 
 
-@inline
+@always_inline
 def _look_up(joints, geometry, bodies, joint, count, b):
     """For each found point its slot, into `taken`, and for new ones the nearest slot before, into `heirs`."""
     first, last = joints.starts[joint], joints.starts[joint + 1]
@@ -117,7 +122,7 @@ def _look_up(joints, geometry, bodies, joint, count, b):
                     geometry.heirs[k], nearest = point, dot(arm, arm)
 
 
-@inline
+@always_inline
 def _found_place(geometry, bodies, k, b):
     """About where a found point is."""
     found, numbers = geometry.found, geometry.numbers
@@ -130,7 +135,7 @@ def _found_place(geometry, bodies, k, b):
     return row3(bodies.corners, found[k, 0])
 
 
-@inline
+@always_inline
 def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
     """What a new point gets from the nearest one: tractions over stiffness, slip, closure, memory of the law.
 
@@ -149,7 +154,7 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
         numbers[k, LEFT + m] = contacts.memory[heir, m]
 
 
-@inline
+@always_inline
 def _gap_of(joints, geometry, bodies, joint, point, frame):
     """Where the blocks are now."""
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
@@ -157,11 +162,11 @@ def _gap_of(joints, geometry, bodies, joint, point, frame):
     return on_cap(geometry, bodies, joint, point, gap, place, frame)[0]
 
 
-@inline
+@always_inline
 def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remembers, bonded, fresh):
     """A new point in its slot: its own gap, and what the nearest one left it."""
     numbers = geometry.numbers
-    _put(geometry, point, k)
+    _put(geometry, bodies.corners, point, k)
     _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
     gap = _gap_of(joints, geometry, bodies, joint, point, frame)
     if fresh:
@@ -179,7 +184,7 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
         contacts.shear[point, 1] = joints.ks[point] * numbers[k, 7]
 
 
-@inline
+@always_inline
 def _found(geometry, bodies, joint, pair, frame, along, room):
     """The contact points that there are now: how many."""
     out = (geometry.work, geometry.found, geometry.labels, geometry.numbers)
@@ -216,7 +221,7 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     free = first
     for k in range(count):
         if geometry.taken[k] != NONE:
-            _put(geometry, geometry.taken[k], k)
+            _put(geometry, bodies.corners, geometry.taken[k], k)
             _resize(joints, contacts, geometry, joint, geometry.taken[k], geometry.numbers[k, 0])
     for k in range(count):
         if geometry.taken[k] == NONE:
@@ -234,7 +239,7 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     return count
 
 
-@inline
+@always_inline
 def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     """As _renew, for the loops that are made for a law: the cache knows these by all that they name, and a kernel has
     another name in each process. A plain function has not."""

@@ -58,32 +58,52 @@ def _share(way, band):
 
 
 @always_inline
-def _across(normal, along):
-    """What is left of a normal across a unit vector, of length one."""
-    return unit3(axpy(-dot(normal, along), along, normal))
+def near_unit3(v):
+    """A vector of about length one, of length one; by a series where it hardly differs: no root, no division."""
+    short = 1.0 - dot(v, v)
+    if abs(short) > 1e-3:
+        return unit3(v)
+    size = 1.0 + short * (0.5 + short * (0.375 + short * (0.3125 + short * 0.2734375)))
+    return (size * v[0], size * v[1], size * v[2])
 
 
 @always_inline
-def _over_rim(vertices, start, end, corner, outwards, own, other, band):
-    """Share of a corner's own normal by its way from a side of the rim, and the normal where it is over that side."""
-    origin = row3(vertices, start)
-    along = unit3(minus3(row3(vertices, end), origin))
+def _half_way(own, other, along):
+    """Half way from a normal to what is left of another one across a unit vector."""
+    over = near_unit3(axpy(-dot(other, along), along, other))
+    return (0.5 * (own[0] + over[0]), 0.5 * (own[1] + over[1]), 0.5 * (own[2] + over[2]))
+
+
+@always_inline
+def _over_rim(vertices, ends, span, corner, outwards, own, other, band):
+    """Share of a corner's own normal by its way from a side of the rim, and the normal where it is over that side.
+
+    ends, span: corners of the side, and one over its length [1/m].
+    """
+    origin = row3(vertices, ends[0])
+    side = minus3(row3(vertices, ends[1]), origin)
+    along = (span * side[0], span * side[1], span * side[2])
     depth = dot(minus3(corner, origin), cross3(outwards, along))
-    return _share(depth, band), unit3(axpy(1.0, _across(other, along), own))
+    return _share(depth, band), _half_way(own, other, along)
 
 
 @always_inline
-def corner_normal(vertices, sides, point, corner, outwards, own, other, middle, band):
+def corner_normal(vertices, sides, spans, point, corner, outwards, own, other, middle, band):
     """Normal of a corner on a face. own: of the face, from a to b; other: of the face of the corner's block, likewise.
 
-    outwards: own, as the face has it; sides[point, 1:5]: corners of up to two sides of its rim that are near.
+    outwards: own, as the face has it; sides[point, 1:5]: corners of up to two sides of its rim that are near, spans:
+    one over their lengths [1/m].
     """
     if sides[point, 1] == NONE:
         return own
-    first, over_first = _over_rim(vertices, sides[point, 1], sides[point, 2], corner, outwards, own, other, band)
+    first, over_first = _over_rim(
+        vertices, (sides[point, 1], sides[point, 2]), spans[point, 0], corner, outwards, own, other, band
+    )  # fmt: skip
     second, over_second = 1.0, own
     if sides[point, 3] != NONE:
-        second, over_second = _over_rim(vertices, sides[point, 3], sides[point, 4], corner, outwards, own, other, band)
+        second, over_second = _over_rim(
+            vertices, (sides[point, 3], sides[point, 4]), spans[point, 1], corner, outwards, own, other, band
+        )  # fmt: skip
     return _bilinear(first, second, own, over_first, over_second, middle)
 
 
@@ -92,7 +112,7 @@ def _bilinear(first, second, inside, over_first, over_second, over_both):
     """Normal between two rims: inside of both, over one of them, over both."""
     if first >= 1.0 and second >= 1.0:
         return inside
-    return unit3(mixed(second, mixed(first, inside, over_first), mixed(first, over_second, over_both)))
+    return near_unit3(mixed(second, mixed(first, inside, over_first), mixed(first, over_second, over_both)))
 
 
 @always_inline
@@ -123,8 +143,7 @@ def crossing_in_faces(vertices, ends, point, share, normal_a, normal_b, middle, 
     by_a, by_b = _share(min(s, 1.0 - s) * long_d, band), _share(min(t, 1.0 - t) * long_e, band)
     if by_a < 1.0 or by_b < 1.0:
         along_d, along_e = axpy(1.0 / long_d - 1.0, d, d), axpy(1.0 / long_e - 1.0, e, e)
-        near_b = unit3(axpy(1.0, _across(normal_b, along_d), normal_a))
-        near_a = unit3(axpy(1.0, _across(normal_a, along_e), normal_b))
+        near_b, near_a = _half_way(normal_a, normal_b, along_d), _half_way(normal_b, normal_a, along_e)
         normal = _bilinear(by_a, by_b, normal, near_a, near_b, middle)
     return normal, height * dot(middle, normal), axpy(s, d, on_a)
 
@@ -163,7 +182,9 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
         face = geometry.faces[joint, 1]
         height = dot(minus3(row3(vertices, geometry.face_corners[geometry.face_starts[face]]), corner), normal_b)
         outwards = (-normal_b[0], -normal_b[1], -normal_b[2])
-        normal = corner_normal(vertices, corners, point, corner, outwards, normal_b, normal_a, middle, band)
+        normal = corner_normal(
+            vertices, corners, geometry.spans, point, corner, outwards, normal_b, normal_a, middle, band
+        )  # fmt: skip
         return normal, height / dot(normal, normal_b), corner
     if kind == CORNER_OF_B:
         corner = row3(vertices, corners[point, 0])
@@ -172,7 +193,9 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
         corner = axpy(1.0, arm, row3(bodies.positions, b))
     face = geometry.faces[joint, 0]
     height = dot(minus3(corner, row3(vertices, geometry.face_corners[geometry.face_starts[face]])), normal_a)
-    normal = corner_normal(vertices, corners, point, corner, normal_a, normal_a, normal_b, middle, band)
+    normal = corner_normal(
+        vertices, corners, geometry.spans, point, corner, normal_a, normal_a, normal_b, middle, band
+    )  # fmt: skip
     return normal, height / dot(normal, normal_a), corner
 
 
@@ -218,11 +241,7 @@ def frame_of(geometry, turns, joint, a, b):
 def tangents3(normal, along):
     """Two unit vectors across a normal: what is left of `along`, and normal × that."""
     first = axpy(-dot(normal, along), normal, along)
-    square = dot(first, first)
-    if square < 1e-6:  # along the normal: any will do
-        pick = (1.0, 0.0, 0.0) if abs(normal[0]) < 0.7 else (0.0, 1.0, 0.0)
-        first = cross3(normal, pick)
-        square = dot(first, first)
-    size = 1.0 / math.sqrt(square)
-    first = (size * first[0], size * first[1], size * first[2])
+    if dot(first, first) < 1e-6:  # along the normal: any will do
+        first = cross3(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.7 else (0.0, 1.0, 0.0))
+    first = near_unit3(first)
     return first, cross3(normal, first)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline, kernel
+from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, simplify
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
@@ -33,7 +33,7 @@ CAP = 2 * LOCAL + LOCAL**4  # features of caps: from here on, beyond those of cr
 LABEL = 2  # column of row 2: what a corner of the overlap is
 
 
-@inline
+@always_inline
 def _flatten(geometry, vertices, face, origin, t1, t2, work, row, turned):
     """Corners of a face in the plane of t1 and t2; `turned`: the other way round. Returns how many."""
     first = geometry.face_starts[face]
@@ -45,7 +45,7 @@ def _flatten(geometry, vertices, face, origin, t1, t2, work, row, turned):
     return count
 
 
-@inline
+@always_inline
 def _corner_of(geometry, face, k, turned):
     """Vertex of corner k of a face that was flattened."""
     first = geometry.face_starts[face]
@@ -54,7 +54,7 @@ def _corner_of(geometry, face, k, turned):
     return geometry.face_corners[first + (count - 1 - k if turned else k)]
 
 
-@inline
+@always_inline
 def _clipped(geometry, vertices, joint, frame, along, work):
     """Overlap of the two faces of a joint in row 2 of `work`, with areas; returns corners, area, and its centroid."""
     face_a, face_b = geometry.faces[joint, 0], geometry.faces[joint, 1]
@@ -84,7 +84,7 @@ def _clipped(geometry, vertices, joint, frame, along, work):
     return count, (1.0 - keep) * floor * area, axpy(gy, t2, axpy(gx, t1, origin)), keep
 
 
-@inline
+@always_inline
 def _sides_near(geometry, vertices, face, outwards, corner, width, out):
     """Up to two sides of the rim of a face that are nearer to a corner than `width`: their ends, into out[1:5]."""
     first = geometry.face_starts[face]
@@ -105,26 +105,26 @@ def _sides_near(geometry, vertices, face, outwards, corner, width, out):
             out[3], out[4], second = start, end, depth
 
 
-@inline
+@always_inline
 def _edge_key(start, end, first):
     """Number of an edge of a part by its two corners, whichever comes first."""
     low, high = min(start, end) - first, max(start, end) - first
     return low % LOCAL * LOCAL + high % LOCAL
 
 
-@inline
+@always_inline
 def _label_corner(of_a, corner, first):
     """Feature of a corner of a part."""
     return (LOCAL if of_a else 0) + (corner - first) % LOCAL
 
 
-@inline
+@always_inline
 def _label_crossing(a0, a1, b0, b1, first_a, first_b):
     """Feature of two edges."""
     return 2 * LOCAL + _edge_key(a0, a1, first_a) * LOCAL * LOCAL + _edge_key(b0, b1, first_b)
 
 
-@inline
+@always_inline
 def _describe(geometry, joint, k, work, found, labels):
     """What corner k of the overlap in row 2 is: its corners into found[k], feature and type into labels[k]."""
     face_a, face_b = geometry.faces[joint, 0], geometry.faces[joint, 1]
@@ -149,7 +149,7 @@ def _describe(geometry, joint, k, work, found, labels):
         labels[k, 1] = CROSSING
 
 
-@inline
+@always_inline
 def in_faces(geometry, bodies, joint, pair, frame, along, out):
     """Points of a face joint: how many, into the arrays of `out`."""
     work, found, labels, numbers = out
@@ -188,7 +188,7 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
     return _with_cap(geometry, joint, count, found, labels, numbers) if count > 0 else 0
 
 
-@inline
+@always_inline
 def _with_cap(geometry, joint, count, found, labels, numbers):
     """Adds the inner points of the cap of a joint; returns how many points there are."""
     first = geometry.cap_starts[joint]
@@ -203,7 +203,7 @@ def _with_cap(geometry, joint, count, found, labels, numbers):
     return count
 
 
-@inline
+@always_inline
 def on_rim(geometry, bodies, joint, frame, room, out):
     """Points of a joint of a face and what of the other part lies on it: corners, and edges that cross its rim."""
     _, found, labels, numbers = out
@@ -262,7 +262,7 @@ def on_rim(geometry, bodies, joint, frame, room, out):
     return count
 
 
-@inline
+@always_inline
 def of_edges(geometry, joint, out):
     """The point of a joint of two edges, if it has any."""
     _, found, labels, numbers = out
@@ -279,7 +279,7 @@ def of_edges(geometry, joint, out):
     return 1
 
 
-@inline
+@always_inline
 def _overlap_anywhere(geometry, vertices, faces, normals, work):
     """Whether two faces have anything in common, seen along the joint."""
     face_a, face_b = faces[0], faces[1]

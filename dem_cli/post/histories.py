@@ -81,7 +81,7 @@ def _draw_panel(
         factor, unit = style.length_unit(float(np.abs(shown).max(initial=0.0)))
     for i, (name, values) in enumerate(lines.items()):
         label = name if len(name) <= _LONGEST_LABEL else f"{name[: _LONGEST_LABEL - 1]}…"
-        axis.plot(*thinned(time, factor * values), color=_COLOURS[i % len(_COLOURS)], lw=1.1, label=label)
+        axis.plot(*curve(time, factor * values, quantity), color=_COLOURS[i % len(_COLOURS)], lw=1.1, label=label)
     axis.axhline(0.0, color=style.GREY, lw=0.6)
     if collapse is not None and len(shown):
         low, high = factor * min(0.0, shown.min()), factor * max(0.0, shown.max())
@@ -89,6 +89,15 @@ def _draw_panel(
         axis.set_ylim(low - (margin or 1.0), high + (margin or 1.0))
     axis.set_ylabel("\n".join([*quantity.split(), f"[{unit}]"]))
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
+
+
+def curve(time: np.ndarray, values: np.ndarray, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """The points of a line, thinned; a rotation vector that goes on the other way round leaves a break, nan."""
+    x, y = thinned(time, values)
+    if quantity != "rotation":
+        return x, y
+    at = np.flatnonzero(np.abs(np.diff(y)) > np.pi) + 1
+    return np.insert(x, at, np.nan), np.insert(y, at, np.nan)
 
 
 def thinned(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli.errors import MissingExtra
+from dem_cli.post import style
 from dem_cli.post.playback import milliseconds, ticks
 
 _FIRST, _LAST = 0.6, 1.4  # s: how long the first and the last picture stay
@@ -51,13 +52,17 @@ def _write_gif(pages: Sequence[np.ndarray], path: Path, stays: list[float]) -> N
 
 
 def _palette(pages: Sequence[np.ndarray]) -> Any:
-    """One set of colours for all pictures, from the first, the middle and the last."""
+    """One set of colours for all pictures: those of the legend, others from the first, the middle and the last."""
+    from matplotlib.colors import to_rgb
     from PIL import Image
 
     some = [pages[0], pages[len(pages) // 2], pages[-1]]
-    found = Image.fromarray(np.concatenate(some)).quantize(_COLOURS, Image.Quantize.MEDIANCUT)
-    colours = np.array(found.getpalette(), dtype=np.uint8)[: 3 * _COLOURS].reshape(-1, 3)
+    meant = np.rint([255.0 * np.array(to_rgb(ink)) for ink in (*style.STATE_COLOURS.values(), style.THRUST)])
+    count = _COLOURS - len(meant)
+    found = Image.fromarray(np.concatenate(some)).quantize(count, Image.Quantize.MEDIANCUT)
+    colours = np.array(found.getpalette(), dtype=np.uint8)[: 3 * count].reshape(-1, 3)
     colours[colours.min(axis=1) > _PAPER] = 255  # Pillow takes what is near as well, and paper is white
+    colours = np.concatenate([colours, meant.astype(np.uint8)])
     palette = Image.new("P", (1, 1))
     palette.putpalette(colours.ravel().tolist())
     return palette

@@ -14,7 +14,7 @@ from dem_cli.post import style
 from dem_cli.post.capacity import off_the_load, with_breaks
 from dem_cli.post.energy import across
 from dem_cli.post.fragility import has_curve
-from dem_cli.post.histories import of_quantity, thinned
+from dem_cli.post.histories import curve, of_quantity, thinned
 from dem_cli.report.packed_arrays import pack
 
 Chart = dict[str, Any]
@@ -94,7 +94,7 @@ def _histories(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Ch
         before = before[np.isfinite(before)]
         factor, unit = style.length_unit(float(np.abs(before).max(initial=0.0))) if unit == "m" else (1.0, unit)
         drawn = [
-            line(name, *thinned(series.time, factor * values), str(i % _PALETTE))
+            line(name, *curve(series.time, factor * values, quantity), str(i % _PALETTE))
             for i, (name, values) in enumerate(lines.items())
         ]
         chart: Chart = {"id": quantity.replace(" ", "-"), "title": f"Monitors: {quantity}", "y": f"{quantity} [{unit}]"}

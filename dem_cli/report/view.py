@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.geometry.rotation import beside, matrices, rotation_vectors, unturned
+from dem_cli.geometry.rotation import angles_between, beside, matrices, rotation_vectors, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.reader import Results
@@ -31,6 +31,7 @@ MODE = "mode"  # stage of frames that show natural modes
 SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no size
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _FAINT = len(STATES)  # the code of these
+_FAR_ROUND = 2.0  # rad: who turns farther from frame to frame may have gone the other way round
 _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
 
 
@@ -73,7 +74,7 @@ def view(results: Results) -> dict[str, Any]:
         "ground_moves": series is not None and bool(series.base[:, 2].any()),
         "has_joints": any(len(frame.contacts.joint) for frame in chosen),
         "carried": carried,
-        "follows": results.kind not in SHAPE_KINDS,
+        "follows": results.kind not in SHAPE_KINDS and _close(chosen),
     }
 
 
@@ -118,6 +119,12 @@ def _within(budget: int, sizes: Sequence[int], always: set[int]) -> list[int]:
         if sum(sizes[i] for i in kept) <= budget:
             return kept
     return sorted(always)
+
+
+def _close(frames: Sequence[Frame]) -> bool:
+    """Whether it is known which way round every block turned from each frame to the next."""
+    pairs = zip(frames, frames[1:])
+    return all(angles_between(a.orientations, b.orientations).max(initial=0.0) < _FAR_ROUND for a, b in pairs)
 
 
 def _first_shown(frames: Sequence[Frame], summary: Mapping[str, Any]) -> int:

@@ -17,6 +17,7 @@ from synthetic import wall_model
 from synthetic.pages import evil, sweep, wall
 from synthetic.shaking import write_shaking
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
+from synthetic.tumbling import write_shaken_column
 
 from dem_cli.cli.main import main
 from dem_cli.output.record import STATES
@@ -258,6 +259,30 @@ def test_the_view_of_a_structure_in_space(tmp_path):
     open_or_sliding = frames[-1].contacts.state != STATES.index("sticking")
     assert len(unpacked(last["states"])) == 2 * open_or_sliding.sum()  # two halves of edges meet in a corner
     assert STATES.index("sticking") not in unpacked(last["states"])
+
+
+def test_the_view_of_motion_in_space(tmp_path):
+    """The ground moves in three components; the picture holds all places to which blocks come, carried along by it."""
+    from dem_cli.output.reader import read
+
+    results = read(write_shaken_column(tmp_path / "run", 60))
+    scene = view(results)
+    assert scene["carried"]
+    assert scene["follows"]
+    series, times = results.series, [frame.time for frame in results.frames]
+    ground = np.stack([np.interp(times, series.time, path) for path in series.base[:, 2].T], axis=1)
+    np.testing.assert_allclose(scene["ground"], ground, atol=1e-6)
+    assert not view(read(write_shaken_column(tmp_path / "few", 12)))["follows"]  # who knows which way round
+    places = np.stack([frame.positions[1:] for frame in results.frames]) + ground[:, np.newaxis]
+    low, high = np.array(scene["window"])
+    assert (places.min(axis=(0, 1)) > low).all()
+    assert (places.max(axis=(0, 1)) < high).all()
+    assert (high - low < 7.0).all()  # the slab is 5 m wide
+    audit = {check.name: check for check in facts.audit(results.summary, results)}
+    found = audit["energy of changing areas"]
+    kinetic = results.energy["kinetic"].max()
+    assert found.tone == "look"
+    assert found.value == f"{0.9 / kinetic:.2g} of the largest kinetic energy, net −{0.5 / kinetic:.2g}"
 
 
 def test_a_structure_in_space_without_frames(tmp_path):

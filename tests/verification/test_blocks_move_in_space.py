@@ -85,6 +85,18 @@ def test_blocks_that_meet_along_an_edge_make_no_energy():
     assert found["moved"] < 5e-2
 
 
+def test_a_prism_rocks_under_two_components():
+    found = structures.rocks_two_ways()
+    assert 0.05 < found["found"] < 0.5
+    assert found["book"] < 5e-3
+
+
+def test_rows_of_a_barrel_sink_as_the_arch_of_the_plane():
+    found = structures.arch_spreads()
+    assert error(found) == pytest.approx(0.0, abs=1e-3)
+    assert found["book"] < 1e-4
+
+
 def test_a_small_block_lands_on_its_corner():
     """On a base whose faces are a hundred times its own."""
     found = single.cube_on_corner(DASHPOTS)

@@ -33,12 +33,23 @@ class BookedRun(NamedTuple):
     def books(self) -> dict[str, Any]:
         """What each row of the study's tables ends with."""
         return {
-            **book_of([row.energy for row in self.seen.rows], real=bool(self.summary.get("time_step"))),
+            **(self._in_time() if self.summary.get("largest_time_step") else self._at_rest()),
             "steps": self.summary["steps"],
             "seconds": round(self.seconds, 2),
             "blocks": self.blocks,
             "status": self.summary["status"],
         }
+
+    def _in_time(self) -> dict[str, float]:
+        return book_of([row.energy for row in self.seen.rows])
+
+    def _at_rest(self) -> dict[str, float]:
+        """Of pseudo-time the program's own closure, over the largest energy in the ledger."""
+        table = np.array([row.energy for row in self.seen.rows])
+        changed = self.summary.get("reweighting") or {"net": 0.0, "sum": 0.0}
+        largest = float(np.abs(table).max()) or 1.0
+        book = abs(self.summary["energy_closure"])
+        return {"book": book, "net": changed["net"] / largest, "moved": changed["sum"] / largest, "kinetic": 0.0}
 
     def column(self, k: int) -> np.ndarray:
         """Of a monitor, (n,)."""
@@ -93,26 +104,21 @@ def solved(loaded: LoadedCase, model: Model) -> BookedRun:
     return BookedRun(summary, seen, seconds, int((~model.fixed).sum()))
 
 
-def book_of(rows: list[Energy], real: bool) -> dict[str, float | None]:
-    """Error of the book, energy that re-weighting took (net) and moved (sum of amounts), over the kinetic at most.
+def book_of(rows: list[Energy]) -> dict[str, float]:
+    """Error of the book of a time history, energy that re-weighting took (net) and moved (sum of amounts), over the
+    largest kinetic energy.
 
-    real: of a time history; else over the largest energy in the ledger. Net and sum are those of the rows: a sum of
-    what changed between them.
+    From the first row after the start on: what is thrown there is given half a step before. Net and sum are those of
+    the rows: a sum of what changed between them.
     """
-    if not rows:
-        return {"book": None, "net": None, "moved": None, "kinetic": None}
-    table = np.array(rows)
-    names = Energy._fields
-    sums = {name: table[:, i] for i, name in enumerate(names)}
+    sums = dict(zip(Energy._fields, np.array(rows[1:]).T, strict=True))
     given = sums["external"] + sums["supports"]
     error = sum(values for name, values in sums.items() if name not in ("external", "supports")) - given
     kinetic = float(sums["kinetic"].max())
-    scale = kinetic if real else float(np.abs(table).max())
-    scale = scale or 1.0
-    changed = np.diff(sums["reweighting"], prepend=0.0) if "reweighting" in sums else np.zeros(len(rows))
+    changed = np.diff(sums["reweighting"], prepend=0.0)
     return {
-        "book": float(np.abs(error - error[0]).max()) / scale,
-        "net": float(changed.sum()) / scale,
-        "moved": float(np.abs(changed).sum()) / scale,
+        "book": float(np.abs(error - error[0]).max()) / kinetic,
+        "net": float(changed.sum()) / kinetic,
+        "moved": float(np.abs(changed).sum()) / kinetic,
         "kinetic": kinetic,
     }

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import argparse
 import math
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import tomli
+import tomli_w
 
-from studies.motion_in_space import single, structures, tables, twins
+from studies.motion_in_space import laws, single, structures, tables, twins
 from studies.places import CASES
 from studies.study import StudyRunner
 
 MOVING = ("time-history", "settlement", "cycle")
-MOST = 1e-2  # of the largest kinetic energy: error of a book that is a fault
 
 
 class SpatialMotionStudy(StudyRunner):
@@ -57,6 +59,7 @@ def built() -> list[dict[str, Any]]:
     return [
         structures.wall_collapses({"contact_fraction": 0.35}),
         structures.wall_collapses(None),
+        structures.rocks_two_ways(),
         structures.column_of_drums(),
         structures.corner_opens(),
         structures.arch_spreads(),
@@ -70,6 +73,18 @@ def moving_twins() -> list[dict[str, Any]]:
     return [twins.compared(file) for file in files if kinds[file] in MOVING]
 
 
+def shaken_laws() -> list[dict[str, Any]]:
+    """A column that slides and rocks on joints of every law, in the plane and as prisms."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, joint in laws.JOINTS.items():
+            file = Path(folder) / f"{name}.toml"
+            file.write_text(tomli_w.dumps(laws.shaken_column(joint)), encoding="utf-8")
+            other = twins.of_plane(file, f"analysis.margin={laws.OTHER_MARGIN}")
+            rows.append(twins.compared(file) | {"other": other})
+    return rows
+
+
 def error(row: dict[str, Any]) -> float | None:
     """Of what was found, relative; None: nothing to compare it with."""
     if row["exact"] is None or row["found"] is None or math.isnan(row["found"]):
@@ -80,7 +95,14 @@ def error(row: dict[str, Any]) -> float | None:
 STUDY = SpatialMotionStudy(
     "motion_in_space",
     "Blocks that move in space",
-    {"rocking": rocking, "sliding": sliding, "flight": flight, "twins": moving_twins, "structures": built},
+    {
+        "rocking": rocking,
+        "sliding": sliding,
+        "flight": flight,
+        "twins": moving_twins,
+        "laws": shaken_laws,
+        "structures": built,
+    },
     tables.values,
     machine=True,
 )

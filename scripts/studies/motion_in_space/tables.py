@@ -13,15 +13,18 @@ BOOKS = ("book", "re-weighting, net", "all amounts", "steps", "CPU [s]")
 SINGLE = ("case", "figure", "exact", "dem", "error", *BOOKS)
 TWINS = ("case", "quantity", "exact", "plane", "in space", "difference", "allowed", *BOOKS)
 
+LAWS = ("law", "peak", "plane [mm]", "in space [mm]", "difference", "plane, other step", "book of the plane", *BOOKS)
+
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
     """What page.md.j2 shows."""
     shown = {name: table(SINGLE, map(cells, found.get(name, []))) for name in ("rocking", "sliding", "flight")}
     rows = [(case, each) for case in found.get("twins", []) for each in case["quantities"]]
-    told = [each for _, each in rows]
+    told = [each for _, each in rows if each["allowed"] is not None or isinstance(each["plane"], bool)]
     return shown | {
-        "structures": table((*SINGLE[:2], "dem", *BOOKS, "blocks"), map(built_cells, found.get("structures", []))),
+        "structures": table((*SINGLE, "blocks"), map(built_cells, found.get("structures", []))),
         "twins": table(TWINS, [twin_cells(case, each) for case, each in rows]),
+        "laws": table(LAWS, [law_cells(c, each) for c in found.get("laws", []) for each in c["quantities"]]),
         "n_twins": len(found.get("twins", [])),
         "n_same": sum(same(each) for each in told),
         "n_quantities": len(told),
@@ -36,7 +39,7 @@ def cells(row: Mapping[str, Any]) -> list[str]:
 
 def built_cells(row: Mapping[str, Any]) -> list[str]:
     """A structure."""
-    return [row["name"], row["figure"], number(row["found"]), *books(row), str(row["blocks"])]
+    return [*cells(row), str(row["blocks"])]
 
 
 def twin_cells(case: Mapping[str, Any], row: Mapping[str, Any]) -> list[str]:
@@ -45,6 +48,16 @@ def twin_cells(case: Mapping[str, Any], row: Mapping[str, Any]) -> list[str]:
     shown = [told(row[name]) for name in ("reference", "plane", "space")]
     return [f"`{case['name']}`", row["quantity"], *shown, off(row["space"], row["plane"]), allowed,
             *books(case["space"])]  # fmt: skip
+
+
+def law_cells(case: Mapping[str, Any], row: Mapping[str, Any]) -> list[str]:
+    """A peak of a shaken column and of its twin; differences are shares of the larger peak."""
+    plane, space, other = (float(values) for values in (row["plane"], row["space"], case["other"][row["quantity"]]))
+    largest = max(abs(each["plane"]) for each in case["quantities"])
+    shown = [number(1e3 * value) for value in (plane, space)]
+    apart = [percent((value - plane) / largest) for value in (space, other)]
+    end = row["quantity"].rpartition(".")[2]
+    return [case["name"], end, *shown, *apart, small(case["plane"]["book"]), *books(case["space"])]
 
 
 def same(row: Mapping[str, Any]) -> bool:

@@ -35,26 +35,40 @@ def twin_case(file: Path, case: Case, model: Model, *overrides: str) -> LoadedCa
     """
     tables = tomli.loads(file.read_text(encoding="utf-8"))
     tables = {key: value for key, value in tables.items() if key not in DROPPED} | {"dimension": 3}
-    for key in ("motion", "initial", "settlement", "monitor"):
+    for key in _TABLES:
         if key in tables:
             listed = tables[key] if isinstance(tables[key], list) else [tables[key]]
             tables[key] = [_TABLES[key](dict(table)) for table in listed]
     for table in tables.get("motion", []):
-        if "file" in table:
-            table["file"] = str((file.parent / table["file"]).resolve())
+        table |= {"file": str((file.parent / table["file"]).resolve())} if "file" in table else {}
+    for joint in tables.get("joints", {}).values():
+        if isinstance(joint.get("points"), int):
+            joint["points"] = "vertices" if joint["points"] == 2 else "vertices+centre"
     for table, name in zip(tables.get("monitor", []), monitor_names(case.monitor), strict=True):
         table["name"] = name
-        if table.get("quantity") == "rotation":
-            table["component"] = "y"
     if "direction" in tables.get("analysis", {}):
         tables["analysis"]["direction"] = _vector(tables["analysis"]["direction"])
-    names = {name: model.block_ids[i] for name, i in model.numbers.items()}
+    _rename(tables, {name: model.block_ids[i] for name, i in model.numbers.items()})
+    tables["block"] = [_stand_in(i, name, model) for i, name in enumerate(model.block_ids)]
+    return from_tables(tables, *overrides)
+
+
+def _rename(tables: dict[str, Any], names: dict[str, str]) -> None:
+    """Blocks by the names of the model: aliases are those of structures, which the twin does not have."""
     for table in [*tables.get("monitor", []), *tables.get("initial", []), *tables.get("settlement", [])]:
         table |= {"block": names[table["block"]]} if "block" in table else {}
         for key in ("blocks", "between"):
             table |= {key: [names[name] for name in table[key]]} if key in table else {}
-    tables["block"] = [_stand_in(i, name, model) for i, name in enumerate(model.block_ids)]
-    return from_tables(tables, *overrides)
+
+
+def of_plane(file: Path, *overrides: str) -> dict[str, Any]:
+    """Numbers of the summary of a case of the plane, by their paths."""
+    loaded = from_file(file, *overrides)
+    return {
+        path: value
+        for path, value in scalars(solved(loaded, api.build_model(loaded)).summary).items()
+        if path.startswith("peaks.")
+    }
 
 
 def compared(file: Path, *overrides: str) -> dict[str, Any]:
@@ -66,12 +80,14 @@ def compared(file: Path, *overrides: str) -> dict[str, Any]:
     turning = {name for name, monitor in names if monitor.quantity == "rotation"}
     told = [scalars(one.summary) for one in (flat, solid)]
     rows = []
-    for reference in case.reference:
-        known = told[0].get(reference.path)
-        found = _in_space(told[1], reference.path, turning)
+    asked = [(one.path, one.expected, one.allowance) for one in case.reference]
+    if not asked:
+        named = monitor_names(case.monitor)
+        asked = [(f"peaks.{name}.{end}", None, None) for name in named for end in ("max", "min")]
+    for path, expected, allowance in asked:
+        found = _in_space(told[1], path, turning)
         rows.append({
-            "quantity": reference.path, "reference": reference.expected, "allowed": reference.allowance,
-            "plane": known, "space": found,
+            "quantity": path, "reference": expected, "allowed": allowance, "plane": told[0].get(path), "space": found,
         })  # fmt: skip
     return {
         "name": file.stem,
@@ -120,7 +136,9 @@ def _settlement(table: dict[str, Any]) -> dict[str, Any]:
 def _monitor(table: dict[str, Any]) -> dict[str, Any]:
     if "point" in table:
         table["point"] = _vector(table["point"])
-    if table.get("component") == "y":
+    if table.get("quantity") == "rotation":
+        table["component"] = "y"
+    elif table.get("component") == "y":
         table["component"] = "z"
     return table
 

@@ -67,7 +67,7 @@ def row(name: str, said: Described) -> tuple[str, ...]:
     """A line of the table of a group."""
     plane, space = _cells(said), _cells(said.of(3))
     axes, columns, unit, meaning = (_both(*pair) for pair in zip(plane, space, strict=True))
-    return (f"`{name}`", axes, columns, unit, f"3D: {meaning}" if said.spatial else meaning)
+    return (f"`{name}`", axes, columns, unit, _alone(said, meaning))
 
 
 def _cells(said: Described) -> tuple[str, ...]:
@@ -90,7 +90,12 @@ def _fields(fields: Mapping[str, Described]) -> str:
     return markdown(
         FIELD_HEAD,
         [
-            (f"`{name}`", _both(units(said), units(said.of(3))), _both(said.meaning, said.of(3).meaning))
+            (f"`{name}`", _both(units(said), units(said.of(3))), _alone(said, _both(said.meaning, said.of(3).meaning)))
             for name, said in fields.items()
         ],
     )
+
+
+def _alone(said: Described, meaning: str) -> str:
+    """The meaning of what is there in space alone says so."""
+    return f"3D: {meaning}" if said.spatial else meaning

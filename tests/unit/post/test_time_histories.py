@@ -110,6 +110,20 @@ def test_the_ground_is_seen_to_move_unless_it_goes_far(results):
     assert not view_box.carried(type(results)(**{**vars(results), "series": far}), 1.0)
 
 
+@pytest.mark.parametrize("n", [200, 20_000])
+def test_a_rotation_that_goes_on_the_other_way_round_is_broken(n):
+    """A block that spins about x: the component of its rotation vector jumps from π to −π."""
+    time = np.linspace(0.0, 1.0, n)
+    turned = 4.5 * np.pi * time
+    values = (turned + np.pi) % (2.0 * np.pi) - np.pi
+    x, y = histories.curve(time, values, "rotation")
+    assert np.isnan(y).sum() == 2
+    np.testing.assert_array_equal(np.isnan(x), np.isnan(y))
+    steps = np.abs(np.diff(y))
+    assert steps[np.isfinite(steps)].max() < 0.1
+    assert not np.isnan(histories.curve(time, values, "displacement")[1]).any()
+
+
 def test_three_components_of_the_base_are_told_apart(tmp_path, figures):
     """In the histories and below an animation; in the plane two were."""
     folder = write_shaken_column(tmp_path / "run", 3)
