@@ -117,7 +117,7 @@ def _shares(found: Meetings) -> np.ndarray:
 
 def median_face(model: Model) -> float:
     """Median area of all faces that can be touched [m²]."""
-    areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
+    areas = model.faces.areas
     return float(np.median(areas[~model.inner_faces])) if len(areas) else 0.0
 
 

@@ -22,7 +22,6 @@ from dem_cli.contact.spatial import (
     profile_fault,
     touching,
 )  # fmt: skip
-from dem_cli.geometry.solids import face_areas
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
@@ -58,14 +57,14 @@ def points(
     classify(solids, faces.parts, faces.faces, faces.separation, work, kinds, edges)
     n_points = int(starts[-1])
     joints = joints_of(model, faces, properties, starts, np.zeros(n), np.zeros(n_points))
-    normals = _normals(model)[faces.faces]
+    normals = model.faces.normals[faces.faces]
     geometry = SpatialMotion(
         keys=faces.parts,
         features=np.full(n_points, -1),
         kinds=kinds,
         faces=faces.faces,
         normals=np.ascontiguousarray(normals.reshape(-1, 6)),
-        tangents=_tangents(model, faces.faces[:, 0]),
+        tangents=np.ascontiguousarray(model.faces.first_sides[faces.faces[:, 0]]),
         markers=np.full((n, 6), np.nan),
         scales=_scales(model, faces, properties),
         edges=edges,
@@ -94,34 +93,16 @@ def points(
     return joints, geometry
 
 
-def _normals(model: Model) -> np.ndarray:
-    """Outward unit normals of all faces in the frames of their blocks, (n_faces, 3)."""
-    areas = face_areas(model.vertices, model.topology)
-    return areas / np.linalg.norm(areas, axis=1)[:, None]
-
-
-def _tangents(model: Model, faces: np.ndarray) -> np.ndarray:
-    """Direction of the first side of each of these faces in the frame of its block, (n, 3)."""
-    topology = model.topology
-    first = topology.face_starts[faces]
-    along = model.vertices[topology.face_corners[first + 1]] - model.vertices[topology.face_corners[first]]
-    return along / np.linalg.norm(along, axis=1)[:, None]
-
-
 def _median_free_face(model: Model) -> float:
     """Median area of the faces of blocks that can move [m²]: those of a large base say nothing of a stone on it."""
-    areas = np.linalg.norm(face_areas(model.vertices, model.topology), axis=1)
+    areas = model.faces.areas
     free = ~model.inner_faces & ~model.fixed[model.part_blocks[model.topology.face_parts]]
     return float(np.median(areas[free])) if free.any() else median_face(model)
 
 
 def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarray:
     """SpatialMotion.scales of pairs of faces, (n, 8)."""
-    topology, median = model.topology, _median_free_face(model)
-    areas = np.linalg.norm(face_areas(model.vertices, topology), axis=1)
-    sides = topology.sides
-    lengths = np.linalg.norm(model.vertices[sides[:, 1]] - model.vertices[sides[:, 0]], axis=1)
-    shortest = np.minimum.reduceat(lengths, topology.face_starts[:-1])
+    median, areas, shortest = _median_free_face(model), model.faces.areas, model.faces.shortest_sides
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)

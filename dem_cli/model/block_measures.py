@@ -11,6 +11,7 @@ import numpy as np
 
 from dem_cli.geometry import parts
 from dem_cli.geometry.parts import shapes_of
+from dem_cli.geometry.solids import face_areas
 from dem_cli.geometry.topology import Topology
 
 
@@ -28,6 +29,25 @@ class BlockMeasures(NamedTuple):
     widths: np.ndarray  # about the smallest side, of the narrowest part (geometry/parts.py) [m], (n_blocks,)
     edges: np.ndarray  # length of the shortest edge [m], (n_blocks,)
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
+
+
+class FaceMeasures(NamedTuple):
+    """Of each face of a part in space, in the frame of its block."""
+
+    areas: np.ndarray  # [m²], (n_faces,)
+    normals: np.ndarray  # unit, outwards, (n_faces, 3)
+    first_sides: np.ndarray  # unit, along the first side, (n_faces, 3)
+    shortest_sides: np.ndarray  # [m], (n_faces,)
+
+
+def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
+    """Of faces of polyhedra, with corners as in Model."""
+    vectors = face_areas(vertices, topology)
+    areas = np.linalg.norm(vectors, axis=1)
+    start, end = vertices[topology.sides[:, :2]].swapaxes(0, 1)
+    lengths, first = np.linalg.norm(end - start, axis=1), topology.face_starts[:-1]
+    sides = (end - start)[first] / lengths[first][:, None]
+    return FaceMeasures(areas, vectors / areas[:, None], sides, np.minimum.reduceat(lengths, first))
 
 
 def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> PartMeasures:

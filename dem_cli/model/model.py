@@ -14,7 +14,14 @@ import numpy as np
 
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
-from dem_cli.model.block_measures import BlockMeasures, PartMeasures, block_measures, part_measures
+from dem_cli.model.block_measures import (
+    BlockMeasures,
+    FaceMeasures,
+    PartMeasures,
+    block_measures,
+    face_measures,
+    part_measures,
+)
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
@@ -102,6 +109,11 @@ class Model(ModelArrays):
     def shapes(self) -> BlockMeasures:
         """Volumes, widths, shortest edges and radii of the blocks."""
         return block_measures(self.vertices, self.part_starts, self.topology, self.part_blocks, self.parts)
+
+    @cached_property
+    def faces(self) -> FaceMeasures:
+        """Areas, normals and sides of the faces of polyhedra."""
+        return face_measures(self.vertices, self.topology)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""

@@ -107,19 +107,18 @@ def test_twins_collapse_as_walls_and_arches_of_the_plane(name):
 
 
 def test_a_wall_turns_over_its_foot_with_geometry_that_moves():
-    """Out of plane at t / H = 0.125, and on soft joints at what a stack of the plane carries (P-Δ takes half)."""
+    """Out of plane at t / H = 0.125, and on soft joints at what a stack of the plane carries (P-Δ takes a tenth)."""
     case = read(CASES / "verification" / "space" / "panel.toml")
     case["structure"][0] |= {"courses": 4, "blocks_per_course": 2}
     case["analysis"]["kinematics"] = "large"
     assert solved(case)[0]["failure_load"] == pytest.approx(0.25, rel=2e-3)
-    case["analysis"] |= {"kinematics": "auto"}
-    case["joints"]["dry"]["kn"] = 2e6
+    case["structure"][0] |= {"blocks_per_course": 1, "bond": "stack"}
+    case["joints"]["dry"]["kn"] = 1e7
     stack = {"kind": "column", "block": [0.2, 0.2], "courses": 4, "thickness": 1.0, "base_extension": 0.2}
     flat = {key: case[key] for key in ("materials", "joints", "output")} | {"structure": [stack]}
-    flat["analysis"] = {"kind": "pushover", "direction": [1.0, 0.0], "resolution": 0.002}
+    flat["analysis"] = {"kind": "pushover", "direction": [1.0, 0.0], "kinematics": "large"}
     (space, _), (plane, _) = solved(case), solved(flat)
-    assert space["kinematics"] == plane["kinematics"] == "large"
-    assert plane["failure_load"] < 0.125
+    assert plane["failure_load"] < 0.225
     assert space["failure_load"] == pytest.approx(plane["failure_load"], rel=4e-3)  # both brackets
 
 
@@ -234,12 +233,12 @@ def test_a_state_that_comes_back_goes_on_to_the_same_bytes():
     stack = [prism(f"b{i}", [(0, 0), (0.7, 0), (0, 0.4)], 0.5 * i, 0.5 * i + 0.5) for i in range(2)]
     sim = simulation(tables(BASE, *stack, direction=(0.4, 0.7, 0.0)), "large", 1e4)
     sim.set_load(0.4)  # above failure
-    sim.advance(3000, slot.HOLD_LOAD)
+    sim.advance(1000, slot.HOLD_LOAD)
     saved = sim.save()
     ends = []
     for _ in range(2):
         sim.restore(saved)
-        sim.advance(3000, slot.HOLD_LOAD)
+        sim.advance(500, slot.HOLD_LOAD)
         ends.append((sim.bodies.positions.tobytes(), sim.contacts.normal.tobytes(), sim.joints.kn.tobytes()))
     assert not np.array_equal(sim.joints.kn, saved.joints.kn)
     assert ends[0] == ends[1]
