@@ -97,7 +97,7 @@ def test_nothing_jumps_through_alignment(way):
 
 
 def test_a_tilted_block_passes_a_rim_without_a_jump():
-    """A sixteenth of the step, far less of the bend: a kink of the slope where the pressed edge leaves the other block."""
+    """A sixteenth of the step, far less of the bend: a kink where the pressed edge leaves the other block."""
     tilt, found = 0.05, []
     start = np.array([0.5 - 0.5 * np.cos(tilt), 0.0, 0.5 * np.sin(tilt) - DEEP])
     for step in (4e-6, 2.5e-7):
@@ -121,8 +121,6 @@ def test_no_work_round_a_loop_on_a_base():
     work, elastic = work_round(flat, pair)
     assert abs(work) < 1e-12 * elastic
     up = 0.5 * np.sin(0.1) - DEEP
-    leaning = [
-        (at + [0.0, 0.0, up], turn(0.0, 0.0, yaw) * turn(0.0, 0.1, 0.0)) for at, yaw in zip(circle(0.5, 40), yaws)
-    ]
+    leaning = [(at + up * UP, turn(0.0, 0.0, yaw) * turn(0.0, 0.1, 0.0)) for at, yaw in zip(circle(0.5, 40), yaws)]
     work, elastic = work_round(leaning, pair)
     assert abs(work) < 1e-6 * elastic
