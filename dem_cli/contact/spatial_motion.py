@@ -23,7 +23,7 @@ from dem_cli.contact.spatial import (
     touching,
 )  # fmt: skip
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
-from dem_cli.kernels.renewal import LEFT
+from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import classify
 from dem_cli.model.model import Model
@@ -36,7 +36,6 @@ __all__ = [
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
 FLOOR = 0.25  # of the median face, or of the smaller one of a joint: area of a face joint, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
-REMEMBERED = 32  # numbers of memory of a law, at most
 
 
 def points(
@@ -86,7 +85,7 @@ def points(
         work=work,
         found=np.full((2 * most + 2, 5), -1),
         labels=np.zeros((2 * most + 2, 2), np.int64),
-        numbers=np.zeros((2 * most + 2, LEFT + REMEMBERED)),
+        numbers=np.zeros((2 * most + 2, LEFT + MOST_LEFT)),
         taken=np.zeros(2 * most + 2, np.int64),
         heirs=np.zeros(2 * most + 2, np.int64),
     )

@@ -15,9 +15,12 @@ from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap,
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
 from dem_cli.kernels.vec import axpy, dot
 
-# Columns of SpatialMotion.numbers.
-CLOSED = 10  # how far the nearest point has closed since forces were found [m]
-LEFT = 11  # memory of the law, from here on
+# Columns of SpatialMotion.numbers beyond area, share and arm: what a new point has from the nearest one before.
+PRESSED, SLID_1, SLID_2 = 5, 6, 7  # overlap and elastic slip that its forces stand for [m]
+PATH, CLOSURE = 8, 9  # slip path, closure taken back [m]
+CLOSED = 10  # how far it has closed since forces were found [m]
+LEFT = 11  # memory of the law, from here on ...
+MOST_LEFT = 32  # ... so many numbers at most
 
 
 @always_inline
@@ -142,14 +145,15 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
     Forces are those of the last step, so that the gap by which it has closed since then belongs to this one.
     """
     numbers, heir = geometry.numbers, geometry.heirs[k]
-    for m in range(5, LEFT + remembers):
+    for m in range(PRESSED, LEFT + remembers):
         numbers[k, m] = 0.0
     if heir == NONE:
         return
     numbers[k, CLOSED] = contacts.gaps[heir] - _gap_of(joints, geometry, bodies, joint, heir, frame)
-    numbers[k, 5] = contacts.normal[heir] / joints.kn[heir]
-    numbers[k, 6], numbers[k, 7] = contacts.shear[heir, 0] / joints.ks[heir], contacts.shear[heir, 1] / joints.ks[heir]
-    numbers[k, 8], numbers[k, 9] = contacts.slip[heir], contacts.closure[heir]
+    numbers[k, PRESSED] = contacts.normal[heir] / joints.kn[heir]
+    numbers[k, SLID_1] = contacts.shear[heir, 0] / joints.ks[heir]
+    numbers[k, SLID_2] = contacts.shear[heir, 1] / joints.ks[heir]
+    numbers[k, PATH], numbers[k, CLOSURE] = contacts.slip[heir], contacts.closure[heir]
     for m in range(remembers):
         numbers[k, LEFT + m] = contacts.memory[heir, m]
 
@@ -174,14 +178,14 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
         return
     gap += numbers[k, CLOSED]
     contacts.gaps[point] = gap
-    contacts.slip[point], contacts.closure[point] = numbers[k, 8], numbers[k, 9]
+    contacts.slip[point], contacts.closure[point] = numbers[k, PATH], numbers[k, CLOSURE]
     for m in range(remembers):
         contacts.memory[point, m] = numbers[k, LEFT + m]
-    deep = numbers[k, 5] if bonded else max(numbers[k, 9] - gap, 0.0)
+    deep = numbers[k, PRESSED] if bonded else max(numbers[k, CLOSURE] - gap, 0.0)
     contacts.normal[point] = joints.kn[point] * deep
     if deep != 0.0:
-        contacts.shear[point, 0] = joints.ks[point] * numbers[k, 6]
-        contacts.shear[point, 1] = joints.ks[point] * numbers[k, 7]
+        contacts.shear[point, 0] = joints.ks[point] * numbers[k, SLID_1]
+        contacts.shear[point, 1] = joints.ks[point] * numbers[k, SLID_2]
 
 
 @always_inline

@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli.kernels.contact_point import make_press, meeting, push_apart
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
-from dem_cli.kernels.renewal import is_due, renew
+from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
 from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tangents3
 from dem_cli.kernels.vec import axpy, compose, dot, load, scale
 
@@ -32,6 +32,7 @@ def make_spatial_forces(
     keeps: frames and places of the points that touch are kept up to date, for dampers. meets, rigid: as in
     planar_forces.py. remembers: numbers of a point's memory that belong to the law. capped: joints may have caps.
     """
+    assert remembers <= MOST_LEFT
     press = make_press(law, bonded)
 
     @inline
