@@ -17,6 +17,7 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 
 if TYPE_CHECKING:
+    from dem_cli.case.schema import Monitor
     from dem_cli.dynamics.history import TimeHistory
     from dem_cli.engine.job import Job
     from dem_cli.motion.motion import Motion
@@ -89,6 +90,12 @@ def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> str:
     if not worst:
         return ""
     monitors = job.case.monitor
-    names = [f"{monitors[i].quantity} of '{monitors[i].place}' by {moved[i]:.1%}" for i in worst[:MOST_LISTED]]
+    names = [f"{_named(monitors[i])} by {moved[i]:.1%}" for i in worst[:MOST_LISTED]]
     more = f" and {len(worst) - MOST_LISTED} more" if len(worst) > MOST_LISTED else ""
     return f"{factor} peaks move, {', '.join(names)}{more}: {WHY}"
+
+
+def _named(monitor: Monitor) -> str:
+    """What a monitor follows, in words: "displacement x of 'top'"."""
+    quantity = f"{monitor.quantity} {monitor.component}" if monitor.component else monitor.quantity
+    return f"{quantity} of '{monitor.place}'"
