@@ -27,7 +27,7 @@ REACH = 6  # how high features outside of face joints may lie over the face [m]
 CENTRED = 7  # 1: face joints have a point at their centroid as well
 
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
-SLIVER = 1e-3  # of FLOOR: overlaps below it are none
+SLIVER = 1e-6  # of FLOOR: overlaps below it are none; tips sink unseen by about its root
 LOCAL = 1024  # corners of a part that features tell apart
 CAP = 2 * LOCAL + LOCAL**4  # features of caps: from here on, beyond those of crossings
 LABEL = 2  # column of row 2: what a corner of the overlap is
