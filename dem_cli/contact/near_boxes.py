@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.grid import enter_cells, pairs_in_cells, pairs_of_large
+from dem_cli.kernels.neighbours import enter_cells, pairs_in_cells, pairs_of_large
 
 CELL = 1.5  # of the median extent: side of a cell
 LARGE = 4.0  # of the same: larger parts (a base, a beam) are compared with all others

@@ -16,6 +16,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
 from dem_cli.kernels.records import Dampers, Ground, Watch
+from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
 
@@ -110,7 +111,9 @@ class DynamicSimulation(Simulation):
             viscosity=self.damping.viscosities(self.model, joints),
             elements=self._decays(),
             rates=np.zeros((n, d)),
-            gains=np.ones((n, d * self.model.inertias.shape[1])),
+            gains=np.ones((n, GAINS[d])),
+            packed=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
+            holders=np.zeros(n, dtype=np.int64),
             shares=np.ones(n),
             slips=contacts.slip.copy(),
             states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),

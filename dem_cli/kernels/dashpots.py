@@ -4,41 +4,28 @@ A dashpot beside each spring resists its mean rate over the step, J = −c dt (w
 symmetric Gauss–Seidel sweeps over the impulses J, warm from the step before, leave the largest stable step that of
 the springs alone, however stiff the dashpots. Spring and dashpot together do not pull (J_n ≥ −N dt); points that
 slip have no dashpot along the joint, and open ones none at all. In 3D, where a point has two tangents, its three
-impulses are solved at once.
+impulses are solved at once (spatial_dashpots.py).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, inline, overload
-from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, reach_of, spun, torque_at
+from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
 from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
 
 OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
-def put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
-    """How far an impulse goes in one turn to where its error is none: (1 + C K)⁻¹, row by row; in 2D of its diagonal.
+@inline
+def _put_gains(gains, point, reaches, masses, mobilities, viscous):
+    """How far an impulse goes in one turn to where its error is none: 1 / (1 + C K), across and along the joint.
 
     viscous: C, half of damping × step across and along the joint [kg]; K: rates by impulses at the point [1/kg];
-    masses: sum of both inverse masses; mobilities: of both blocks. What slips has no dashpot along the joint.
+    masses: sum of both inverse masses; mobilities: of both blocks.
     """
-    put = _put_diagonal if len(frame) == 2 else _put_block
-    put(gains, point, frame, reaches, masses, mobilities, viscous, slips)
-
-
-@overload(put_gains)
-def _put_gains(gains, point, frame, reaches, masses, mobilities, viscous, slips):
-    put = _put_diagonal if len(frame) == 2 else _put_block
-    return lambda gains, point, frame, reaches, masses, mobilities, viscous, slips: put(
-        gains, point, frame, reaches, masses, mobilities, viscous, slips
-    )
-
-
-@inline
-def _put_diagonal(gains, point, frame, reaches, masses, mobilities, viscous, slips):
     levers_a, levers_b = reaches
     turning_a, turning_b = mobilities[0][0][0], mobilities[1][0][0]
     for k in range(2):
@@ -47,71 +34,28 @@ def _put_diagonal(gains, point, frame, reaches, masses, mobilities, viscous, sli
         gains[point, k] = 1.0 / (1.0 + viscous[k] * inverse)
 
 
-@inline
-def _put_block(gains, point, frame, reaches, masses, mobilities, viscous, slips):
-    n, s, t = frame
-    c, f = viscous
-    a_n, a_s, a_t = moment(reaches[0], n), moment(reaches[0], s), moment(reaches[0], t)
-    b_n, b_s, b_t = moment(reaches[1], n), moment(reaches[1], s), moment(reaches[1], t)
-    by_a, by_b = spun(mobilities[0], a_n), spun(mobilities[1], b_n)
-    nn = 1.0 + c * (masses + dot(by_a, a_n) + dot(by_b, b_n))
-    if slips:
-        gains[point, 0] = 1.0 / nn
-        for k in range(1, 9):
-            gains[point, k] = 0.0
-        return
-    ns, nt = dot(by_a, a_s) + dot(by_b, b_s), dot(by_a, a_t) + dot(by_b, b_t)
-    by_a, by_b = spun(mobilities[0], a_s), spun(mobilities[1], b_s)
-    ss, st = 1.0 + f * (masses + dot(by_a, a_s) + dot(by_b, b_s)), f * (dot(by_a, a_t) + dot(by_b, b_t))
-    tt = 1.0 + f * (masses + dot(spun(mobilities[0], a_t), a_t) + dot(spun(mobilities[1], b_t), b_t))
-    # Rows (nn, c ns, c nt), (f ns, ss, st), (f nt, st, tt); its inverse by cofactors.
-    low, left, right = ss * tt - st * st, ns * tt - st * nt, ns * st - ss * nt
-    share = 1.0 / (nn * low - c * f * (ns * left - nt * right))
-    gains[point, 0], gains[point, 1], gains[point, 2] = share * low, -share * c * left, share * c * right
-    gains[point, 3], gains[point, 6] = -share * f * left, share * f * right
-    gains[point, 4], gains[point, 8] = share * (nn * tt - c * f * nt * nt), share * (nn * ss - c * f * ns * ns)
-    gains[point, 5] = gains[point, 7] = share * (c * f * ns * nt - nn * st)
-
-
-def gained(gains, point, push, along, error, error_along, least):
-    """Impulses across and along the joint after they gave up their errors; across it not below `least`."""
-    give_up = _give_up_apart if len(along) == 1 else _give_up_together
-    return give_up(gains, point, push, along, error, error_along, least)
-
-
-@overload(gained)
-def _gained(gains, point, push, along, error, error_along, least):
-    give_up = _give_up_apart if len(along) == 1 else _give_up_together
-    return lambda gains, point, push, along, error, error_along, least: give_up(
-        gains, point, push, along, error, error_along, least
-    )
-
-
 @always_inline
-def _give_up_apart(gains, point, push, along, error, error_along, least):
-    return max(push - error * gains[point, 0], least), axpy(-gains[point, 1], error_along, along)
-
-
-@always_inline
-def _give_up_together(gains, point, push, along, error, error_along, least):
-    x, y, z = error, error_along[0], error_along[1]
-    free = push - (gains[point, 0] * x + gains[point, 1] * y + gains[point, 2] * z)
-    s = along[0] - (gains[point, 3] * x + gains[point, 4] * y + gains[point, 5] * z)
-    t = along[1] - (gains[point, 6] * x + gains[point, 7] * y + gains[point, 8] * z)
-    if free >= least:
-        return free, (s, t)
-    given = (least - free) / gains[point, 0]  # what the bound gives back goes on to the others
-    return least, (s + given * gains[point, 3], t + given * gains[point, 6])
-
-
-@always_inline
-def _least(normal, dt):
+def least_of(normal, dt):
     """The least impulse across a joint: spring and dashpot together do not pull, but for what is bonded."""
     return -normal * dt if normal >= 0.0 else -np.inf
 
 
+@always_inline
+def forget(states, memory, point, first):
+    """An open point holds no impulse and no force of its elements."""
+    states[point] = OPEN
+    for k in range(first, memory.shape[1]):
+        memory[point, k] = 0.0
+
+
+@always_inline
+def closed_share(gap, opening, dt):
+    """Share of the step before in which a point was closed that has met by now, at the speed at which it closed."""
+    return min(max(gap / (opening * dt), 0.0), 1.0)
+
+
 @inline
-def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
+def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """States, rates and gains of all points before the kick.
 
     Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
@@ -119,12 +63,12 @@ def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotat
     """
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
-    positions, velocities, forces = bodies.positions, bodies.velocities, bodies.forces
-    viscosity, elements, rates, gains = dampers.viscosity, dampers.elements, dampers.rates, dampers.gains
+    positions, velocities = bodies.positions, bodies.velocities
+    viscosity, rates, gains = dampers.viscosity, dampers.rates, dampers.gains
     states, seen, shares, first = dampers.states, dampers.slips, dampers.shares, dampers.first
     pushes = dampers.pushes
     pushes[:] = 0.0
-    d, n_elements, n_met = len(like), elements.shape[0], 0
+    d, n_elements, n_met = len(like), dampers.elements.shape[0], 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -134,9 +78,7 @@ def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotat
             point = np.uint64(p)
             if normals[point] == 0.0:
                 if states[point] != OPEN:
-                    states[point] = OPEN
-                    for k in range(first, memory.shape[1]):
-                        memory[point, k] = 0.0
+                    forget(states, memory, point, first)
                 continue
             met = states[point] == OPEN
             closed = 0.0 if states[point] == STARTS else 1.0  # share of the step before
@@ -153,15 +95,13 @@ def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotat
             shares[point] = 1.0
             n_met += met
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
-                closed = min(max(contacts.gaps[point] / (opening * dt), 0.0), 1.0)
+                closed = closed_share(contacts.gaps[point], opening, dt)
                 shares[point] = 0.5 + closed
             weight = shares[point] * half
             viscous = (weight * kns[point], weight * kss[point])
-            put_gains(
-                gains, point, frame, (reach_a, reach_b), masses, mobilities, viscous, states[point] == SLIPS
-            )  # fmt: skip
+            _put_gains(gains, point, (reach_a, reach_b), masses, mobilities, viscous)
             push, along = memory[point, first], load(memory, point, first + 1, sliding)
-            push = max(push, _least(normals[point], dt))
+            push = max(push, least_of(normals[point], dt))
             memory[point, first] = push
             if states[point] == SLIPS:
                 along = scale(0.0, along)
@@ -172,19 +112,27 @@ def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotat
             add_at(pushes, a, d, torque_at(reach_a, force, push, along), -1.0)
             add_at(pushes, b, d, torque_at(reach_b, force, push, along), 1.0)
             if n_elements > 0:
-                stiffness = (kns[point], kss[point])
-                _relax(memory, rates, elements, states[point], normals[point], stiffness, closed, point, first, d)
-                normal, shear = 0.0, scale(0.0, sliding)
-                for e in range(n_elements):
-                    column = first + d * (e + 1)
-                    normal += memory[point, column]
-                    shear = axpy(1.0, load(memory, point, column + 1, sliding), shear)
-                force = compose(frame, normal, shear, scale(0.0, like))
-                add_at(forces, a, 0, force, -1.0)
-                add_at(forces, b, 0, force, 1.0)
-                add_at(forces, a, d, torque_at(reach_a, force, normal, shear), -1.0)
-                add_at(forces, b, d, torque_at(reach_b, force, normal, shear), 1.0)
+                stiffness, reaches = (kns[point], kss[point]), (reach_a, reach_b)
+                pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
     return n_met
+
+
+@inline
+def pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
+    """Forces of the Maxwell elements of a point after the step before, added to those of its blocks."""
+    elements, first, memory, forces, d = dampers.elements, dampers.first, contacts.memory, bodies.forces, len(like)
+    state, pressed = dampers.states[point], contacts.normal[point]
+    _relax(memory, dampers.rates, elements, state, pressed, stiffness, closed, point, first, d)
+    normal, shear = 0.0, scale(0.0, like[1:])
+    for e in range(elements.shape[0]):
+        column = first + d * (e + 1)
+        normal += memory[point, column]
+        shear = axpy(1.0, load(memory, point, column + 1, shear), shear)
+    force = compose(frame, normal, shear, scale(0.0, like))
+    add_at(forces, a, 0, force, -1.0)
+    add_at(forces, b, 0, force, 1.0)
+    add_at(forces, a, d, torque_at(reaches[0], force, normal, shear), -1.0)
+    add_at(forces, b, d, torque_at(reaches[1], force, normal, shear), 1.0)
 
 
 @inline
@@ -245,7 +193,8 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, lik
             error = weight * kns[point] * (rates[point, 0] + opening) + push
             mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
             error_along = axpy(weight * kss[point], mean, along)
-            new, new_along = gained(gains, point, push, along, error, error_along, _least(normals[point], dt))
+            new = max(push - error * gains[point, 0], least_of(normals[point], dt))
+            new_along = axpy(-gains[point, 1], error_along, along)
             if state == SLIPS:
                 new_along = scale(0.0, along)
             memory[point, first] = new
@@ -263,7 +212,7 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, lik
 
 
 @inline
-def resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
+def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """The impulses of all dashpots on the velocities after the kick, from those of the step before.
 
     turns: pairs of sweeps, to and fro. One is enough where the step before is a good guess.

@@ -230,9 +230,11 @@ class Dampers(NamedTuple):
     first: int
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
     elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
-    rates: np.ndarray  # opening and sliding before the step [m/s], (n_points, d)
-    gains: np.ndarray  # what impulses give up of their errors in one turn: shares in 2D, blocks row by row in 3D,
-    # (n_points, d·r)
+    rates: np.ndarray  # opening and sliding before the step [m/s]; in space where elements ask for it, (n_points, d)
+    gains: np.ndarray  # shares of their errors that impulses give up in one turn, (n_points, 2); in space what one turn
+    # reads, of the points that touch one behind another, columns as in spatial_dashpots.py, (n_points, 18)
+    packed: np.ndarray  # of space: the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    holders: np.ndarray  # and these the points of the rows, (n_points,)
     shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8

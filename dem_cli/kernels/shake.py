@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dem_cli.kernels.advance import local_drag
-from dem_cli.kernels.dashpots import book_elements, book_supports, meet, resist
+from dem_cli.kernels.dashpots import book_elements, book_supports
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.records import (
     CONTACT,
@@ -25,6 +25,7 @@ from dem_cli.kernels.records import (
     TRAVEL_LIMIT,
     UNBALANCED,
 )
+from dem_cli.kernels.spatial_dashpots import meet, resist
 from dem_cli.kernels.spin import add_gyration, add_spin_powers, kick_spins, rotation
 
 TURNS_OF_IMPACT = 6  # pairs of sweeps where points have met, which have no impulse of the step before to start from

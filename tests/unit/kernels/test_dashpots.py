@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dem_cli.kernels.dashpots import SLIPS, STARTS, STICKS, gained, meet, put_gains, resist
+from dem_cli.kernels.dashpots import SLIPS, STARTS, STICKS
+from dem_cli.kernels.spatial_dashpots import LEAST, WIDTH, given_up, meet, put_gains, resist
 
 RANDOM = np.random.default_rng(5)
 
@@ -43,8 +44,8 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     )  # fmt: skip
     dampers = SimpleNamespace(
         first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
-        gains=np.ones((n, 9)), shares=np.ones(n), slips=np.zeros(n), states=np.full(n, STICKS, np.int8),
-        pushes=np.zeros((3, 6)),
+        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int), shares=np.ones(n),
+        slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
     )  # fmt: skip
     return joints, bodies, contacts, inverse, dampers
 
@@ -76,6 +77,7 @@ LIKE = (0.0, 0.0, 0.0)
 def step(joints, bodies, contacts, inverse, dampers, turns: int, kick: np.ndarray, dt: float = 1e-2) -> None:
     """What a step does: rates before, velocities after the kick, dashpots."""
     meet(joints, contacts, bodies, inverse, dampers, dt, LIKE, LIKE)
+    bodies.means = bodies.velocities.ravel().copy()
     bodies.velocities += kick
     resist(joints, contacts, bodies, inverse, dampers, dt, turns, LIKE, LIKE)
 
@@ -95,12 +97,13 @@ def test_one_point_is_solved_at_once():
     joints, bodies, contacts, inverse, dampers = scene(1)
     joints.kn[1] = joints.ks[1] = 0.0
     contacts.normal[1] = 0.0
+    dampers.elements, contacts.memory = np.array([[1.0, 0.0]]), np.zeros((2, 6))  # asks for rates, and gains nothing
     before, kick = bodies.velocities.copy(), np.zeros((3, 6))
     kick[1:] = 0.3
     rows = rows_of(joints, bodies)
     impulses, after = exact(joints, bodies, inverse, before, before + kick)
     step(joints, bodies, contacts, inverse, dampers, 1, kick)
-    assert contacts.memory[0] == pytest.approx(impulses[:3], rel=1e-12)
+    assert contacts.memory[0, :3] == pytest.approx(impulses[:3], rel=1e-12)
     assert bodies.velocities == pytest.approx(after, abs=1e-12)
     assert dampers.rates[0] == pytest.approx((rows @ before.ravel())[:3], rel=1e-12)
 
@@ -175,14 +178,21 @@ def test_block_of_a_point_is_the_inverse(slips):
     joints, bodies, _, inverse, _ = scene(1)
     reaches = tuple(tuple(joints.points[1] - bodies.positions[block]) for block in (1, 2))
     mobilities = tuple(tuple(map(tuple, bodies.mobilities[block].reshape(3, 3))) for block in (1, 2))
-    frame, gains = tuple(map(tuple, joints.frames[1].reshape(3, 3))), np.zeros((1, 9))
-    put_gains(gains, 0, frame, reaches, inverse[1, 0] + inverse[2, 0], mobilities, (7.0, 3.0), slips)
-    rows = rows_of(joints, bodies)[3:]
-    matrix = np.eye(3) + np.diag([7.0, 3.0, 3.0]) @ rows @ inverse_masses(bodies, inverse) @ rows.T
+    frame, rows = joints.frames[1].reshape(3, 3), np.zeros((1, WIDTH))
+    normal = tuple(frame[0])
+    put_gains(rows, 0, normal, reaches, inverse[1, 0] + inverse[2, 0], mobilities, (7.0, 3.0), slips)
+    motion = rows_of(joints, bodies)[3:]
+    matrix = np.eye(3) + np.diag([7.0, 3.0, 3.0]) @ motion @ inverse_masses(bodies, inverse) @ motion.T
     expected = np.linalg.inv(matrix)
     if slips:
         expected = np.zeros((3, 3))
         expected[0, 0] = 1.0 / matrix[0, 0]
-    assert gains.reshape(3, 3) == pytest.approx(expected, rel=1e-12, abs=1e-15)
-    free, along = gained(gains, 0, 0.0, (0.0, 0.0), 1.0, (2.0, -3.0), -np.inf)
-    assert (free, *along) == pytest.approx(-expected @ [1.0, 2.0, -3.0], rel=1e-10)
+    before = np.array([0.6, 0.0, 0.0] if slips else [0.6, -0.4, 0.9])
+    rates = np.array([1.0, 2.0, -3.0])
+    wanted = before - expected @ (before + np.array([7.0, 3.0, 3.0]) * rates)
+    rows[0, LEAST] = -np.inf
+    new = frame @ given_up(rows, 0, normal, tuple(before @ frame), tuple(rates @ frame))
+    assert new == pytest.approx(wanted, rel=1e-12, abs=1e-14)
+    rows[0, LEAST] = wanted[0] + 0.25  # what the bound gives back goes on to the others
+    new = frame @ given_up(rows, 0, normal, tuple(before @ frame), tuple(rates @ frame))
+    assert new == pytest.approx(wanted + 0.25 / expected[0, 0] * expected[:, 0], rel=1e-12, abs=1e-14)
