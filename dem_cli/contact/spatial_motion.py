@@ -22,10 +22,11 @@ from dem_cli.contact.spatial import (
     profile_fault,
     touching,
 )  # fmt: skip
+from dem_cli.errors import SolverError
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
-from dem_cli.kernels.spatial_points import classify
+from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
 FLOOR = 0.25  # of the median face, or of the smaller one of a joint: area of a face joint, at least
+BEVEL = 0.25  # of the typical face of the smaller part: what a small face of a large block counts as, at least
 SKINS = 2.0  # of the reach of detection: how high over a face what lies on it is looked for
 
 
@@ -47,6 +49,8 @@ def points(
     """
     caps = caps_of(chains or made_caps(model, faces, corners, properties), faces)
     solids, n = polyhedra(model, corners), len(faces.parts)
+    if np.diff(model.part_starts).max(initial=0) > LOCAL:
+        raise SolverError(f"a block has more than {LOCAL:,} corners: where blocks move in space it needs several parts")
     counts = np.diff(solids.face_starts)
     slots = counts[faces.faces].sum(axis=1) + np.diff(caps.starts) + 1  # corners, and a centre
     starts = np.concatenate([[0], np.cumsum(slots)]).astype(np.int64)
@@ -105,8 +109,9 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     centred = properties.centred[named].astype(float)
-    n, smaller = len(faces.parts), areas[faces.faces].min(axis=1)
-    face = np.minimum(median, smaller)  # a small block on a large one is no sliver, and its corners are no pillars
+    own = BEVEL * model.faces.typical_areas[faces.parts].min(axis=1)
+    n, smaller = len(faces.parts), np.maximum(areas[faces.faces].min(axis=1), own)
+    face = np.minimum(median, smaller)  # a small block on a large one has no pillars for corners, a bevel no needles
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
         np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), properties.kn[named], properties.ks[named],

@@ -59,10 +59,11 @@ def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:
     error = closure(sim)
     if abs(error) > sim.settings.history.blow_up and measures.energy(sim).kinetic > sim.noticeable_energy:
         block = sim.model.block_ids[_fastest(sim)]
+        known = f"the step {step.step:.3g} s is {step.step / step.limit:.0%} of the limit of the joints of the start"
+        advice = f"{known}, lower analysis.margin" if np.isfinite(step.limit) else "give a smaller analysis.time_step"
         raise SolverError(
             f"blew up at {sim.time:.4g} s: {error:.0%} of the energy came from nowhere, block '{block}' is the "
-            f"fastest; the step {step.step:.3g} s is {step.step / step.limit:.0%} of the limit of "
-            "the joints of the start, lower analysis.margin"
+            f"fastest; {advice}"
         )
 
 

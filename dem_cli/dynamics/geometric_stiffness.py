@@ -41,7 +41,7 @@ def geometric_stiffness(
     from scipy.sparse import coo_array
 
     local = SECOND_DERIVATIVES[model.dimension](model, joints, geometry, contacts, bodies)
-    dofs = free_columns(model, joints).reshape(len(local), -1)
+    dofs = free_columns(model, joints).reshape(len(local), 2 * model.dead_loads.shape[1])
     rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
     used = (rows >= 0) & (columns >= 0)
     n = model.dead_loads.shape[1] * int((~model.fixed).sum())

@@ -105,7 +105,7 @@ class DynamicSimulation(Simulation):
     def _new_dampers(self, closed: int = STICKS) -> None:
         """Dampers of the present joints; what they remember is with the points. closed: state of those closed."""
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
-        n = len(joints.kn)
+        n = len(joints.kn) if self.damping.in_joints else 0
         self.dampers = Dampers(
             first=self.law.n_memory(d),
             viscosity=self.damping.viscosities(self.model, joints),
@@ -115,8 +115,8 @@ class DynamicSimulation(Simulation):
             packed=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
             holders=np.zeros(n, dtype=np.int64),
             shares=np.ones(n),
-            slips=contacts.slip.copy(),
-            states=np.where(contacts.normal != 0.0, closed, OPEN).astype(np.int8),
+            slips=contacts.slip[:n].copy(),
+            states=np.where(contacts.normal[:n] != 0.0, closed, OPEN).astype(np.int8),
             masses=self.masses,
             pushes=np.zeros_like(self.bodies.velocities),
         )

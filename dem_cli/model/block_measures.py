@@ -38,6 +38,7 @@ class FaceMeasures(NamedTuple):
     normals: np.ndarray  # unit, outwards, (n_faces, 3)
     first_sides: np.ndarray  # unit, along the first side, (n_faces, 3)
     shortest_sides: np.ndarray  # [m], (n_faces,)
+    typical_areas: np.ndarray  # median of each part [m²], (n_parts,)
 
 
 def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
@@ -47,7 +48,8 @@ def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
     start, end = vertices[topology.sides[:, :2]].swapaxes(0, 1)
     lengths, first = np.linalg.norm(end - start, axis=1), topology.face_starts[:-1]
     sides = (end - start)[first] / lengths[first][:, None]
-    return FaceMeasures(areas, vectors / areas[:, None], sides, np.minimum.reduceat(lengths, first))
+    typical = np.array([np.median(own) for own in np.split(areas, topology.part_faces[1:-1])])
+    return FaceMeasures(areas, vectors / areas[:, None], sides, np.minimum.reduceat(lengths, first), typical)
 
 
 def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> PartMeasures:
