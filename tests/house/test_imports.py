@@ -18,6 +18,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "api",
         "case",
         "contact",
+        "dynamics",
         "engine",
         "kernels",
         "limit.analysis",
