@@ -199,8 +199,8 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
 
 
 @inline
-def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards, like, like_rotation):
-    """One sweep over all impulses; backwards: which are then kept with the points."""
+def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards, last, like, like_rotation):
+    """One sweep over all impulses; last: which are then kept with the points."""
     blocks, frames, positions, velocities = joints.blocks, joints.frames, bodies.positions, bodies.velocities
     rows, packed, holders, memory, first = (
         dampers.gains, dampers.packed, dampers.holders, contacts.memory, dampers.first
@@ -231,7 +231,7 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards
             va, vb = axpy(-mass_a, gain, va), axpy(mass_b, gain, vb)
             spin_a = axpy(-1.0, spun(mobility_a, moment(arm_a, gain)), spin_a)
             spin_b = axpy(1.0, spun(mobility_b, moment(arm_b, gain)), spin_b)
-            if backwards:
+            if last:
                 point = np.uint64(holders[row])
                 push, along = components(load_frame(frames, point, like), new)
                 memory[point, first] = max(push, rows[row, LEAST])
@@ -250,15 +250,16 @@ def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns
     velocities, pushes, old = bodies.velocities, dampers.pushes, bodies.means
     for block in range(velocities.shape[0]):
         push = load(pushes, block, 3, like_rotation)
-        turn = spun(load_mobility(bodies.mobilities, block, like), push)
+        turning = spun(load_mobility(bodies.mobilities, block, like), push)
         for k in range(3):
             i = block * 6 + k
             velocities[block, k] += old[i] + inverse_masses[block, k] * pushes[block, k]
             velocities[block, 3 + k] += old[i + 3]
-        add_at(velocities, block, 3, turn, 1.0)
-    for _ in range(turns):
-        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, False, like, like_rotation)
-        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, True, like, like_rotation)
+        add_at(velocities, block, 3, turning, 1.0)
+    for turn in range(turns):
+        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, False, False, like, like_rotation)
+        last = turn == turns - 1
+        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, True, last, like, like_rotation)
     for block in range(velocities.shape[0]):
         for k in range(6):
             velocities[block, k] -= old[block * 6 + k]
