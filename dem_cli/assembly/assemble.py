@@ -15,11 +15,11 @@ from dem_cli.case.cross_references import check_names
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry.rotation import moments
-from dem_cli.model.blocks import Block
+from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
-from dem_cli.structures.registry import GENERATORS
+from dem_cli.structures.registry import generated_blocks
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -76,7 +76,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
     local: dict[str, list[Block]] = {}
     for i, parameters in enumerate(case.structure):
         try:
-            generated = GENERATORS[parameters.kind].build(parameters)
+            generated = generated_blocks(parameters, case.seed)
             _check_corners(generated)
         except ValueError as error:
             keys = error.keys if isinstance(error, KeyProblem) else ()
@@ -99,7 +99,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
 
 def _check_corners(blocks: Sequence[Block]) -> None:
     """Raises ValueError where a generated block has no area: fewer than three corners that are not the same point."""
-    flat = [block.id for block in blocks if any(len(part) < 3 for part in block.parts)]
+    flat = [block.id for block in blocks if any(len(corners_of(part)) < 3 for part in block.parts)]
     if flat:
         more = f" (and {len(flat) - 1} more)" if len(flat) > 1 else ""
         raise ValueError(f"block '{flat[0]}'{more} has no area: its sides are too different in length")
@@ -127,8 +127,8 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
 
 def _sorted(blocks: list[Block]) -> list[Block]:
     """From the lowest up, then along x, in space also along y: neighbours get numbers close to each other."""
-    corners = [getattr(part, "vertices", part) for block in blocks for part in block.parts]
-    counts = [sum(len(getattr(part, "vertices", part)) for part in block.parts) for block in blocks]
+    corners = [corners_of(part) for block in blocks for part in block.parts]
+    counts = [sum(len(corners_of(part)) for part in block.parts) for block in blocks]
     lows = np.minimum.reduceat(np.concatenate(corners), np.cumsum([0, *counts[:-1]]), axis=0)
     step = 1e-6 * (float(np.ptp(lows, axis=0).max()) or 1.0)  # against round-off within a course
     *sideways, up = lows.T

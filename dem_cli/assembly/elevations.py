@@ -13,11 +13,12 @@ import numpy as np
 
 from dem_cli.assembly.imperfect import ImperfectBlocks, imperfect
 from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.geometry.polyhedron import Polyhedron
 from dem_cli.model.blocks import Block
 from dem_cli.model.bodies import bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import depth, full_id, spatial_places
-from dem_cli.structures.registry import GENERATORS
+from dem_cli.structures.registry import generated_blocks
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -25,15 +26,17 @@ if TYPE_CHECKING:
 
 def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> ImperfectBlocks:
     """As `imperfect`, for blocks in space. Raises CaseError, also for errors of blocks drawn by hand."""
-    problems = list(_of_drawn_blocks(case, blocks))
+    upright = [_elevation(case, i) for i in range(len(case.structure))]
+    problems = [*_of_drawn_blocks(case, blocks), *_of_solids(case, upright)]
     if problems:
         raise CaseError(problems)
-    upright = tuple(table.model_copy(update={"origin": (0.0, 0.0), "rotation_deg": 0.0}) for table in case.structure)
-    flat_case = case.model_copy(update={"structure": upright})
+    facing = tuple(table.model_copy(update={"origin": (0.0, 0.0), "rotation_deg": 0.0}) for table in case.structure)
+    flat_case = case.model_copy(update={"structure": facing})
     changed: dict[str, tuple[Any, ...]] = {}
     doubts: dict[CaseProblem, None] = {}
-    for i, table in enumerate(case.structure):
-        flat = _elevation(case, i)
+    for table, flat in zip(case.structure, upright, strict=True):
+        if not flat:
+            continue
         found = imperfect(flat_case, _planar_model(case, flat), flat)
         parts, _ = spatial_places(found.blocks, table)
         changed |= {block.id: tuple(next(parts) for _ in block.parts) for block in found.blocks}
@@ -56,10 +59,29 @@ def _of_drawn_blocks(case: Case, blocks: Sequence[Block]) -> Iterator[CaseProble
             yield CaseProblem(("imperfection", i), message)
 
 
+def _of_solids(case: Case, upright: Sequence[Sequence[Block]]) -> Iterator[CaseProblem]:
+    """Tables about structures that have no elevation: `upright`, of each structure its blocks, is empty."""
+    solid = [table.id for table, blocks in zip(case.structure, upright, strict=True) if not blocks]
+    for i, table in enumerate(case.imperfection):
+        if table.structure in solid:
+            message = f"'{table.structure}' is not drawn in one upright plane; its blocks have no imperfections in 3D"
+            yield CaseProblem(("imperfection", i, "structure"), message)
+        elif solid and table.block is None and table.structure is None:
+            message = f"structure '{solid[0]}' has none in 3D: say which 'structure' is meant"
+            yield CaseProblem(("imperfection", i), message)
+
+
 def _elevation(case: Case, i: int) -> list[Block]:
-    """Blocks of structure i as its generator draws them, by their full names; without what stands beside its plane."""
+    """Blocks of structure i as its generator draws them, by their full names; without what stands beside its plane.
+
+    None where its blocks are solids, or lie behind each other.
+    """
     table = case.structure[i]
-    drawn = [block for block in GENERATORS[table.kind].build(table) if depth(block)[0] < 0.0 < depth(block)[1]]
+    drawn = generated_blocks(table, case.seed)
+    drawn = [block for block in drawn if not block.fixed or depth(block)[0] < 0.0 < depth(block)[1]]
+    free = [block for block in drawn if not block.fixed]
+    if any(isinstance(part, Polyhedron) for block in drawn for part in block.parts) or len(set(map(depth, free))) > 1:
+        return []
     return [
         replace(block, id=full_id(table.id, block.id), material=block.material or table.material, path=("structure", i))
         for block in drawn

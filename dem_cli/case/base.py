@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from types import GenericAlias
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
@@ -47,8 +47,11 @@ class CaseModel(BaseModel):
 class StructureBase(CaseModel):
     """What every generator accepts. A subclass adds `kind: Literal["..."] = "..."` and its own keys.
 
-    After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks.
+    After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks. `only_in`: the
+    only dimension of cases in which there is this kind; None: both.
     """
+
+    only_in: ClassVar[int | None] = None
 
     id: str = Field(
         default="", description="prefix of the block names; default: the kind, made unique", examples=["tower"]
@@ -67,6 +70,15 @@ class StructureBase(CaseModel):
 
     @model_validator(mode="before")
     @classmethod
+    def _in_its_dimension(cls, table: Any, info: ValidationInfo) -> Any:
+        dimension = (info.context or {}).get("dimension")
+        if cls.only_in is not None and dimension is not None and dimension != cls.only_in:
+            kind = cls.model_fields["kind"].default
+            raise KeyProblem(f"'{kind}' is not allowed in {dimension}D; give dimension = {cls.only_in}", "kind")
+        return table
+
+    @model_validator(mode="before")
+    @classmethod
     def _thickness_within_block(cls, table: Any, info: ValidationInfo) -> Any:
         """In 3D a block may be given with its thickness: block = [length, height, thickness]."""
         block = table.get("block") if isinstance(table, dict) else None
@@ -80,6 +92,22 @@ class StructureBase(CaseModel):
     def rotation(self) -> float:
         """Turn about the origin [rad], counter-clockwise."""
         return math.radians(self.rotation_deg)
+
+    def drawn_from(self, seed: int) -> StructureBase:
+        """Itself with what it lacks to draw at random, from the seed of the case."""
+        return self
+
+
+class RandomStructure(StructureBase):
+    """What a generator accepts that draws at random."""
+
+    seed: int | None = Field(
+        default=None, ge=0, description="makes what is random reproducible; default: that of the case", examples=[3]
+    )
+
+    def drawn_from(self, seed: int) -> RandomStructure:
+        """With the seed of the case where it has none of its own."""
+        return self if self.seed is not None else self.model_copy(update={"seed": seed})
 
 
 def as_tuples(value: Any) -> Any:

@@ -55,7 +55,7 @@ class CaseTable(NamedTuple):
         """The only dimension of cases that may have it, or this kind of it; None: both."""
         inside = (known_in(self.path[:k]) for k in range(1, len(self.path) + 1))
         of_kind = known_in((*self.path, self.tag), self.kinds[0]) if self.tag and self.kinds else None
-        return next(filter(None, inside), None) or of_kind
+        return next(filter(None, inside), None) or of_kind or getattr(self.declared, "only_in", None)
 
     @property
     def about(self) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from dem_cli.errors import KeyPath
 
 
@@ -14,6 +16,7 @@ class Block:
 
     parts      convex pieces that move as one: in the plane (n, 2) arrays of corners [m], counter-clockwise; in space
                polyhedra
+    course     number of the course that it is laid in, from 1 at the foot; 0: in none
     thickness  depth out of plane [m]; in space 1
     across     of a generated block, that is drawn in a plane: from where to where it goes square to that in space [m];
                None: half the thickness to either side
@@ -26,4 +29,10 @@ class Block:
     thickness: float = 1.0
     fixed: bool = False
     across: tuple[float, float] | None = None
+    course: int = 0
     path: KeyPath = field(default=(), compare=False)
+
+
+def corners_of(part: Any) -> np.ndarray:
+    """Corners of a convex piece [m], (n, 2) or (n, 3)."""
+    return getattr(part, "vertices", part)

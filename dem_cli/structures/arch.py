@@ -247,5 +247,5 @@ def _pier_blocks(arch: Arch, pier: Pier, joints: np.ndarray) -> list[Block]:
             if k == pier.courses - 1:
                 corners[2:] = [inner, outer, [back, outer[1]]]
             shape = polygon.simplified(np.array(corners[:: -int(sign)]))
-            blocks.append(Block(f"{side}-{k + 1}", (shape,), pier.material, arch.thickness))
+            blocks.append(Block(f"{side}-{k + 1}", (shape,), pier.material, arch.thickness, course=k + 1))
     return blocks

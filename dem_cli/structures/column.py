@@ -106,7 +106,7 @@ def build(column: Column) -> list[Block]:
         foot, head = drum.width / 2.0, (drum.top_width or drum.width) / 2.0
         low, high = levels[k : k + 2]
         shape = np.array([[-foot, low], [foot, low], [head, high], [-head, high]])
-        blocks.append(Block(f"{k + 1}", (shape,), "", column.thickness))
+        blocks.append(Block(f"{k + 1}", (shape,), "", column.thickness, course=k + 1))
     if column.cap:
         cap = column.cap
         shape = rectangle(-cap.width / 2.0, levels[-1], cap.width, cap.height)

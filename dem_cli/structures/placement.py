@@ -2,6 +2,7 @@
 
 Generators draw in a plane, x along the structure and y upwards. In 2D that is the plane of the case. In 3D it stands
 upright on the ground: blocks become prisms, half their thickness to either side of it, turned in plan about the origin.
+What is no prism a generator draws in space: x along the structure, y across it, z upwards.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from dem_cli.case.base import StructureBase
 from dem_cli.errors import KeyPath
 from dem_cli.geometry import polygon, polyhedron
-from dem_cli.model.blocks import Block
+from dem_cli.model.blocks import Block, corners_of
 
 CORNERS = {  # alias: where it is in the box around the free blocks, as fractions of width and height
     "bottom-left": (0.0, 0.0),
@@ -56,11 +57,13 @@ def planar_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[I
 
 
 def spatial_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
-    """The same of prisms, turned in plan: their depth is in their corners."""
-    drawn = [(part, *depth(block)) for block in blocks for part in block.parts]
-    polygons, low, high = zip(*drawn, strict=True)
-    prisms = polyhedron.prisms(polygons, np.array(low), np.array(high))
-    placed = polyhedron.all_moved(prisms, parameters.rotation, parameters.origin)
+    """The same in space, polygons as prisms, turned in plan: their depth is in their corners."""
+    solids: list[Any] = [part for block in blocks for part in block.parts]
+    flat = [k for k, part in enumerate(solids) if not isinstance(part, polyhedron.Polyhedron)]
+    low, high = np.array([depth(block) for block in blocks for _ in block.parts])[flat].T
+    for k, prism in zip(flat, polyhedron.prisms([solids[k] for k in flat], low, high), strict=True):
+        solids[k] = prism
+    placed = polyhedron.all_moved(solids, parameters.rotation, parameters.origin)
     return iter(placed), {"thickness": 1.0, "across": None}
 
 
@@ -96,8 +99,9 @@ def corner_blocks(blocks: Sequence[Block]) -> dict[str, str]:
     free = [block for block in blocks if not block.fixed]
     if not free:
         return {}
-    owner = np.repeat(np.arange(len(free)), [sum(map(len, block.parts)) for block in free])
-    vertices = np.concatenate([part for block in free for part in block.parts])
+    corners = [np.concatenate([corners_of(part) for part in block.parts]) for block in free]
+    owner = np.repeat(np.arange(len(free)), [len(own) for own in corners])
+    vertices = np.concatenate(corners)[:, [0, -1]]  # of blocks in space as seen from -y
     first = np.searchsorted(owner, np.arange(len(free)))
     low, high = np.minimum.reduceat(vertices, first), np.maximum.reduceat(vertices, first)
     foot, extent = low.min(axis=0), np.ptp(vertices, axis=0)

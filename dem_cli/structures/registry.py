@@ -26,3 +26,8 @@ GENERATORS: dict[str, Generator] = {
         Generator("arch", arch.Arch, arch.build),
     )
 }
+
+
+def generated_blocks(table: StructureBase, seed: int) -> list[Block]:
+    """Blocks of a structure, in local places; seed: of the case. Raises ValueError where it is impossible."""
+    return GENERATORS[table.kind].build(table.drawn_from(seed))  # type: ignore[attr-defined]

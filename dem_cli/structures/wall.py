@@ -203,7 +203,7 @@ def build(wall: Wall) -> list[Block]:
         for hole in (*holes, *(lintel for lintel in lintels if lintel)):
             pieces = _cut(pieces, hole, small)
         for n, shape in enumerate(_corners(pieces)):
-            blocks.append(Block(f"{k + 1}-{n + 1}", (shape,), "", wall.thickness))
+            blocks.append(Block(f"{k + 1}-{n + 1}", (shape,), "", wall.thickness, course=k + 1))
     for i, (opening, lintel_box) in enumerate(zip(wall.openings, lintels, strict=True)):
         if opening.lintel:
             shape = _corners(np.array([lintel_box]))[0]
