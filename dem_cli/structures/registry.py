@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, building, column, wall
+from dem_cli.structures import arch, column, wall
+from dem_cli.structures.building.build import build as build_building
+from dem_cli.structures.building.table import Building
 
 
 class Generator(NamedTuple):
@@ -24,7 +26,7 @@ GENERATORS: dict[str, Generator] = {
         Generator("wall", wall.Wall, wall.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
-        Generator("building", building.Building, building.build),
+        Generator("building", Building, build_building),
     )
 }
 

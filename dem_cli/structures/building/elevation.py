@@ -1,9 +1,9 @@
-"""Elevation of one wall of a building: courses in blocks around openings and pockets, under a gable."""
+"""Elevation of one wall of a building: courses in stones around openings and pockets, under a gable."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,12 +12,18 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.case.base import KeyProblem
+from dem_cli.geometry.polygon import rectangle
+from dem_cli.structures import tops
 from dem_cli.structures.building.bond import SHORTEST, Ends, laid
 from dem_cli.structures.building.plan import Axis
 from dem_cli.structures.building.runs import Run
 from dem_cli.structures.building.table import PlanWall
+from dem_cli.structures.stones import Part, Stone, put_together
 
 SMALL = 1e-6  # of a block: shorter is nothing
+
+
+Box = tuple[float, float, float, float]  # left, low, right, high [m]
 
 
 class Hole(NamedTuple):
@@ -37,17 +43,6 @@ class Pocket(NamedTuple):
     right: float
     course: int  # from 0
     across: tuple[float, float]  # what is left of the wall, from its right to its left; empty: nothing
-
-
-class Stone(NamedTuple):
-    """One block as laid: a box along the wall, or several, and where it is cut askew."""
-
-    name: str
-    course: int  # from 1
-    boxes: tuple[tuple[float, ...], ...]  # each [left, low, right, high, from, to across] [m]
-    start: np.ndarray | None = None  # end of its run that it is cut along
-    stop: np.ndarray | None = None
-    material: str = ""
 
 
 class Stretch(NamedTuple):
@@ -93,25 +88,32 @@ class Elevation:
             self._check(hole)
         return found
 
-    def roof(self, height: float) -> tuple[float, float]:
-        """From where to where the wall goes at a height: under the gable it narrows."""
-        low, high = self.span
+    @cached_property
+    def outline(self) -> tops.Profile | None:
+        """The slopes of a gable; None: there is none."""
         gable = self.table.gable
-        if gable is None or height <= self.eaves:
-            return low, high
-        inwards = 0.5 * (high - low) * (height - self.eaves) / gable.height
-        return low + inwards, high - inwards
+        return None if gable is None else tops.gable_profile(gable, *self.span, self.eaves)
 
-    def roof_planes(self) -> list[tuple[np.ndarray, float]]:
-        """Normals (3,) and heights of both slopes of the gable, in coordinates of the wall."""
-        if self.table.gable is None:
-            return []
-        (low, high), rise = self.span, self.table.gable.height
-        half = 0.5 * (high - low)
-        slope = math.hypot(half, rise)
-        normals = [np.array([sign * rise, 0.0, half]) / slope for sign in (-1.0, 1.0)]
-        feet = (np.array([low, 0.0, self.eaves]), np.array([high, 0.0, self.eaves]))
-        return [(normal, float(normal @ foot)) for normal, foot in zip(normals, feet, strict=True)]
+    @property
+    def top(self) -> tops.Profile | None:
+        """Along which courses are cut; None: the top is level, or stepped."""
+        return None if self.is_stepped else self.outline
+
+    @property
+    def is_stepped(self) -> bool:
+        """Whether it has a gable in steps."""
+        return self.table.gable is not None and self.table.gable.edges == "stepped"
+
+    def roof(self, height: float) -> tuple[float, float]:
+        """From where to where the wall goes at a height: under a gable it narrows."""
+        return self.span if self.outline is None else tops.level_span(self.outline, height)
+
+    def roof_of(self, course: int) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The same at the foot and at the head of a course; of a step in its middle."""
+        low, high = (float(level) for level in self.levels[course : course + 2])
+        if self.is_stepped and low >= self.eaves:
+            low = high = 0.5 * (low + high)
+        return self.roof(low), self.roof(high)
 
     def _check(self, hole: Hole) -> None:
         top = float(self.levels[-1])
@@ -149,12 +151,12 @@ class Elevation:
 
     def ends(self, run: Run, course: int) -> Ends:
         """Ends of a run, with what they are askew in plan and along the slopes of a gable."""
-        foot, head = (self.roof(float(level)) for level in self.levels[course : course + 2])
+        foot, head = self.roof_of(course)
         start, stop = np.maximum(run.start, foot[0]), np.minimum(run.stop, foot[1])
         inner = max(float(start.max()), head[0]), min(float(stop.min()), head[1])
         outer = float(start.min()), float(stop.max())
-        middles = [0.5 * (a + b) for a, b in zip(inner, outer, strict=True)]
-        return Ends(*middles, inner[0] - middles[0], middles[1] - inner[1])
+        first, last = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])
+        return Ends(first, last, inner[0] - first, last - inner[1])
 
     @cached_property
     def first(self) -> float:
@@ -190,53 +192,63 @@ class Elevation:
 
     # -- courses ---------------------------------------------------------------------------------------------------
 
-    def stones(self) -> list[Stone]:
-        """All blocks, course by course from below, lintels last. Raises KeyProblem where a piece would be too small."""
-        found = []
-        for course in range(len(self.runs)):
-            row = [stone for run in self.runs[course] for stone in self._of_run(run, course)]
-            row.sort(key=lambda stone: stone.boxes[0][:2])
-            found += [
-                stone._replace(name=f"{self.axis.name}-{course + 1}-{n}") for n, stone in enumerate(row, start=1)
-            ]
-        return found + self._lintels()
+    def stones(self) -> list[tuple[str, Stone]]:
+        """All stones by name, course by course from below, lintels last. Raises KeyProblem for a piece too small."""
+        rows = [list(self._course(course)) for course in range(len(self.runs))]
+        found: list[tuple[str, Stone]] = []
+        count = dict.fromkeys(range(1, len(rows) + 1), 0)
+        ordered = put_together([stone for row in rows for stone in row], SMALL * self.length)
+        for stone in sorted(ordered, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
+            count[stone.course] += 1
+            found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
+        return found + list(self._lintels())
 
-    def _lintels(self) -> list[Stone]:
-        right, left = self.axis.faces
-        found = []
+    def _lintels(self) -> Iterator[tuple[str, Stone]]:
         for i, opening in enumerate(self.table.openings):
-            if opening.lintel is None:
-                continue
-            lintel = self.holes[[hole.opening for hole in self.holes].index(i) + 1]
-            box = (lintel.left, lintel.low, lintel.right, lintel.high, right, left)
-            found.append(Stone(f"{self.axis.name}-lintel-{i + 1}", 0, (box,), material=opening.lintel.material))
-        return found
+            if opening.lintel is not None and opening.lintel_box is not None:
+                x0, y0, x1, y1 = opening.lintel_box
+                part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), self.across)
+                yield f"{self.axis.name}-lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
 
-    def _of_run(self, run: Run, course: int) -> list[Stone]:
+    @property
+    def across(self) -> tuple[float, float]:
+        """Its two faces across, right and left of the axis [m]."""
+        right, left = self.axis.faces.tolist()
+        return right, left
+
+    def _course(self, course: int) -> Iterator[Stone]:
+        """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
+        low, high = (float(level) for level in self.levels[course : course + 2])
+        full = self.length * (high - low)
+        for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
+            x0, y0, x1, y1 = box
+            shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
+            if self.top is not None and high > self.eaves:
+                shapes = tops.below(shapes[0], self.top, SMALL * self.length)
+            if shapes:
+                yield Stone(course + 1, tuple(Part(shape, across) for shape in shapes), full)
+
+    def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
+        """Blocks of a run [left, low, right, top], and from where to where they go across."""
         ends = self.ends(run, course)
         avoid = np.array(self.joints(course - 1) + self.joints(course + 1))
-        first, found, row = self.place(course, self.first), [], self._stretches(run, ends, course)
+        first = self.place(course, self.first)
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
-        for stretch in row:
+        for stretch in self._stretches(run, ends, course):
             at_start, at_stop = stretch.left == ends.start, stretch.right == ends.stop
-            part = Ends(
-                stretch.left, stretch.right, ends.start_askew * at_start, ends.stop_askew * at_stop
-            )
+            part = Ends(stretch.left, stretch.right, ends.start_askew * at_start, ends.stop_askew * at_stop)
             heads = laid(part, self.length, first, avoid).heads if stretch.free else np.zeros(0)
             if at_start and at_stop and self._is_tip(course):
                 count = math.ceil((outer[1] - outer[0]) / self.length - SMALL)
                 heads = outer[0] + (outer[1] - outer[0]) * np.arange(1, count) / count
             limits = [outer[0] if at_start else stretch.left, *heads.tolist(), outer[1] if at_stop else stretch.right]
-            for n, (a, b) in enumerate(pairwise(limits)):
-                start = run.start if at_start and n == 0 else None
-                stop = run.stop if at_stop and n == len(limits) - 2 else None
-                for low, high in stretch.free:
-                    found.append(Stone("", course + 1, ((a, low, b, high, *stretch.across),), start, stop))
-        return self._joined(found, course)
+            for low, high in stretch.free:
+                for a, b in pairwise(limits):
+                    yield (a, low, b, high), stretch.across
 
     def _is_tip(self, course: int) -> bool:
         """Whether it is the course under the tip of a gable."""
-        return self.table.gable is not None and course == len(self.runs) - 1
+        return self.top is not None and course == len(self.runs) - 1
 
     def _stretches(self, run: Run, ends: Ends, course: int) -> list[Stretch]:
         """A run, cut where what is free changes. Raises KeyProblem: an opening in another wall, slivers beside it."""
@@ -249,7 +261,7 @@ class Elevation:
                 message += f"of other walls from {inner[0]:.6g} to {inner[1]:.6g}"
                 raise KeyProblem(message, *self._key(hole))
         pockets = self._pockets(course)
-        edges = {x for thing in (*holes, *pockets) for x in (thing.left, thing.right)}
+        edges = {x for hole in holes for x in hole[:2]} | {x for pocket in pockets for x in pocket[:2]}
         between = sorted(x for x in edges if inner[0] + small < x < inner[1] - small)
         between = [x for x, before in zip(between, [-math.inf, *between]) if x - before > small]
         low, high = (float(level) for level in self.levels[course : course + 2])
@@ -268,21 +280,15 @@ class Elevation:
 
     def _left_over(self, across: Sequence[tuple[float, float]]) -> tuple[float, float]:
         """What pockets leave of the thickness."""
-        right, left = self.axis.faces.tolist()
+        right, left = self.across
         return max([right, *(a for a, _ in across)]), min([left, *(b for _, b in across)])
 
     def _free(self, low: float, high: float, over: Sequence[Hole]) -> tuple[tuple[float, float], ...]:
-        """Heights of a course that holes leave. Raises KeyProblem where that is less than a quarter of a course."""
+        """Heights of a course that holes leave."""
         found, at = [], low
         for hole in (*sorted(over, key=lambda each: each.low), None):
             until = high if hole is None else hole.low
-            height = until - at
-            if height > SMALL * (high - low):
-                if height < SHORTEST * (high - low) * (1.0 - SMALL):
-                    near = hole or max(over, key=lambda each: each.high)
-                    message = f"a piece {height:.3g} m high is left of the course from {low:g} to {high:g}; "
-                    message += "let the opening and its lintel end at bed joints, or a quarter of a course from them"
-                    raise KeyProblem(message, *self._key(near))
+            if until - at > SMALL * (high - low):
                 found.append((at, until))
             at = max(at, high if hole is None else hole.high)
         return tuple(found)
@@ -292,21 +298,9 @@ class Elevation:
         least = SHORTEST * self.length * (1.0 - SMALL)
         for stretch in row:
             length = stretch.right - stretch.left
-            if not stretch.free or length >= least or stretch.across != tuple(self.axis.faces.tolist()):
+            if not stretch.free or length >= least or stretch.across != self.across:
                 continue
             where = f"{length:.3g} m long, at {stretch.left:.4g} m in course {course + 1} of wall '{self.axis.name}'"
             near = [h for h in holes if min(abs(h.left - stretch.right), abs(h.right - stretch.left)) < least]
             key = self._key(near[0]) if near else ("walls", self.number, "axis")
             raise KeyProblem(f"a piece is left that is too short, {where}; at least a quarter of a block", *key)
-
-    def _joined(self, stones: list[Stone], course: int) -> list[Stone]:
-        """Pieces behind narrow pockets become part of the stone beside them."""
-        least, found = SHORTEST * self.length * (1.0 - SMALL), list[Stone]()
-        for stone in stones:
-            left, low, right, high = stone.boxes[0][:4]
-            narrow = right - left < least and stone.boxes[0][4:] != tuple(self.axis.faces.tolist())
-            if narrow and found and found[-1].boxes[0][1:4] == (low, left, high):
-                found[-1] = found[-1]._replace(boxes=(*found[-1].boxes, stone.boxes[0]), stop=stone.stop)
-            else:
-                found.append(stone)
-        return found

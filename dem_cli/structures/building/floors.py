@@ -64,6 +64,11 @@ class Bed(NamedTuple):
     high: float
     courses: range  # that it interrupts
 
+    def wall(self, side: Side) -> int:
+        """The wall of a side on which it bears."""
+        assert side.wall is not None
+        return side.wall
+
     def name(self, *more: int) -> str:
         """Of a plate, or of a beam of some number."""
         return "-".join([self.floor.id, *map(str, more)])
@@ -160,7 +165,7 @@ def _plate(found: Floors, bed: Bed) -> None:
 
 def _pockets(found: Floors, bed: Bed, side: Side, outline: np.ndarray) -> None:
     """A pocket in the wall of a side, in all courses beside the floor."""
-    wall = side.wall
+    wall = bed.wall(side)
     axis = bed.plan.axes[wall]
     right, left = axis.faces.tolist()
     bearing = bed.bearing[wall]
@@ -183,7 +188,9 @@ def _beams(found: Floors, bed: Bed) -> None:
     floor, first = bed.floor, next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[0]))
     last = next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[1]))
     if abs(float(first.along @ last.along)) < 0.5:
-        message = f"walls '{floor.on[0]}' and '{floor.on[1]}' stand at an angle; beams go from a wall to one opposite it"
+        message = (
+            f"walls '{floor.on[0]}' and '{floor.on[1]}' stand at an angle; beams go from a wall to one opposite it"
+        )
         raise KeyProblem(message, "floors", bed.number, "on")
     inner = _corners([_line(bed._replace(bearing={}), side, 0.0) for side in bed.room])
     k = bed.room.index(first)
@@ -222,7 +229,7 @@ def _moved(bed: Bed, sides: tuple[Side, Side], middle: float, spacing: float) ->
 
 def _fits(bed: Bed, side: Side, outline: np.ndarray) -> bool:
     """Whether a pocket keeps a quarter of a block from openings and walls beside it."""
-    wall, least = side.wall, SHORTEST * bed.building.block[0]
+    wall, least = bed.wall(side), SHORTEST * bed.building.block[0]
     axis = bed.plan.axes[wall]
     low, high = np.sort(axis.local(outline)[:, 0])[[0, -1]]
     zones = [bed.plan.zone(wall, junction) for junction in bed.plan.met(wall)]

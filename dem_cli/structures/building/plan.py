@@ -67,7 +67,7 @@ class Plan(NamedTuple):
     junctions: tuple[Junction, ...]
 
     def face(self, wall: int, other: int, side: int) -> np.ndarray:
-        """Where a face of another wall (side: -1 right, 1 left of it) cuts both faces of this one, along it [m], (2,)."""
+        """Where a face of another wall (side: -1 right of it, 1 left) cuts both faces of this one [m], (2,)."""
         here, there = self.axes[wall], self.axes[other]
         away = float((here.start - there.start) @ there.across)
         sine, cosine = float(here.along @ there.across), float(here.across @ there.across)
@@ -240,4 +240,3 @@ def _too_near(plan: Plan, wall: int, stems: Sequence[int], junction: Junction) -
         f"walls '{names}' meet too near to each other at [{x:.4g}, {y:.4g}]: two meet at one place, or two more end at "
         "one from either side; move one by its thickness and a quarter of a block"
     )
-
