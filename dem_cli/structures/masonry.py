@@ -19,7 +19,7 @@ from dem_cli.geometry.polygon import rectangle
 from dem_cli.geometry.polyhedron import prism
 from dem_cli.model.blocks import Block
 from dem_cli.structures import courses, tops
-from dem_cli.structures.course_layout import Band, Interruption, interruption, laid_around, split
+from dem_cli.structures.course_layout import CoursePlan, Interruption, interruption, laid_around, split
 from dem_cli.structures.courses import Piece, Span
 from dem_cli.structures.openings import Opening
 from dem_cli.structures.stones import Part, Stone, put_together
@@ -99,13 +99,13 @@ class Masonry:
             at = [-half, -self.core.thickness / 2.0, self.core.thickness / 2.0, half]
         return list(zip(at[:-1], at[1:], strict=True))
 
-    def band(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> Band:
+    def plan(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> CoursePlan:
         """Course k, with quoins and openings in its way, above these head joints."""
         low, high = self.levels_of(k)
         stops = [x for void in voids for x in void.stops(low, high, self.small)]
         stops += [] if self.top is None else tops.stops(self.top, low, high)
         length, pattern = self.block_length(k), self.pattern(k)
-        return Band(low, high, self.spans[k], taken, length, pattern, self.anchor, stops, below)
+        return CoursePlan(low, high, self.spans[k], taken, length, pattern, self.anchor, stops, below)
 
     @property
     def small(self) -> float:
@@ -207,7 +207,7 @@ def _stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
         found = [interruption(void, low, high, masonry.small) for void in voids]
         gaps.append([one for one in found if one is not None])
         below = joints[-1] if joints and masonry.bond != "stack" else []
-        runs.append(laid_around(masonry.band(k, quoins, voids, below), gaps[k], masonry.small))
+        runs.append(laid_around(masonry.plan(k, quoins, voids, below), gaps[k], masonry.small))
         joints.append([x for run in runs[k] for piece in run for x in (piece.start, piece.end)])
     for k, own in enumerate(runs):
         beyond = [x for other in joints[max(k - 1, 0) : k + 2] for x in other if other is not joints[k]]
