@@ -33,7 +33,7 @@ DOC_PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
 
 EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
     "lineload axle axleload pointload weight": "load",
-    "thrust earthpressure waterpressure water soil distributedload areaload hydrostatic backfill": "pressure",
+    "thrust earthpressure waterpressure water distributedload areaload hydrostatic backfill": "pressure",
     "overburden spandrelfill ballast": "fill",
     "selection subset": "groups",
     "window windows door gate opening": "structure.wall.openings",
