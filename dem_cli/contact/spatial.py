@@ -189,7 +189,7 @@ def profile_fault(
         return fault
     if not has_it.any():
         return None
-    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in np.flatnonzero(has_it)}
+    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in map(int, np.flatnonzero(has_it))}
     widths = {k: 2.0 * float(apothems(outline).min()) for k, outline in outlines.items()}
     depths = {k: _thickness(model, corners, faces.parts[k, 1], found.frames[k, :3]) for k in outlines}
     narrowest, thinnest = min(widths, key=widths.__getitem__), min(depths, key=depths.__getitem__)
