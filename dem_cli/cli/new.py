@@ -17,7 +17,7 @@ def command(kind: str, output: str | None) -> None:
     """Print a commented case file to start from.
 
     KIND: arch, block, column, facade or wall, to be pushed; out-of-plane: a wall in 3D, pushed out of its plane;
-    retaining: a wall under earth pressure; colonnade or shaken (an arch): in an earthquake; safety: how far an arch is
+    vault: in 3D, groin, barrel or dome; retaining: a wall under earth pressure; colonnade or shaken (an arch): in an earthquake; safety: how far an arch is
     from failure; sweep: walls of several kinds, for `dem sweep`. Such as: dem new wall > wall.toml
     """
     text = (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
