@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, column, wall
+from dem_cli.structures import arch, column, imported, wall
 
 
 class Generator(NamedTuple):
@@ -24,6 +24,7 @@ GENERATORS: dict[str, Generator] = {
         Generator("wall", wall.Wall, wall.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
+        Generator("import", imported.Import, imported.build),
     )
 }
 
