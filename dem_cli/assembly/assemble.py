@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,8 +15,8 @@ from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
-from dem_cli.case.wording import show
-from dem_cli.errors import CaseError, CaseProblem, dotted
+from dem_cli.case.wording import show, unknown_name
+from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
@@ -88,7 +88,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
             problems += error.problems
     if case.ground is not None and blocks and not problems:
         blocks += ground_blocks(case.ground, blocks, problems)
-    problems += _repeated_names(blocks)
+    problems += [*_repeated_names(blocks), *_foreign_materials(blocks, list(case.materials))]
     if not blocks and not problems:
         problems.append(CaseProblem((), "there are no blocks; give a [[structure]] or a [[block]]"))
     if problems:
@@ -122,6 +122,17 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
             if block.path[0] == "structure":
                 break  # all of its blocks would follow
     return problems
+
+
+def _foreign_materials(blocks: Sequence[Block], materials: Sequence[str]) -> Iterator[CaseProblem]:
+    """Materials that only a file names, which a structure took its blocks from."""
+    found: dict[tuple[KeyPath, str], list[str]] = {}
+    for block in blocks:
+        if block.material not in materials:
+            found.setdefault((block.path, block.material), []).append(block.id)
+    for (path, name), ids in found.items():
+        more = f" and {len(ids) - 1} more" if len(ids) > 1 else ""
+        yield CaseProblem((*path, "file"), f"block '{ids[0]}'{more}: {unknown_name('material', name, materials)}")
 
 
 def _sorted(blocks: list[Block]) -> list[Block]:

@@ -56,6 +56,7 @@ def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[
     loads = [f"{sum(load.kind == kind for load in case.load)} {kind}" for kind in ("dead", "live")]
     return [
         ("analysis", case.analysis.kind),
+        *_imports(case),
         ("blocks", f"{model.n_blocks:,} ({model.fixed.sum():,} fixed), {len(model.vertices):,} corners"),
         ("size", size),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
@@ -84,6 +85,15 @@ def _drawn(case: Case) -> list[tuple[str, str]]:
     return [
         (f"{table.id} {label}", text) for table in case.structure for label, text in generated_figures(table, case.seed)
     ]
+
+
+def _imports(case: Case) -> list[tuple[str, str]]:
+    """How files of other programs were read."""
+    from dem_cli.structures.imported import Import, imported
+
+    tables = [table for table in case.structure if isinstance(table, Import)]
+    notes = [(f"{table.id}: " if len(tables) > 1 else "", note) for table in tables for note in imported(table).notes]
+    return [("import" if k == 0 else "", name + note) for k, (name, note) in enumerate(notes)]
 
 
 def _imperfections(case: Case) -> str:
