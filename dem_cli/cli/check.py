@@ -56,8 +56,18 @@ def rows(case: Case, model: Model) -> list[tuple[str, str]]:
         ("size", size),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
         ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
+        *_drawn(case),
         *([("imperfections", _imperfections(case))] if case.imperfection else []),
         ("point loads", ", ".join(loads) if case.load else "none"),
+    ]
+
+
+def _drawn(case: Case) -> list[tuple[str, str]]:
+    """What structures have drawn at random."""
+    from dem_cli.structures.registry import generated_figures
+
+    return [
+        (f"{table.id} {label}", text) for table in case.structure for label, text in generated_figures(table, case.seed)
     ]
 
 
