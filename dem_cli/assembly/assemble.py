@@ -16,7 +16,7 @@ from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
-from dem_cli.model.bodies import bodies_of
+from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
@@ -144,6 +144,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
     thickness = np.array([block.thickness for block in blocks])
     density = np.array([m.density for m in case.materials.values()])[material]
     bodies = bodies_of(case.dimension, [block.parts for block in blocks], density, thickness)
+    bodies = _weighed(bodies, blocks)
     n, n_dof = len(blocks), case.dimension + bodies.inertias.shape[1]
     return Model(
         **bodies._asdict(),
@@ -156,6 +157,17 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
     )
+
+
+def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
+    """With the masses of blocks that have one of their own, spread evenly over them."""
+    given = [i for i, block in enumerate(blocks) if block.mass is not None]
+    if not given:
+        return bodies
+    masses, inertias = bodies.masses.copy(), bodies.inertias.copy()
+    masses[given] = [blocks[i].mass for i in given]
+    inertias[given] *= (masses[given] / bodies.masses[given])[:, None]
+    return bodies._replace(masses=masses, inertias=inertias)
 
 
 def _point_loads(case: Case, model: Model) -> list[PointLoad]:

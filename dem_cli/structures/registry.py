@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, column, wall
+from dem_cli.structures import arch, building, column, wall
 from dem_cli.structures.patterns import coursed_wall, voronoi_wall
 
 
@@ -28,6 +28,7 @@ GENERATORS: dict[str, Generator] = {
         Generator("arch", arch.Arch, arch.build),
         Generator("voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures),
         Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
+        Generator("building", building.Building, building.build),
     )
 }
 
