@@ -9,10 +9,11 @@ from dem_cli.case.base import KeyProblem, NonNegative, Positive, RandomStructure
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
+from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_opening
 from dem_cli.structures.patterns.panel import WallPanel, blocks_of, rectangular
 from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
-from dem_cli.structures.wall import NARROWEST_PIECE, Opening, _check_opening, _corners, _lintel_box
+from dem_cli.structures.wall import _corners
 
 
 class PatternWall(RandomStructure):
@@ -42,7 +43,7 @@ class PatternWall(RandomStructure):
     def _fits(self) -> PatternWall:
         length, height = self.size
         for i, opening in enumerate(self.openings):
-            _check_opening(opening, i, length, height)
+            check_opening(opening, i, length, height)
         for i, side in enumerate(self.sides):
             widest = side.widest(length)
             if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
@@ -59,7 +60,7 @@ class PatternWall(RandomStructure):
     @property
     def panel(self) -> WallPanel:
         """The rectangle of the wall without its openings and lintels."""
-        lintels = [box for opening in self.openings if (box := _lintel_box(opening))]
+        lintels = [box for opening in self.openings if (box := opening.lintel_box)]
         holes = [(o.x, o.y, o.x + o.width, o.y + o.height) for o in self.openings]
         return rectangular(*self.size, [*holes, *lintels])
 
@@ -84,7 +85,7 @@ def _lintels(wall: PatternWall) -> list[Block]:
     return [
         Block(f"lintel-{i + 1}", (_corners(np.array([box]))[0],), opening.lintel.material, wall.thickness)
         for i, opening in enumerate(wall.openings)
-        if opening.lintel and (box := _lintel_box(opening))
+        if opening.lintel and (box := opening.lintel_box)
     ]
 
 
