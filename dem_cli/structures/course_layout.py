@@ -13,7 +13,7 @@ NEAR_CORNER = 0.1  # of a block: head joints so close to a corner of an opening,
 FEATHER = 0.25  # of a course: thinner tips over or under an opening belong to the course beyond
 
 
-class Band(NamedTuple):
+class CoursePlan(NamedTuple):
     """One course and what stands in its way."""
 
     low: float  # lower bed joint [m]
@@ -79,29 +79,29 @@ def _end(void: Void, foot: float, head: float, height: float) -> tuple[float, bo
     return min(foot, head), bool(len(void.joints)) and slopes > 2.0 * FEATHER * height
 
 
-def laid_around(band: Band, interruptions: Sequence[Interruption], gap: float) -> list[list[Piece]]:
+def laid_around(plan: CoursePlan, interruptions: Sequence[Interruption], gap: float) -> list[list[Piece]]:
     """Runs of blocks of a course, from left to right, each between two ends of it."""
     counted = {one.ends[i]: one.middle[i] for one in interruptions for i in (0, 1)}
     runs = []
-    for span in band.spans:
-        for start, end in courses.without(span, [*band.taken, *(one.ends for one in interruptions)], gap):
+    for span in plan.spans:
+        for start, end in courses.without(span, [*plan.taken, *(one.ends for one in interruptions)], gap):
             from_, to = max(start, counted.get(start, start)), min(end, counted.get(end, end))
-            if to - from_ < LEAST_PIECE * band.length:
+            if to - from_ < LEAST_PIECE * plan.length:
                 from_, to = start, end
-            run = _snapped(courses.laid(band.pattern, (from_, to), band.length, band.anchor, band.below), band)
+            run = _snapped(courses.laid(plan.pattern, (from_, to), plan.length, plan.anchor, plan.below), plan)
             run[-1] = run[-1]._replace(end=end)
             run[0] = run[0]._replace(start=start)
             runs.append(run)
     return runs
 
 
-def _snapped(run: list[Piece], band: Band) -> list[Piece]:
+def _snapped(run: list[Piece], plan: CoursePlan) -> list[Piece]:
     """With head joints at the corners of openings that they are close to."""
     found = list(run)
     for i in range(len(found) - 1):
         joint = found[i].end
-        stop = near(joint, band.stops, NEAR_CORNER * band.length)
-        room = LEAST_PIECE * band.length
+        stop = near(joint, plan.stops, NEAR_CORNER * plan.length)
+        room = LEAST_PIECE * plan.length
         if stop != joint and stop - found[i].start >= room and found[i + 1].end - stop >= room:
             found[i] = found[i]._replace(end=stop)
             found[i + 1] = found[i + 1]._replace(start=stop)

@@ -13,7 +13,8 @@ from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
 from dem_cli.structures.bases import base_block
 from dem_cli.structures.courses import HEADER_BONDS
-from dem_cli.structures.masonry import Core, Masonry, Quoins, masonry_blocks
+from dem_cli.structures.masonry import Core, Masonry, Quoins
+from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
