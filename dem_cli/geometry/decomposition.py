@@ -1,181 +1,100 @@
-"""Convex decomposition of concave polygons and polyhedra, exact: their hull cut by the planes of their concave sides.
-
-The hull is cut by the plane of a side that goes through a piece until no side does (binary space partition; Fuchs,
-Kedem and Naylor 1980); pieces inside are kept, and joined again where two are convex together. Corners of the solid
-keep their coordinates. In any dimension d: sides are simplices of d corners, in the plane lines, in space triangles.
-"""
+"""Convex decomposition of simple polygons: concave ones are cut along diagonals, no corner is added."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-ROUND_OFF = 1e-9  # of the size: points that are one, heights that are none
-THIN = 1e-6  # of the size: pieces of a side that are narrower are not cut along
-SAME_VOLUME = 1e-9  # relative: two pieces whose hull is no larger are convex together
-MOST_PIECES = 200
+from dem_cli.geometry import polygon
+from dem_cli.geometry.polygon import ROUND_OFF
+from dem_cli.geometry.rotation import cross
 
 
-class Sides(NamedTuple):
-    """The surface of a solid: flat sides, each of one or several simplices."""
+def convex_parts(corners: np.ndarray) -> list[np.ndarray]:
+    """Numbers of the corners of each convex part of a simple polygon (n, 2) [m], counter-clockwise.
 
-    points: np.ndarray  # corners [m], (n, d)
-    simplices: np.ndarray  # d corners each, outwards by the right hand or to the right of a line, (m, d)
-    planes: np.ndarray  # side that each simplex belongs to, (m,)
-    normals: np.ndarray  # outward and unit, of each side, (k, d)
-    heights: np.ndarray  # of each side over the origin [m], (k,)
+    Each cut goes from a corner that points inwards to that other corner which leaves the fewest of them, and then the
+    largest smaller part. Corners on straight sides may end a cut. Raises ValueError: the sides cross each other.
+    """
+    return _parts(np.asarray(corners, float), np.arange(len(corners)), polygon.size(corners))
 
 
-def convex_pieces(sides: Sides) -> list[np.ndarray]:
-    """Corners (n, d) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
-    size = float(np.linalg.norm(np.ptp(sides.points, axis=0)))
-    gap = ROUND_OFF * size
-    over = sides.points @ sides.normals.T - sides.heights
-    cutting = np.flatnonzero((over > THIN * size).any(axis=0))
-    faces = [(k, sides.points[simplex]) for k, simplex in zip(sides.planes, sides.simplices) if k in set(cutting)]
-    waiting, leaves = [(hull_corners(sides.points), faces)], []
-    while waiting:
-        cell, inside = waiting.pop()
-        k = _best(sides, inside, gap)
-        if k is None:
-            leaves.append(cell)
+def is_simple(corners: np.ndarray) -> bool:
+    """Whether a polygon runs counter-clockwise about an area, and no two of its sides meet but at their common end."""
+    size = polygon.size(corners)
+    if len(corners) < 3 or polygon.signed_area(corners) <= ROUND_OFF * size**2:
+        return False
+    after = np.roll(corners, -1, axis=0)
+    n = len(corners)
+    i, j = np.triu_indices(n, 1)
+    apart = (j - i > 1) & (j - i < n - 1)
+    i, j = i[apart], j[apart]
+    return not _meet(corners[i], after[i], corners[j], after[j], ROUND_OFF * size**2).any()
+
+
+def _parts(corners: np.ndarray, loop: np.ndarray, size: float) -> list[np.ndarray]:
+    here = corners[loop]
+    inwards = _inwards(here, size)
+    if not inwards.any():
+        return [loop]
+    best = None
+    for r in np.flatnonzero(inwards):
+        for v in _seen_from(here, int(r), size):
+            first, second = _halves(len(loop), int(r), v)
+            left = int(_inwards(here[first], size).sum() + _inwards(here[second], size).sum())
+            smaller = min(polygon.signed_area(here[first]), polygon.signed_area(here[second]))
+            if smaller > ROUND_OFF * size**2 and (best is None or (left, -smaller) < best[0]):
+                best = (left, -smaller), first, second
+    if best is None:
+        raise ValueError("the sides of the polygon cross each other")
+    _, first, second = best
+    return _parts(corners, loop[first], size) + _parts(corners, loop[second], size)
+
+
+def _inwards(corners: np.ndarray, size: float) -> np.ndarray:
+    """Corners at which the polygon is concave, (n,) bool."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    return cross(np.roll(edges, 1, axis=0), edges) < -ROUND_OFF * size**2
+
+
+def _halves(n: int, i: int, j: int) -> tuple[np.ndarray, np.ndarray]:
+    i, j = min(i, j), max(i, j)
+    return np.arange(i, j + 1), np.concatenate([np.arange(j, n), np.arange(i + 1)])
+
+
+def _seen_from(corners: np.ndarray, r: int, size: float) -> list[int]:
+    """Corners to which a straight cut from corner r lies inside the polygon."""
+    n, least = len(corners), ROUND_OFF * size**2
+    after = np.roll(corners, -1, axis=0)
+    others = np.array([v for v in range(n) if v not in ((r - 1) % n, r, (r + 1) % n)], np.int64)
+    found = []
+    for v in others.tolist():
+        arm = corners[v] - corners[r]
+        if not (_opens_to(corners, r, arm, least) and _opens_to(corners, v, -arm, least)):
             continue
-        if len(waiting) + len(leaves) > MOST_PIECES:
-            raise ValueError(f"it takes more than {MOST_PIECES} convex pieces")
-        for sign in (1.0, -1.0):
-            part = _half(cell, sign * sides.normals[k], sign * sides.heights[k], sides.points, gap)
-            if part is not None:
-                rest = [(j, cut) for j, piece in inside if j != k for cut in [_clipped(piece, *_half_space(
-                    sides, k, sign), gap)] if _width(cut, sides.normals[j]) > THIN * size]  # fmt: skip
-                waiting.append((part, rest))
-    kept = [cell for cell in leaves if _winding(sides, cell.mean(axis=0)) > 0.5]
-    pieces = _joined(kept)
-    whole, found = solid_volume(sides), sum(map(volume, pieces))
-    if abs(found - whole) > SAME_VOLUME * whole:
-        raise ValueError(f"its convex pieces would have {found:.9g} of {whole:.9g} m{sides.points.shape[1]}")
-    return pieces
+        sides = np.array([k for k in range(n) if r not in (k, (k + 1) % n) and v not in (k, (k + 1) % n)], np.int64)
+        start, end = np.broadcast_to(corners[r], (len(sides), 2)), np.broadcast_to(corners[v], (len(sides), 2))
+        if not _meet(start, end, corners[sides], after[sides], least).any():
+            found.append(v)
+    return found
 
 
-def solid_volume(sides: Sides) -> float:
-    """Volume of a solid by the simplices of its surface [m^d]."""
-    arms = sides.points[sides.simplices] - sides.points.mean(axis=0)
-    d = arms.shape[2]
-    return abs(float(np.linalg.det(arms).sum())) / (1 if d == 1 else 2 if d == 2 else 6)
+def _opens_to(corners: np.ndarray, k: int, arm: np.ndarray, least: float) -> bool:
+    """Whether a direction from corner k points into the polygon."""
+    here, n = corners[k], len(corners)
+    out, back = corners[(k + 1) % n] - here, corners[(k - 1) % n] - here
+    left_of_out, right_of_back = float(cross(out, arm)) > least, float(cross(arm, back)) > least
+    if float(cross(out, back)) > least:
+        return left_of_out and right_of_back
+    return left_of_out or right_of_back
 
 
-def volume(corners: np.ndarray) -> float:
-    """Volume of the hull of corners (n, d) [m^d]."""
-    from scipy.spatial import ConvexHull
-
-    return float(ConvexHull(corners - corners.mean(axis=0)).volume)
-
-
-def hull_corners(points: np.ndarray) -> np.ndarray:
-    """The corners of the hull of points (n, d), those left out that lie on its faces or edges; in their order."""
-    from scipy.spatial import ConvexHull
-
-    found = ConvexHull(points - points.mean(axis=0))
-    return points[np.sort(found.vertices)]
-
-
-def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int | None:
-    """The side whose plane cuts the fewest others that go through the same piece; None: none goes through it."""
-    chosen, least = None, np.inf
-    for k in dict.fromkeys(k for k, _ in faces):
-        cuts = 0
-        for j, piece in faces:
-            heights = piece @ sides.normals[k] - sides.heights[k]
-            cuts += j != k and heights.min() < -gap and heights.max() > gap
-        if cuts < least:
-            chosen, least = k, cuts
-    return chosen
-
-
-def _half_space(sides: Sides, k: int, sign: float) -> tuple[np.ndarray, float]:
-    return sign * sides.normals[k], sign * float(sides.heights[k])
-
-
-def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray, gap: float) -> np.ndarray | None:
-    """Corners of the part of a convex piece below a plane; None: there is nothing of it."""
-    over = cell @ normal - height
-    if over.min() >= -gap:
-        return None
-    if over.max() <= gap:
-        return cell
-    low, high = np.flatnonzero(over < -gap), np.flatnonzero(over > gap)
-    share = over[low][:, None] / (over[low][:, None] - over[high][None, :])
-    crossings = cell[low][:, None] + share[:, :, None] * (cell[high][None, :] - cell[low][:, None])
-    crossings = crossings.reshape(-1, cell.shape[1])
-    near = np.linalg.norm(crossings[:, None] - known[None], axis=2)
-    k = near.argmin(axis=1)
-    crossings = np.where((near.min(axis=1) <= gap)[:, None], known[k], crossings)
-    return hull_corners(_apart(np.concatenate([cell[over <= gap], crossings]), gap))
-
-
-def _apart(points: np.ndarray, gap: float) -> np.ndarray:
-    """Points without those that are another one again."""
-    kept: list[np.ndarray] = []
-    for point in points:
-        if not kept or np.abs(np.array(kept) - point).max(axis=1).min() > gap:
-            kept.append(point)
-    return np.array(kept)
-
-
-def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -> np.ndarray:
-    """The part of a flat convex side (corners in order, (n, d)) below a plane; Sutherland and Hodgman 1974."""
-    if not len(piece):
-        return piece
-    over = piece @ normal - height
-    over = np.where(np.abs(over) <= gap, 0.0, over)
-    after, over_after = np.roll(piece, -1, axis=0), np.roll(over, -1)
-    kept = []
-    for k in range(len(piece)):
-        if over[k] <= 0.0:
-            kept.append(piece[k])
-        if over[k] * over_after[k] < 0.0:
-            kept.append(piece[k] + over[k] / (over[k] - over_after[k]) * (after[k] - piece[k]))
-    return np.array(kept).reshape(-1, piece.shape[1])
-
-
-def _width(piece: np.ndarray, normal: np.ndarray) -> float:
-    """How wide a flat side is [m]: in the plane its length, in space the square root of its area."""
-    if len(piece) < len(normal):
-        return 0.0
-    if len(normal) == 2:
-        return float(np.linalg.norm(np.ptp(piece, axis=0)))
-    arms = piece - piece[0]
-    return float(np.sqrt(0.5 * np.linalg.norm(np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0))))
-
-
-def _winding(sides: Sides, point: np.ndarray) -> float:
-    """How often the surface winds about a point: 1 inside, 0 outside; angles, in space of Van Oosterom and Strackee."""
-    arms = sides.points[sides.simplices] - point
-    lengths = np.linalg.norm(arms, axis=2)
-    if arms.shape[2] == 2:
-        (a, b) = (arms[:, 0], arms[:, 1])
-        angles = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
-        return abs(float(angles.sum())) / (2.0 * np.pi)
-    a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
-    la, lb, lc = lengths.T
-    below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-    return abs(float(2.0 * np.arctan2(np.linalg.det(arms), below).sum())) / (4.0 * np.pi)
-
-
-def _joined(pieces: list[np.ndarray]) -> list[np.ndarray]:
-    """Pieces with those joined, two at a time, that are convex together; the largest first."""
-    left = sorted(pieces, key=volume, reverse=True)
-    sizes = [volume(piece) for piece in left]
-    k = 0
-    while k < len(left):
-        for j in range(k + 1, len(left)):
-            both = np.concatenate([left[k], left[j]])
-            together = sizes[k] + sizes[j]
-            if volume(both) <= together * (1.0 + SAME_VOLUME):
-                gap = ROUND_OFF * float(np.linalg.norm(np.ptp(both, axis=0)))
-                left[k], sizes[k] = hull_corners(_apart(both, gap)), together
-                del left[j], sizes[j]
-                k = -1
-                break
-        k += 1
-    return left
+def _meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, least: float) -> np.ndarray:
+    """Whether segments a-b and c-d (n, 2) have a point in common, (n,) bool; twice the area `least` counts as none."""
+    sides = [cross(b - a, c - a), cross(b - a, d - a), cross(d - c, a - c), cross(d - c, b - c)]
+    sides = [np.where(np.abs(side) <= least, 0.0, np.sign(side)) for side in sides]
+    crossing = (sides[0] * sides[1] <= 0.0) & (sides[2] * sides[3] <= 0.0)
+    on_one_line = (sides[0] == 0.0) & (sides[1] == 0.0)
+    along = b - a
+    places = np.stack([((c - a) * along).sum(axis=1), ((d - a) * along).sum(axis=1)])
+    overlap = (places.max(axis=0) >= 0.0) & (places.min(axis=0) <= (along**2).sum(axis=1))
+    return crossing & (~on_one_line | overlap)
