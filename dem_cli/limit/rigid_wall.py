@@ -61,7 +61,7 @@ def hand_check(case: Case) -> float | None:
     if wall.kind != "wall" or not _regular(wall):
         return None
     length, height = wall.block
-    return split_load(wall.length, wall.courses * height, 2.0 * height / length)
+    return split_load(wall.extent, wall.courses * height, 2.0 * height / length)
 
 
 def _pushed_sideways(analysis: Any) -> bool:
@@ -76,8 +76,8 @@ def _pushed_sideways(analysis: Any) -> bool:
 
 
 def _regular(wall: Any) -> bool:
-    """Half-block stagger, flush ends, equal courses, no openings, upright."""
+    """Half-block stagger, flush ends, equal courses, no openings, level, upright."""
     stagger = wall.block[0] / 2 if wall.offset is None else wall.offset
-    halves = wall.bond != "stack" and np.isclose(stagger, wall.block[0] / 2)
+    halves = wall.bond != "stack" and np.isclose(stagger, wall.block[0] / 2) and wall.is_plain
     equal = not (wall.course_heights or wall.course_lengths or wall.openings or wall.sides)
     return bool(halves and equal and wall.ends == "half" and wall.rotation_deg == 0.0 and wall.courses > 1)

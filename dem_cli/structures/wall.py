@@ -7,34 +7,17 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive, StructureBase
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
+from dem_cli.structures import tops
 from dem_cli.structures.bases import base_block
+from dem_cli.structures.courses import HEADER_BONDS
+from dem_cli.structures.masonry import Core, Masonry, Quoins, masonry_blocks
+from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
 MOST_BLOCKS = 1_000_000
-NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or height are not made
-
-
-class Lintel(CaseModel):
-    """One block over an opening, in place of whatever it crosses."""
-
-    height: Positive = Field(description="height [m]", examples=[0.2])
-    bearing: NonNegative = Field(description="length that rests on the wall at each side [m]", examples=[0.15])
-    material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["wood"])
-
-
-class Opening(CaseModel):
-    """A rectangular hole; blocks that it cuts keep what is left of them as rectangles."""
-
-    x: NonNegative = Field(description="left edge, from the left end of the wall [m]", examples=[0.8])
-    y: NonNegative = Field(description="lower edge, from the foot of the wall [m]", examples=[0.0])
-    width: Positive = Field(description="width [m]", examples=[0.9])
-    height: Positive = Field(description="height [m]", examples=[2.0])
-    lintel: Lintel | None = Field(
-        None, description="a block over the opening; default: none", examples=[{"height": 0.2, "bearing": 0.15}]
-    )
 
 
 class Wall(StructureBase):
@@ -53,15 +36,21 @@ class Wall(StructureBase):
         json_schema_extra={"maxItems": 3},
     )
     courses: int = Field(ge=1, le=10_000, description="number of courses", examples=[12])
-    blocks_per_course: int = Field(
+    blocks_per_course: int | None = Field(
+        None,
         ge=1,
         le=10_000,
         description="full blocks in a full course: the wall is this many block lengths long",
         examples=[8],
     )
-    bond: Literal["running", "stack"] | None = Field(
+    length: Positive | None = Field(
+        None, description="length of the wall [m], instead of blocks_per_course", examples=[6.0]
+    )
+    bond: Literal["running", "stack", "english", "english-garden", "flemish"] | None = Field(
         None,
-        description="running: every other course is shifted by half a block; stack: none is; default: running",
+        description="running: every other course is shifted by half a block; stack: none is; english: courses of "
+        "stretchers and of headers (half a block long) in turn; english-garden: three of stretchers, one of headers; "
+        "flemish: stretchers and headers in turn in each course; headers go through all leaves; default: running",
         examples=["stack"],
     )
     offset: NonNegative | None = Field(
@@ -83,8 +72,33 @@ class Wall(StructureBase):
         (), description="block length in each course from below [m]; default: all alike", examples=[[0.5, 0.4, 0.4]]
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
+    leaves: int = Field(1, ge=1, le=3, description="walls side by side that the thickness consists of", examples=[2])
+    through_stones: float = Field(
+        0.0,
+        ge=0.0,
+        le=1.0,
+        description="share of the stones of a face that go through all leaves, evenly spaced",
+        examples=[0.2],
+    )
+    core: Core | None = Field(
+        None,
+        description="rubble in place of the middle one of three leaves; default: none",
+        examples=[{"thickness": 0.3, "material": "rubble"}],
+    )
+    quoins: Quoins | None = Field(
+        None, description="larger stones at both ends; default: none", examples=[{"length": 0.6, "height": 2}]
+    )
     openings: tuple[Opening, ...] = Field(
         (), description="doors and windows", examples=[[{"x": 0.8, "y": 0.0, "width": 0.9, "height": 2.0}]]
+    )
+    gable: tops.Gable | None = Field(
+        None, description="a triangle of masonry on top of the courses; default: none", examples=[{"height": 1.5}]
+    )
+    profile: tuple[Pair, ...] = Field(
+        (),
+        description="top of the wall from its left to its right end, points [x, y] [m]: courses are cut there; "
+        "default: level",
+        examples=[[[0.0, 2.0], [3.0, 1.2], [6.0, 1.2]]],
     )
     base: bool = Field(True, description="a fixed block below, as long as the wall")
     base_height: Positive | None = Field(
@@ -100,14 +114,19 @@ class Wall(StructureBase):
     )
 
     @property
-    def length(self) -> float:
+    def extent(self) -> float:
         """Length of a full course [m]."""
-        return self.block[0] * self.blocks_per_course
+        return self.block[0] * self.blocks_per_course if self.blocks_per_course else self.length or 0.0
 
     @property
     def base_depth(self) -> float:
         """Height of the base [m]."""
         return self.base_height or self.block[1]
+
+    @property
+    def courses_top(self) -> float:
+        """Level of the top of the courses, without a gable [m]."""
+        return float(self.levels[-1])
 
     @property
     def levels(self) -> np.ndarray:
@@ -116,10 +135,25 @@ class Wall(StructureBase):
             return np.concatenate([[0.0], np.cumsum(self.course_heights)])
         return np.arange(self.courses + 1) * self.block[1]
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether blocks and what is cut of them stay as they fall, however short: one leaf, holes without arches."""
+        return not self._shaped_by
+
+    @property
+    def _shaped_by(self) -> list[str]:
+        """Keys by which it is laid without short pieces."""
+        given = [key for key in ("length", "core", "quoins", "gable", "profile") if getattr(self, key)]
+        given += ["bond"] * (self.bond in HEADER_BONDS) + ["leaves"] * (self.leaves > 1)
+        return given + ["openings"] * any(opening.arch for opening in self.openings)
+
     @model_validator(mode="after")
     def _not_too_many(self) -> Wall:
+        if (self.blocks_per_course is None) == (self.length is None):
+            found = "found none" if self.length is None else "found both"
+            raise KeyProblem(f"a wall needs either blocks_per_course or length; {found}", "blocks_per_course")
         lengths = self.course_lengths or (self.block[0],) * self.courses
-        count = sum(self.length / length for length in lengths)
+        count = sum(self.extent / length for length in lengths) * self.leaves
         if count > MOST_BLOCKS:
             key = "course_lengths" if self.course_lengths else "courses"
             raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", key)
@@ -139,19 +173,61 @@ class Wall(StructureBase):
                 message = f"{self.offset:g} is not allowed; must be less than the block length, {shortest:g}"
                 raise KeyProblem(message, "offset")
         for i, length in enumerate(self.course_lengths):
-            if length > self.length * (1 + NARROWEST_PIECE):
-                message = f"{length:g} is not allowed; must be at most {self.length:g}, the length of the wall"
+            if length > self.extent * (1 + NARROWEST_PIECE):
+                message = f"{length:g} is not allowed; must be at most {self.extent:g}, the length of the wall"
                 raise KeyProblem(message, "course_lengths", i)
         for i, side in enumerate(self.sides):
             _check_side(self, side, i)
+        top = self.courses_top + (self.gable.height if self.gable else 0.0)
         for i, opening in enumerate(self.openings):
-            _check_opening(opening, i, self.length, float(self.levels[-1]))
+            check_opening(opening, i, self.extent, top)
         return self
+
+    @model_validator(mode="after")
+    def _laid_together(self) -> Wall:
+        if self.ends == "toothed" and self._shaped_by:
+            raise KeyProblem(f"'toothed' is not allowed with {self._shaped_by[0]}", "ends")
+        _check_leaves(self)
+        _check_top(self)
+        check_apart(self.openings)
+        return self
+
+
+def _check_leaves(wall: Wall) -> None:
+    """Raises KeyProblem where leaves, through-stones and a core do not go together."""
+    if wall.through_stones and wall.leaves == 1:
+        raise KeyProblem("not used with leaves = 1: every stone goes through", "through_stones")
+    if wall.through_stones and wall.bond in HEADER_BONDS:
+        raise KeyProblem(f"not used with bond = '{wall.bond}': its headers go through", "through_stones")
+    if wall.core and wall.leaves != 3:
+        raise KeyProblem("a core is the middle one of three leaves: give leaves = 3", "core")
+    if wall.core and wall.core.thickness >= wall.thickness:
+        message = f"{wall.core.thickness:g} is not allowed; must be less than the thickness of the wall, "
+        raise KeyProblem(f"{message}{wall.thickness:g}", "core", "thickness")
+    if wall.quoins and 2.0 * wall.quoins.length > wall.extent:
+        message = f"{wall.quoins.length:g} is not allowed; must be at most {wall.extent / 2.0:g}, half the wall"
+        raise KeyProblem(message, "quoins", "length")
+
+
+def _check_top(wall: Wall) -> None:
+    """Raises KeyProblem where a gable or a profile is not the top of the wall, or openings cross it."""
+    if wall.gable and wall.profile:
+        raise KeyProblem("a wall has a gable or a profile, not both", "profile")
+    if wall.profile:
+        tops.check_profile(wall.profile, wall.extent, wall.courses_top)
+    if wall.gable and wall.gable.ridge is not None and wall.gable.ridge >= wall.extent:
+        message = f"{wall.gable.ridge:g} is not allowed; must be less than the length of the wall, {wall.extent:g}"
+        raise KeyProblem(message, "gable", "ridge")
+    top = _top(wall)
+    for i, opening in enumerate(wall.openings if top is not None else ()):
+        gap = NARROWEST_PIECE * opening.width
+        if any(tops.cuts_off(top, shape, gap) for shape in opening.solids):  # type: ignore[arg-type]
+            raise KeyProblem("reaches above the top of the wall there", "openings", i)
 
 
 def _check_side(wall: Wall, side: Side, i: int) -> None:
     """Raises KeyProblem where a side does not fit the wall."""
-    widest = side.widest(wall.length)
+    widest = side.widest(wall.extent)
     if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
         of = f"{'half ' if side.ends == 'both' else ''}the length of the wall"
         raise KeyProblem(f"{side.strip:g} is not allowed; must be at most {widest:g}, {of}", "sides", i, "strip")
@@ -161,42 +237,69 @@ def _check_side(wall: Wall, side: Side, i: int) -> None:
         )
 
 
-def _check_opening(opening: Opening, i: int, length: float, height: float) -> None:
-    """Raises KeyProblem where the opening or its lintel does not lie within the wall."""
-    slack = 1.0 + NARROWEST_PIECE
-    limits = [
-        ("width", opening.x + opening.width, length, "x + width", "length"),
-        ("height", opening.y + opening.height, height, "y + height", "height"),
-    ]
-    for key, value, limit, what, name in limits:
-        if value > limit * slack:
-            message = f"{what} = {value:g} is not allowed; must be at most the {name} of the wall, {limit:g}"
-            raise KeyProblem(message, "openings", i, key)
-    if opening.lintel is None:
-        return
-    bearing, top = opening.lintel.bearing, opening.y + opening.height + opening.lintel.height
-    room = min(opening.x, length - opening.x - opening.width)
-    if bearing > room + NARROWEST_PIECE * length:
-        message = f"{bearing:g} is not allowed; must be at most {room:g}, what is left beside the opening"
-        raise KeyProblem(message, "openings", i, "lintel", "bearing")
-    if top > height * slack:
-        message = f"the lintel would reach up to {top:g}; the wall is {height:g} high"
-        raise KeyProblem(message, "openings", i, "lintel", "height")
-
-
 def build(wall: Wall) -> list[Block]:
     """Blocks in local coordinates, course by course from below, the base first, lintels last."""
-    boxes = [_course(wall, k) for k in range(wall.courses)]
-    holes = [(o.x, o.y, o.x + o.width, o.y + o.height) for o in wall.openings]
-    lintels = [_lintel_box(o) for o in wall.openings]
+    if wall.is_plain:
+        boxes = [_course(wall, k) for k in range(wall.courses)]
+        ends = (min(box[0, 0] for box in boxes), max(box[-1, 2] for box in boxes))
+        laid = _plain_blocks(wall, boxes)
+    else:
+        ends = (0.0, wall.extent)
+        laid = masonry_blocks(masonry_of(wall))
     blocks = []
     if wall.base:
-        left = min(box[0, 0] for box in boxes) - wall.base_extension
-        right = max(box[-1, 2] for box in boxes) + wall.base_extension
+        left, right = ends[0] - wall.base_extension, ends[1] + wall.base_extension
         shape = rectangle(left, -wall.base_depth, right - left, wall.base_depth)
         blocks.append(base_block("base", shape, wall.thickness, wall.base_extension))
     foot = -wall.base_depth if wall.base and not wall.base_extension else 0.0
-    blocks += side_blocks(wall.sides, SupportedWall(wall.length, float(wall.levels[-1]), wall.thickness, foot))
+    blocks += side_blocks(wall.sides, SupportedWall(wall.extent, wall.courses_top, wall.thickness, foot))
+    blocks += laid
+    if all(block.fixed for block in blocks):
+        raise ValueError("the openings leave nothing of the wall")
+    return blocks
+
+
+def masonry_of(wall: Wall) -> Masonry:
+    """What a wall is made of that is laid without short pieces."""
+    levels = wall.levels
+    if wall.gable:
+        levels = tops.with_gable(levels, wall.gable, wall.block[1])
+    top, stepped = _top(wall), wall.gable is not None and wall.gable.edges == "stepped"
+    spans = [((0.0, wall.extent),)] * wall.courses
+    if wall.gable and top is not None:
+        edges = zip(levels[wall.courses : -1].tolist(), levels[wall.courses + 1 :].tolist(), strict=True)
+        spans += [(tops.level_span(top, (low + high) / 2.0 if stepped else low),) for low, high in edges]
+    return Masonry(
+        length=wall.block[0],
+        thickness=wall.thickness,
+        levels=levels,
+        spans=spans,
+        bond=wall.bond or "running",
+        offset=wall.offset,
+        first=wall.first,
+        lengths=wall.course_lengths and (*wall.course_lengths, *[wall.block[0]] * (len(spans) - wall.courses)),
+        leaves=wall.leaves,
+        through_stones=wall.through_stones,
+        core=wall.core,
+        quoins=wall.quoins,
+        quoin_courses=wall.courses,
+        openings=wall.openings,
+        top=None if stepped else top,
+    )
+
+
+def _top(wall: Wall) -> tops.Profile | None:
+    """Outline of the top from left to right; None: level."""
+    if wall.gable:
+        return tops.gable_profile(wall.gable, 0.0, wall.extent, wall.courses_top)
+    return np.array(wall.profile) if wall.profile else None
+
+
+def _plain_blocks(wall: Wall, boxes: list[np.ndarray]) -> list[Block]:
+    """Blocks of courses (n, 4) and what openings leave of them, rectangles; lintels last."""
+    holes = [opening.box for opening in wall.openings]
+    lintels = [opening.lintel_box for opening in wall.openings]
+    blocks = []
     small = NARROWEST_PIECE * min(wall.block[0], wall.block[1])
     for k, box in enumerate(boxes):
         pieces = box
@@ -208,8 +311,6 @@ def build(wall: Wall) -> list[Block]:
         if opening.lintel:
             shape = _corners(np.array([lintel_box]))[0]
             blocks.append(Block(f"lintel-{i + 1}", (shape,), opening.lintel.material, wall.thickness))
-    if all(block.fixed for block in blocks):
-        raise ValueError("the openings leave nothing of the wall")
     return blocks
 
 
@@ -219,25 +320,17 @@ def _course(wall: Wall, k: int) -> np.ndarray:
     shift = wall.offset if wall.offset is not None else (0.0 if wall.bond == "stack" else length / 2.0)
     if k % 2 == (0 if wall.first == "full" else 1):
         shift = 0.0
-    count = round(wall.length / length, 6)
+    count = round(wall.extent / length, 6)
     if wall.ends == "toothed":
         heads = shift + length * np.arange(max(int(count), 1) + 1)
     else:
         inner = shift + length * np.arange(int(np.ceil(count)) + 1)
         small = NARROWEST_PIECE * length
-        inner = inner[(inner > small) & (inner < wall.length - small)]
-        heads = np.concatenate([[0.0], inner, [wall.length]])
+        inner = inner[(inner > small) & (inner < wall.extent - small)]
+        heads = np.concatenate([[0.0], inner, [wall.extent]])
     low, high = wall.levels[k : k + 2]
     ones = np.ones(len(heads) - 1)
     return np.stack([heads[:-1], low * ones, heads[1:], high * ones], axis=1)
-
-
-def _lintel_box(opening: Opening) -> tuple[float, float, float, float] | None:
-    lintel = opening.lintel
-    if lintel is None:
-        return None
-    low = opening.y + opening.height
-    return (opening.x - lintel.bearing, low, opening.x + opening.width + lintel.bearing, low + lintel.height)
 
 
 def _cut(boxes: np.ndarray, hole: tuple[float, float, float, float], small: float) -> np.ndarray:

@@ -1,0 +1,184 @@
+"""Courses of masonry: bonds (stack, running, English, Flemish), leaves, through-stones; where the head joints are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+LEAST_PIECE = 0.25  # of a block: no shorter piece is laid
+SAME_PLACE = 1e-6  # of a block: head joints so close are one
+Span = tuple[float, float]  # from where to where masonry is laid [m]
+
+
+class Piece(NamedTuple):
+    """One block of a course, seen from the front."""
+
+    start: float
+    end: float
+    header: bool  # goes through the whole thickness
+
+
+class Unit(NamedTuple):
+    """One of the blocks that a bond repeats."""
+
+    length: float  # of a full block's
+    header: bool
+
+
+STRETCHER, HEADER = Unit(1.0, False), Unit(0.5, True)
+
+
+class Pattern(NamedTuple):
+    """Pattern of a bond in a course: units over and over, the first one beginning `start` full blocks from the end."""
+
+    units: tuple[Unit, ...]
+    start: float
+
+
+def _running(k: int, shift: float) -> Pattern:
+    return Pattern((STRETCHER,), shift * (k % 2))
+
+
+def _english(k: int, _: float) -> Pattern:
+    return Pattern((HEADER,), 0.25) if k % 2 else Pattern((STRETCHER,), 0.0)
+
+
+def _english_garden(k: int, _: float) -> Pattern:
+    return Pattern((HEADER,), 0.25) if k % 4 == 3 else Pattern((STRETCHER,), 0.5 * (k % 2))
+
+
+def _flemish(k: int, _: float) -> Pattern:
+    return Pattern((STRETCHER, HEADER), 0.75 * (k % 2))
+
+
+Bond = Callable[[int, float], Pattern]  # number of the course, shift of every other one in block lengths
+BONDS: dict[str, Bond] = {
+    "running": _running,
+    "stack": lambda k, _: _running(0, 0.0),
+    "english": _english,
+    "english-garden": _english_garden,
+    "flemish": _flemish,
+}
+HEADER_BONDS = ("english", "english-garden", "flemish")
+
+
+def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequence[float]) -> list[Piece]:
+    """Blocks of a course from left to right, none shorter than a quarter of a block where the span is not.
+
+    length     of a full block [m]
+    anchor     where the pattern of the bond begins [m]
+    below      head joints of the course below [m]: where blocks are cut, joints keep clear of them
+    """
+    pieces = _as_repeated(pattern, span, length, anchor)
+    if len({unit.length for unit in pattern.units}) > 1 or pattern.units[0].header:
+        pieces = _closers(pieces, length)
+        pieces = _mirrored(_closers(_mirrored(pieces), length))
+    pieces = _closed(pieces, length, below)
+    return _mirrored(_closed(_mirrored(pieces), length, [-x for x in below]))
+
+
+def _as_repeated(pattern: Pattern, span: Span, length: float, anchor: float) -> list[Piece]:
+    """Units over and over, cut off at the ends of the span."""
+    low, high = span
+    lengths = np.array([unit.length for unit in pattern.units]) * length
+    period, steps = float(lengths.sum()), np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    first = int(np.floor((low - anchor - pattern.start * length) / period)) - 1
+    count = int(np.ceil((high - low) / period)) + 3
+    begin = anchor + pattern.start * length + first * period
+    edges = (begin + period * np.arange(count)[:, None] + steps[None, :]).ravel()
+    small = SAME_PLACE * length
+    joints = edges[(edges > low + small) & (edges < high - small)]
+    ends = np.concatenate([[low], joints, [high]])
+    which = np.searchsorted(edges, (ends[:-1] + ends[1:]) / 2.0, side="right") - 1
+    return [
+        Piece(a, b, pattern.units[k % len(pattern.units)].header)
+        for a, b, k in zip(ends[:-1].tolist(), ends[1:].tolist(), which.tolist(), strict=True)
+    ]
+
+
+def _mirrored(pieces: Sequence[Piece]) -> list[Piece]:
+    return [Piece(-piece.end, -piece.start, piece.header) for piece in reversed(pieces)]
+
+
+def _closers(pieces: list[Piece], length: float) -> list[Piece]:
+    """With a quarter block at the left end: after the header beside it, as queen closers are, not at the very end."""
+    if len(pieces) < 3:
+        return pieces
+    quarter, header = pieces[0], pieces[1]
+    small = SAME_PLACE * length
+    fits = abs(quarter.end - quarter.start - 0.25 * length) < small
+    if not fits or not header.header or abs(header.end - header.start - 0.5 * length) > small:
+        return pieces
+    joint = quarter.start + 0.5 * length
+    return [Piece(quarter.start, joint, True), Piece(joint, header.end, True), *pieces[2:]]
+
+
+def _closed(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
+    """Without a piece at the left end that is shorter than a quarter of a block: the next one is cut, or joined to it.
+
+    The joint between both goes where it is furthest from those below.
+    """
+    if len(pieces) < 2 or pieces[0].end - pieces[0].start >= (LEAST_PIECE - SAME_PLACE) * length:
+        return pieces
+    short, beside = pieces[0], pieces[1]
+    low, high = short.start, beside.end
+    if high - low <= length * (1.0 + SAME_PLACE):
+        return [Piece(low, high, beside.header), *pieces[2:]]
+    least, middle = LEAST_PIECE * length, (low + high) / 2.0
+    obstacles = sorted([x for x in below if low < x < high])
+    stops = [low + least, *obstacles, high - least]
+    places = {low + least, high - least, middle} | {(a + b) / 2.0 for a, b in zip(stops[:-1], stops[1:], strict=True)}
+    room = [x for x in places if low + least <= x <= high - least]
+    joint = max(room, key=lambda x: (round(_clearance(x, obstacles) / length, 6), -abs(x - middle)))
+    return [Piece(low, joint, short.header), Piece(joint, high, beside.header), *pieces[2:]]
+
+
+def _clearance(x: float, others: Sequence[float]) -> float:
+    return min((abs(x - other) for other in others), default=0.0)
+
+
+def without(span: Span, gaps: Sequence[Span], small: float) -> list[Span]:
+    """What is left of a span beside gaps in it, from left to right; nothing narrower than `small` [m]."""
+    found, low = [], span[0]
+    for start, end in sorted(gaps):
+        if start - low > small:
+            found.append((low, min(start, span[1])))
+        low = max(low, end)
+        if low >= span[1]:
+            return found
+    if span[1] - low > small:
+        found.append((low, span[1]))
+    return found
+
+
+def are_through(share: float, count: int, course: int) -> list[bool]:
+    """Which of the blocks of a course go through all leaves: evenly spaced, staggered from course to course."""
+    if share == 0.0:
+        return [False] * count
+    start = 0.5 * (course % 2)
+    steps = np.floor(share * np.arange(count + 1) + start + 1e-9)
+    return (np.diff(steps) > 0.0).tolist()
+
+
+def rubble(span: Span, levels: Span, size: float, course: int) -> list[np.ndarray]:
+    """Stones of unequal lengths with inclined head joints, of that mean length [m]: convex shapes (4, 2).
+
+    They look irregular and are always the same.
+    """
+    low, high = span
+    count = max(1, round((high - low) / size))
+    spread = _scattered(count, 7 * course + 1) * 0.6 + 0.7
+    joints = low + (high - low) * np.cumsum(spread)[:-1] / spread.sum()
+    slope = (_scattered(count, 11 * course + 5)[1:] - 0.5) * 0.2 * size
+    feet, heads = np.concatenate([[low], joints - slope, [high]]), np.concatenate([[low], joints + slope, [high]])
+    bottom, top = levels
+    return [
+        np.array([[feet[i], bottom], [feet[i + 1], bottom], [heads[i + 1], top], [heads[i], top]]) for i in range(count)
+    ]
+
+
+def _scattered(count: int, start: int) -> np.ndarray:
+    """Numbers from 0 to 1 that look random and are always the same: multiples of the golden ratio."""
+    return np.modf((start + np.arange(count)) * 0.6180339887498949)[0]

@@ -1,0 +1,1 @@
+"""Patterns of irregular masonry: rectangles and convex outlines, with holes, filled with stones."""
