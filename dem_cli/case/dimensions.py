@@ -58,6 +58,7 @@ SCOPES = (
     Scope("structure.leaves", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.through_stones", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.core", 3, "a wall has a core across its thickness in 3D: give dimension = 3"),
+    Scope("structure.up", 3, "a drawing in 2D lies in the plane of the case: give dimension = 3 for a mesh"),
     Scope("structure.sides", 3, "a structure has sides in 3D: give dimension = 3"),
 )
 

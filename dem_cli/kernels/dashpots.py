@@ -49,6 +49,15 @@ def forget(states, memory, point, first):
 
 
 @always_inline
+def touch(states, seen, slips, point):
+    """Notes whether a point sticks or slips; whether it has met, the share of the step before that it was closed."""
+    before = states[point]
+    states[point] = STICKS if slips[point] == seen[point] else SLIPS
+    seen[point] = slips[point]
+    return before == OPEN, 0.0 if before == STARTS else 1.0
+
+
+@always_inline
 def closed_share(gap, opening, dt):
     """Share of the step before in which a point was closed that has met by now, at the speed at which it closed."""
     return min(max(gap / (opening * dt), 0.0), 1.0)
@@ -80,10 +89,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 if states[point] != OPEN:
                     forget(states, memory, point, first)
                 continue
-            met = states[point] == OPEN
-            closed = 0.0 if states[point] == STARTS else 1.0  # share of the step before
-            states[point] = STICKS if slips[point] == seen[point] else SLIPS
-            seen[point] = slips[point]
+            met, closed = touch(states, seen, slips, point)
             frame = load_frame(frames, point, like)
             reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
             reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)

@@ -56,15 +56,14 @@ def _energy(joints, contacts, point):
 
 
 @always_inline
-def _place_of(geometry, bodies, point, b):
-    """About where the point of a slot is."""
-    if geometry.types[point] == CROSSING:
-        start = row3(bodies.corners, geometry.corners[point, 0])
-        return axpy(geometry.shares[point], minus3(row3(bodies.corners, geometry.corners[point, 1]), start), start)
-    if geometry.types[point] == FIXED_TO_B:
-        arm = turned3(bodies.turns, b, geometry.arms[point, 0], geometry.arms[point, 1], geometry.arms[point, 2])
-        return axpy(1.0, arm, row3(bodies.positions, b))
-    return row3(bodies.corners, geometry.corners[point, 0])
+def _place_of(bodies, b, kind, ends, row, share, arm):
+    """About where a point is, in a slot or found. kind, ends[row], share, arm: as SpatialMotion has them."""
+    if kind == FIXED_TO_B:
+        return axpy(1.0, turned3(bodies.turns, b, arm), row3(bodies.positions, b))
+    start = row3(bodies.corners, ends[row, 0])
+    if kind == CROSSING:
+        return axpy(max(share, 0.0), minus3(row3(bodies.corners, ends[row, 1]), start), start)
+    return start
 
 
 @always_inline
@@ -108,7 +107,7 @@ def _forget(joints, contacts, geometry, point):
 @always_inline
 def _look_up(joints, geometry, bodies, joint, count, b):
     """For each found point its slot, into `taken`, and for new ones the nearest slot before, into `heirs`."""
-    first, last = joints.starts[joint], joints.starts[joint + 1]
+    first, last, numbers = joints.starts[joint], joints.starts[joint + 1], geometry.numbers
     for k in range(count):
         geometry.taken[k], geometry.heirs[k] = NONE, NONE
         for point in range(first, last):
@@ -117,25 +116,19 @@ def _look_up(joints, geometry, bodies, joint, count, b):
         if geometry.taken[k] != NONE:
             continue
         nearest = math.inf
-        here = _found_place(geometry, bodies, k, b)
+        here = _place_of(
+            bodies, b, geometry.labels[k, 1], geometry.found, k, numbers[k, 1],
+            (numbers[k, 2], numbers[k, 3], numbers[k, 4]),
+        )  # fmt: skip
         for point in range(first, last):
             if joints.kn[point] > 0.0:
-                arm = minus3(_place_of(geometry, bodies, point, b), here)
+                there = _place_of(
+                    bodies, b, geometry.types[point], geometry.corners, point, geometry.shares[point],
+                    row3(geometry.arms, point),
+                )  # fmt: skip
+                arm = minus3(there, here)
                 if dot(arm, arm) < nearest:
                     geometry.heirs[k], nearest = point, dot(arm, arm)
-
-
-@always_inline
-def _found_place(geometry, bodies, k, b):
-    """About where a found point is."""
-    found, numbers = geometry.found, geometry.numbers
-    if geometry.labels[k, 1] == CROSSING:
-        start = row3(bodies.corners, found[k, 0])
-        return axpy(max(numbers[k, 1], 0.0), minus3(row3(bodies.corners, found[k, 1]), start), start)
-    if geometry.labels[k, 1] == FIXED_TO_B:
-        arm = turned3(bodies.turns, b, numbers[k, 2], numbers[k, 3], numbers[k, 4])
-        return axpy(1.0, arm, row3(bodies.positions, b))
-    return row3(bodies.corners, found[k, 0])
 
 
 @always_inline

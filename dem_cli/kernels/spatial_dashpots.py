@@ -12,14 +12,13 @@ import numpy as np
 from dem_cli.kernels.dashpots import (
     OPEN,
     SLIPS,
-    STARTS,
-    STICKS,
     closed_share,
     forget,
     least_of,
     meet_in_plane,
     pull,
     resist_in_plane,
+    touch,
 )
 from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, spun, sweep
@@ -155,10 +154,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                     forget(states, memory, point, first)
                 continue
             touched = True
-            met = states[point] == OPEN
-            closed = 0.0 if states[point] == STARTS else 1.0  # share of the step before
-            states[point] = STICKS if slips[point] == seen[point] else SLIPS
-            seen[point] = slips[point]
+            met, closed = touch(states, seen, slips, point)
             frame, place = load_frame(frames, point, like), load(joints.points, point, 0, like)
             arms = (axpy(-1.0, xa, place), axpy(-1.0, xb, place))
             share = 1.0

@@ -14,7 +14,8 @@ import math
 from dem_cli.kernels.jit import always_inline
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import cross3, minus3, row3, unit3
-from dem_cli.kernels.vec import axpy, dot
+from dem_cli.kernels.spin import along, combined
+from dem_cli.kernels.vec import axpy, dot, load_frame
 
 SKEW, APART = 0.05, 0.1  # sine between two edges, seen along the joint: up to where they are parallel, from where not
 LEAST, ENOUGH = (
@@ -25,24 +26,15 @@ NONE = -1
 
 
 @always_inline
-def turned3(turns, block, x, y, z):
+def turned3(turns, block, v):
     """A vector of the frame of a block in space."""
-    return (
-        turns[block, 0] * x + turns[block, 1] * y + turns[block, 2] * z,
-        turns[block, 3] * x + turns[block, 4] * y + turns[block, 5] * z,
-        turns[block, 6] * x + turns[block, 7] * y + turns[block, 8] * z,
-    )
+    return along(load_frame(turns, block, v), v)
 
 
 @always_inline
 def turned_back3(turns, block, v):
     """A vector of space in the frame of a block."""
-    x, y, z = v
-    return (
-        turns[block, 0] * x + turns[block, 3] * y + turns[block, 6] * z,
-        turns[block, 1] * x + turns[block, 4] * y + turns[block, 7] * z,
-        turns[block, 2] * x + turns[block, 5] * y + turns[block, 8] * z,
-    )
+    return combined(load_frame(turns, block, v), v)
 
 
 @always_inline
@@ -189,7 +181,7 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
     if kind == CORNER_OF_B:
         corner = row3(vertices, corners[point, 0])
     else:
-        arm = turned3(bodies.turns, b, geometry.arms[point, 0], geometry.arms[point, 1], geometry.arms[point, 2])
+        arm = turned3(bodies.turns, b, row3(geometry.arms, point))
         corner = axpy(1.0, arm, row3(bodies.positions, b))
     face = geometry.faces[joint, 0]
     height = dot(minus3(corner, row3(vertices, geometry.face_corners[geometry.face_starts[face]])), normal_a)
@@ -228,13 +220,13 @@ def on_cap(geometry, bodies, joint, point, gap, place, frame):
 @always_inline
 def frame_of(geometry, turns, joint, a, b):
     """Normals from a to b (of the face of a, of that of b, half way) and the direction of shear, in space."""
-    n, t = geometry.normals, geometry.tangents
-    normal_a = turned3(turns, a, n[joint, 0], n[joint, 1], n[joint, 2])
-    normal_b = turned3(turns, b, -n[joint, 3], -n[joint, 4], -n[joint, 5])
+    n, t = geometry.normals, row3(geometry.tangents, joint)
+    normal_a = turned3(turns, a, (n[joint, 0], n[joint, 1], n[joint, 2]))
+    normal_b = turned3(turns, b, (-n[joint, 3], -n[joint, 4], -n[joint, 5]))
     between = axpy(1.0, normal_a, normal_b)
     if dot(between, between) < 1e-12:  # faces back to back: no joint of theirs
         between = normal_a
-    return (normal_a, normal_b, unit3(between)), turned3(turns, a, t[joint, 0], t[joint, 1], t[joint, 2])
+    return (normal_a, normal_b, unit3(between)), turned3(turns, a, t)
 
 
 @always_inline

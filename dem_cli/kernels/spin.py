@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import always_inline, inline, overload
-from dem_cli.kernels.vec import axpy, dot, load, norm, scale
+from dem_cli.kernels.vec import axpy, dot, load, load_frame, norm, scale
 
 ITERATIONS = 8  # of the midpoint, at most; each gains as many digits as a step turns by less than a radian
 CHANGE = 1e-30  # of |w|²: smaller changes of the midpoint, squared, are round-off
@@ -99,26 +99,20 @@ def store_turn(turns, row, orientations):
 
 
 @always_inline
-def principal_axes(turns, axes, row):
-    """Principal axes of a block in the world: three unit vectors."""
-    r00, r01, r02, r10, r11, r12, r20, r21, r22 = (
-        turns[row, 0], turns[row, 1], turns[row, 2], turns[row, 3], turns[row, 4], turns[row, 5], turns[row, 6],
-        turns[row, 7], turns[row, 8],
-    )  # fmt: skip
-    x0, y0, z0 = axes[row, 0], axes[row, 3], axes[row, 6]
-    x1, y1, z1 = axes[row, 1], axes[row, 4], axes[row, 7]
-    x2, y2, z2 = axes[row, 2], axes[row, 5], axes[row, 8]
-    return (
-        (r00 * x0 + r01 * y0 + r02 * z0, r10 * x0 + r11 * y0 + r12 * z0, r20 * x0 + r21 * y0 + r22 * z0),
-        (r00 * x1 + r01 * y1 + r02 * z1, r10 * x1 + r11 * y1 + r12 * z1, r20 * x1 + r21 * y1 + r22 * z1),
-        (r00 * x2 + r01 * y2 + r02 * z2, r10 * x2 + r11 * y2 + r12 * z2, r20 * x2 + r21 * y2 + r22 * z2),
-    )
-
-
-@always_inline
 def along(axes, vector):
     """Components of a vector along three axes."""
     return (dot(axes[0], vector), dot(axes[1], vector), dot(axes[2], vector))
+
+
+@always_inline
+def principal_axes(turns, axes, row):
+    """Principal axes of a block in the world: three unit vectors."""
+    turn = load_frame(turns, row, (0.0, 0.0, 0.0))
+    return (
+        along(turn, (axes[row, 0], axes[row, 3], axes[row, 6])),
+        along(turn, (axes[row, 1], axes[row, 4], axes[row, 7])),
+        along(turn, (axes[row, 2], axes[row, 5], axes[row, 8])),
+    )
 
 
 @always_inline

@@ -19,9 +19,11 @@ from dem_cli.geometry.polygon import rectangle
 from dem_cli.geometry.polyhedron import prism
 from dem_cli.model.blocks import Block
 from dem_cli.structures import courses, tops
+from dem_cli.structures.course_layout import Band, Interruption, interruption, laid_around, split
 from dem_cli.structures.courses import Piece, Span
-from dem_cli.structures.openings import BoxHole, Opening
+from dem_cli.structures.openings import Opening
 from dem_cli.structures.stones import Part, Stone, put_together
+from dem_cli.structures.voids import Void
 
 LEAVES = "abc"  # names of leaves, from the front (y = −thickness / 2) to the back
 CORE_LEAF = "b"
@@ -97,6 +99,14 @@ class Masonry:
             at = [-half, -self.core.thickness / 2.0, self.core.thickness / 2.0, half]
         return list(zip(at[:-1], at[1:], strict=True))
 
+    def band(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> Band:
+        """Course k, with quoins and openings in its way, above these head joints."""
+        low, high = self.levels_of(k)
+        stops = [x for void in voids for x in void.stops(low, high, self.small)]
+        stops += [] if self.top is None else tops.stops(self.top, low, high)
+        length, pattern = self.block_length(k), self.pattern(k)
+        return Band(low, high, self.spans[k], taken, length, pattern, self.anchor, stops, below)
+
     @property
     def small(self) -> float:
         """What is narrower is not made [m]."""
@@ -110,13 +120,22 @@ def masonry_blocks(masonry: Masonry) -> list[Block]:
     "quoin-right-<number>"; "lintel-<opening>", "arch-<opening>-<number>". What is cut to less than a quarter of a block
     is one with its neighbour.
     """
-    stones = put_together(list(_cut_stones(masonry)), masonry.small)
-    named = [*_named(stones), *_over_openings(masonry)]
-    shapes = iter(cuts.welded([part.shape for _, stone in named for part in stone.parts], WELD * masonry.length))
-    return [_block(name, stone, [next(shapes) for _ in stone.parts], masonry) for name, stone in named]
+    voids = [opening.void.fitted(masonry.levels) for opening in masonry.openings]
+    over = list(_over_openings(masonry, voids))
+    laid = list(_cut_stones(masonry, voids))
+    exact = _welded([*laid, *over], WELD * masonry.length)
+    named = [*_named(put_together(exact[: len(laid)], masonry.small)), *((one.name, one) for one in exact[len(laid) :])]
+    return [_block(name, stone, masonry) for name, stone in named]
 
 
-def _block(name: str, stone: Stone, shapes: Sequence[np.ndarray], masonry: Masonry) -> Block:
+def _welded(stones: Sequence[Stone], gap: float) -> list[Stone]:
+    """With the same corners where they share them, exactly."""
+    shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], gap))
+    return [stone._replace(parts=tuple(Part(next(shapes), part.across) for part in stone.parts)) for stone in stones]
+
+
+def _block(name: str, stone: Stone, masonry: Masonry) -> Block:
+    shapes = [part.shape for part in stone.parts]
     depths = {part.across for part in stone.parts}
     others: dict[str, Any] = {"thickness": masonry.thickness, "course": stone.course}
     if depths == {masonry.whole}:
@@ -144,59 +163,60 @@ def _named(stones: Sequence[Stone]) -> Iterator[tuple[str, Stone]]:
                     yield f"{course}-{n + 1}{stone.leaf}", stone
 
 
-def _over_openings(masonry: Masonry) -> Iterator[tuple[str, Stone]]:
+def _over_openings(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
     """Lintels and voussoirs."""
-    for i, opening in enumerate(masonry.openings):
+    for i, (opening, void) in enumerate(zip(masonry.openings, voids, strict=True)):
         if opening.lintel and opening.lintel_box:
             x0, y0, x1, y1 = opening.lintel_box
             part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), masonry.whole)
-            yield f"lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
-        for n, shape in enumerate(opening.voussoirs):
+            yield Stone(0, (part,), 0.0, "", opening.lintel.material, f"lintel-{i + 1}")
+        for n, shape in enumerate(void.voussoirs):
             assert opening.arch is not None
-            yield f"arch-{i + 1}-{n + 1}", Stone(0, (Part(shape, masonry.whole),), 0.0, material=opening.arch.material)
+            part = Part(shape, masonry.whole)
+            yield Stone(0, (part,), 0.0, "", opening.arch.material, f"arch-{i + 1}-{n + 1}")
 
 
-def _cut_stones(masonry: Masonry) -> Iterator[Stone]:
+def _cut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
     """Stones of all courses, with what openings and the top of the wall leave of each."""
-    holes = [hole for opening in masonry.openings for hole in opening.holes]
-    for stone in _stones(masonry):
+    small = masonry.small
+    for stone in _stones(masonry, voids):
         x0, y0, x1, y1 = stone.box
         shapes = uncut = [part.shape for part in stone.parts]
-        for hole in holes:
-            left, low, right, high = hole.box
+        for void in voids:
+            left, low, right, high = void.reach
             if left < x1 and x0 < right and low < y1 and y0 < high:
-                shapes = [piece for shape in shapes for piece in hole.left_of(shape, masonry.small)]
+                shapes = [piece for shape in shapes for piece in void.left_of(shape, small)]
         if masonry.top is not None:
-            shapes = [piece for shape in shapes for piece in tops.below(shape, masonry.top, masonry.small)]
+            shapes = [piece for shape in shapes for piece in tops.below(shape, masonry.top, small)]
         cut = len(shapes) != len(uncut) or any(a is not b for a, b in zip(shapes, uncut, strict=True))
-        groups = cuts.connected(shapes, masonry.small) if cut else [list(range(len(shapes)))]
+        groups = cuts.connected(shapes, small) if cut else [list(range(len(shapes)))]
         for group in groups:
             yield stone._replace(parts=tuple(Part(shapes[i], stone.parts[0].across) for i in group))
 
 
-def _stones(masonry: Masonry) -> Iterator[Stone]:
+def _stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
     """Stones of all courses, uncut, and quoins."""
     taken = _quoin_spans(masonry)
     yield from _quoins(masonry, taken)
-    below: list[float] = []
-    for k, spans in enumerate(masonry.spans):
-        gaps = [span for (_, course), span in taken.items() if course == k] + _crossed(masonry, k)
-        obstacles = [] if masonry.bond == "stack" else below
-        pieces = [
-            courses.laid(masonry.pattern(k), part, masonry.block_length(k), masonry.anchor, obstacles)
-            for span in spans
-            for part in courses.without(span, gaps, masonry.small)
-        ]
-        yield from _in_leaves(masonry, k, pieces)
-        below = [x for run in pieces for piece in run for x in (piece.start, piece.end)]
-
-
-def _crossed(masonry: Masonry, k: int) -> list[Span]:
-    """Where openings and lintels take the whole height of course k: there it begins and ends."""
-    low, high = masonry.levels_of(k)
-    slack = masonry.small
-    boxes = [hole.box for opening in masonry.openings for hole in opening.holes if isinstance(hole, BoxHole)]
-    return [(x0, x1) for x0, y0, x1, y1 in boxes if y0 <= low + slack and y1 >= high - slack]
+    runs: list[list[list[Piece]]] = []
+    gaps: list[list[Interruption]] = []
+    joints: list[list[float]] = []
+    for k in range(len(masonry.spans)):
+        low, high = masonry.levels_of(k)
+        quoins = [span for (_, course), span in taken.items() if course == k]
+        found = [interruption(void, low, high, masonry.small) for void in voids]
+        gaps.append([one for one in found if one is not None])
+        below = joints[-1] if joints and masonry.bond != "stack" else []
+        runs.append(laid_around(masonry.band(k, quoins, voids, below), gaps[k], masonry.small))
+        joints.append([x for run in runs[k] for piece in run for x in (piece.start, piece.end)])
+    for k, own in enumerate(runs):
+        beyond = [x for other in joints[max(k - 1, 0) : k + 2] for x in other if other is not joints[k]]
+        least = courses.LEAST_PIECE * masonry.block_length(k)
+        stops = [x for void in voids for x in void.stops(*masonry.levels_of(k), masonry.small)]
+        quoins = [span for (_, course), span in taken.items() if course == k]
+        free = [span for one in gaps[k] for tip in one.tips for span in courses.without(tip, quoins, masonry.small)]
+        tips = [part for tip in free for part in split(tip, beyond, stops, least)]
+        yield from _in_leaves(masonry, k, own, tips)
 
 
 def _quoin_spans(masonry: Masonry) -> dict[tuple[str, int], Span]:
@@ -238,23 +258,34 @@ def _full(masonry: Masonry, k: int) -> float:
     return masonry.block_length(k) * (high - low)
 
 
-def _in_leaves(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]]) -> Iterator[Stone]:
-    """Stones of course k: pieces through the whole wall, or side by side in its leaves, with a core between them."""
-    low, high = masonry.levels_of(k)
-    full = _full(masonry, k)
+def _in_leaves(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]], tips: Sequence[Span]) -> Iterator[Stone]:
+    """Stones of course k: pieces through the whole wall, or side by side in its leaves, with a core between them.
+
+    tips: thin leftovers beside openings, which become parts of other stones.
+    """
     through = iter(courses.are_through(masonry.through_stones, sum(map(len, runs)), k))
     for run in runs:
         whole = [next(through) or (piece.header and masonry.leaves > 1) for piece in run]
         for piece, is_whole in zip(run, whole, strict=True):
-            shape = rectangle(piece.start, low, piece.end - piece.start, high - low)
-            if is_whole or masonry.leaves == 1:
-                yield Stone(k + 1, (Part(shape, masonry.whole),), full)
-                continue
-            for leaf, across in zip(LEAVES, masonry.depths, strict=False):
-                if masonry.core is None or leaf != CORE_LEAF:
-                    yield Stone(k + 1, (Part(shape, across),), full, leaf)
+            yield from _side_by_side(masonry, k, (piece.start, piece.end), is_whole)
         if masonry.core is not None:
             yield from _in_core(masonry, k, [p for p, is_whole in zip(run, whole, strict=True) if not is_whole])
+    for tip in tips:
+        yield from _side_by_side(masonry, k, tip, False)
+        if masonry.core is not None:
+            yield from _in_core(masonry, k, [Piece(*tip, False)])
+
+
+def _side_by_side(masonry: Masonry, k: int, span: Span, whole: bool) -> Iterator[Stone]:
+    """One stone, or one in each leaf but the core."""
+    low, high = masonry.levels_of(k)
+    shape, full = rectangle(span[0], low, span[1] - span[0], high - low), _full(masonry, k)
+    if whole or masonry.leaves == 1:
+        yield Stone(k + 1, (Part(shape, masonry.whole),), full)
+        return
+    for leaf, across in zip(LEAVES, masonry.depths, strict=False):
+        if masonry.core is None or leaf != CORE_LEAF:
+            yield Stone(k + 1, (Part(shape, across),), full, leaf)
 
 
 def _in_core(masonry: Masonry, k: int, pieces: Sequence[Piece]) -> Iterator[Stone]:

@@ -221,7 +221,7 @@ def _check_top(wall: Wall) -> None:
     top = _top(wall)
     for i, opening in enumerate(wall.openings if top is not None else ()):
         gap = NARROWEST_PIECE * opening.width
-        if any(tops.cuts_off(top, shape, gap) for shape in opening.solids):  # type: ignore[arg-type]
+        if any(tops.cuts_off(top, shape, gap) for shape in opening.void.solids):  # type: ignore[arg-type]
             raise KeyProblem("reaches above the top of the wall there", "openings", i)
 
 

@@ -28,7 +28,9 @@ def build(building: Building) -> list[Block]:
     plan = plan_of(building)
     floors = floors_of(building, plan)
     passes = _passes(plan, floors.pockets)
-    elevations = [_elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))]
+    elevations = [
+        _elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))
+    ]
     walls = [block for each in elevations for block in _set_up(each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
@@ -37,7 +39,9 @@ def build(building: Building) -> list[Block]:
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
     """Which wall passes in each course: in turn, but none through a wall on whose other face a floor bears there."""
     held = {
-        (id(junction), pocket.course): 1 - junction.of(wall) if pocket.across[1] <= pocket.across[0] else junction.of(wall)
+        (id(junction), pocket.course): 1 - junction.of(wall)
+        if pocket.across[1] <= pocket.across[0]
+        else junction.of(wall)
         for wall, found in pockets.items()
         for junction in plan.met(wall)
         for pocket in found
@@ -175,4 +179,6 @@ def _welded(blocks: Sequence[Block]) -> list[Block]:
         first = np.concatenate([[True], np.diff(values) > gap])
         points[:, axis] = values[first][np.cumsum(first) - 1][back]
     pieces = iter(np.split(points, np.cumsum([len(part.vertices) for part in parts])[:-1]))
-    return [replace(block, parts=tuple(Polyhedron(next(pieces), part.faces) for part in block.parts)) for block in blocks]
+    return [
+        replace(block, parts=tuple(Polyhedron(next(pieces), part.faces) for part in block.parts)) for block in blocks
+    ]

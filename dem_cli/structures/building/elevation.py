@@ -196,9 +196,7 @@ class Elevation:
         for course in range(len(self.runs)):
             row = [stone for run in self.runs[course] for stone in self._of_run(run, course)]
             row.sort(key=lambda stone: stone.boxes[0][:2])
-            found += [
-                stone._replace(name=f"{self.axis.name}-{course + 1}-{n}") for n, stone in enumerate(row, start=1)
-            ]
+            found += [stone._replace(name=f"{self.axis.name}-{course + 1}-{n}") for n, stone in enumerate(row, start=1)]
         return found + self._lintels()
 
     def _lintels(self) -> list[Stone]:
@@ -219,9 +217,7 @@ class Elevation:
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
         for stretch in row:
             at_start, at_stop = stretch.left == ends.start, stretch.right == ends.stop
-            part = Ends(
-                stretch.left, stretch.right, ends.start_askew * at_start, ends.stop_askew * at_stop
-            )
+            part = Ends(stretch.left, stretch.right, ends.start_askew * at_start, ends.stop_askew * at_stop)
             heads = laid(part, self.length, first, avoid).heads if stretch.free else np.zeros(0)
             if at_start and at_stop and self._is_tip(course):
                 count = math.ceil((outer[1] - outer[0]) / self.length - SMALL)

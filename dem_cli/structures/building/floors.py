@@ -183,7 +183,9 @@ def _beams(found: Floors, bed: Bed) -> None:
     floor, first = bed.floor, next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[0]))
     last = next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[1]))
     if abs(float(first.along @ last.along)) < 0.5:
-        message = f"walls '{floor.on[0]}' and '{floor.on[1]}' stand at an angle; beams go from a wall to one opposite it"
+        message = (
+            f"walls '{floor.on[0]}' and '{floor.on[1]}' stand at an angle; beams go from a wall to one opposite it"
+        )
         raise KeyProblem(message, "floors", bed.number, "on")
     inner = _corners([_line(bed._replace(bearing={}), side, 0.0) for side in bed.room])
     k = bed.room.index(first)

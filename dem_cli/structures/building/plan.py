@@ -240,4 +240,3 @@ def _too_near(plan: Plan, wall: int, stems: Sequence[int], junction: Junction) -
         f"walls '{names}' meet too near to each other at [{x:.4g}, {y:.4g}]: two meet at one place, or two more end at "
         "one from either side; move one by its thickness and a quarter of a block"
     )
-

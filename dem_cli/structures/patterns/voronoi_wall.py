@@ -17,8 +17,9 @@ class VoronoiWall(PatternWall, voronoi.VoronoiPattern):
     """Stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal masonry.
     Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
 
-    Block names: "<id>-<number>" from 1, from the lowest stone up; "<id>-base"; "<id>-lintel-<number of the opening>";
-    "<id>-side-<number>", "<id>-side-<number>-left" and so on. A stone that is not convex is a compound.
+    Block names: "<id>-<number>" from 1, from the lowest stone up; "<id>-base"; "<id>-lintel-<opening>",
+    "<id>-arch-<opening>-<number>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on. A stone that is not
+    convex is a compound.
     """
 
     kind: Literal["voronoi-wall"] = "voronoi-wall"

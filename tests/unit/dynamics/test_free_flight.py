@@ -25,9 +25,10 @@ WEDGE = [[0, 0, 0], [2, 0, 0], [0, 1, 0], [0.3, 0.2, 1.5], [1, 0.2, 1.2]]  # its
 TOP = [[x, y, z] for x in (0.0, 0.6) for y in (0.0, 0.6) for z in (0.0, 1.5)]
 BASE = {"id": "base", "vertices": [[x, y, z - 9.0] for x in (-1, 1) for y in (-1, 1) for z in (-1, 0)], "fixed": True}
 FREE = 1  # number of the block that flies
+UNDAMPED = Damping()
 
 
-def flying(vertices, dt: float, damping: Damping = Damping()) -> DynamicSimulation:  # noqa: B008
+def flying(vertices, dt: float, damping: Damping = UNDAMPED) -> DynamicSimulation:
     """A block without weight, far from its support, before its first step; joints are not looked for on the way."""
     block = {"id": "block", "vertices": [list(map(float, corner)) for corner in vertices]}
     made = scene(tables(BASE, block, dimension=3, gravity=0.0, analysis={"kind": "gravity"}))

@@ -12,7 +12,9 @@ from dem_cli.geometry.topology import topology_of_polyhedra
 
 def volume(solid):
     return float(
-        solids.properties_of_all(solid.vertices, np.array([0, len(solid.vertices)]), topology_of_polyhedra([solid])).volume[0]
+        solids.properties_of_all(
+            solid.vertices, np.array([0, len(solid.vertices)]), topology_of_polyhedra([solid])
+        ).volume[0]
     )
 
 
