@@ -30,7 +30,7 @@ class Snapped(NamedTuple):
     left: int  # groups of faces that lie too far from one plane, and corners that would go too far: left as they were
 
 
-class _Faces(NamedTuple):
+class _AllFaces(NamedTuple):
     """All faces of all blocks one after the other."""
 
     owners: np.ndarray  # block of each, (n,)
@@ -64,12 +64,12 @@ def on_common_planes(blocks: Sequence[Facets], pairs: np.ndarray, tolerance: flo
     return Snapped(points, moved, farthest, fitted, left)
 
 
-def _faces(blocks: Sequence[Facets]) -> _Faces:
+def _faces(blocks: Sequence[Facets]) -> _AllFaces:
     counts = np.array([len(block.normals) for block in blocks])
     corners = [block.points[own] for block in blocks for own in block.corners]
     starts = np.concatenate([[0], np.cumsum([len(own) for own in corners])])
     flat = np.concatenate(corners)
-    return _Faces(
+    return _AllFaces(
         np.repeat(np.arange(len(blocks)), counts),
         np.cumsum(counts) - counts,
         np.concatenate([block.normals for block in blocks]),
@@ -81,7 +81,7 @@ def _faces(blocks: Sequence[Facets]) -> _Faces:
     )
 
 
-def _facing(faces: _Faces, pairs: np.ndarray, tolerance: float) -> np.ndarray:
+def _facing(faces: _AllFaces, pairs: np.ndarray, tolerance: float) -> np.ndarray:
     """Pairs of faces of neighbours that should be in one plane, (n, 2)."""
     counts = np.bincount(faces.owners)
     a, b = pairs.T
@@ -116,7 +116,7 @@ def _groups(n: int, pairs: np.ndarray) -> np.ndarray:
 
 
 def _planes(
-    faces: _Faces, group: np.ndarray, exact: np.ndarray, tolerance: float
+    faces: _AllFaces, group: np.ndarray, exact: np.ndarray, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray, int, int]:
     """Normals and heights of the plane of each face after all, how many were fitted, and how many could not be."""
     order = np.argsort(group, kind="stable")

@@ -31,10 +31,8 @@ class Facets(NamedTuple):
         """How far each corner lies in front of each side [m], (n, k)."""
         return self.points @ self.normals.T - self.heights
 
-    def simplices(self) -> tuple[np.ndarray, np.ndarray]:
-        """The surface in simplices of d corners, and the side of each."""
-        if self.points.shape[1] == 2:
-            return np.array(self.loops), self.sides
+    def triangles(self) -> tuple[np.ndarray, np.ndarray]:
+        """The surface of a solid in triangles, fans of its pieces, and the side of each."""
         fans = [((loop[0], a, b), k) for loop, k in zip(self.loops, self.sides) for a, b in zip(loop[1:-1], loop[2:])]
         return np.array([fan for fan, _ in fans]), np.array([k for _, k in fans])
 

@@ -18,7 +18,7 @@ QUIET = {"vn", "vt", "vp", "s", "mtllib", "usemap", "maplib", "lod", "bevel", "c
 CURVED = {"curv", "curv2", "surf", "cstype", "parm", "trim", "hole", "bmat"}
 
 
-class _Faces:
+class _NamedFaces:
     """The faces that stand below one o or g line."""
 
     def __init__(self, name: str):
@@ -30,8 +30,8 @@ class _Faces:
 def read(path: Path) -> Contents:
     """The objects of a file, or its groups where it has no objects. Raises FileProblem."""
     points: list[list[float]] = []
-    objects = [_Faces("")]
-    groups = [_Faces("")]
+    objects = [_NamedFaces("")]
+    groups = [_NamedFaces("")]
     material = ""
     left_out: Counter[str] = Counter()
     for number, words in _lines(path):
@@ -39,9 +39,9 @@ def read(path: Path) -> Contents:
         if key == "v":
             points.append(_point(rest, number))
         elif key in ("o", "g"):
-            (objects if key == "o" else groups).append(_Faces(" ".join(rest)))
+            (objects if key == "o" else groups).append(_NamedFaces(" ".join(rest)))
             if key == "o":
-                groups.append(_Faces(""))
+                groups.append(_NamedFaces(""))
         elif key == "usemtl":
             material = " ".join(rest)
         elif key == "f":
@@ -101,18 +101,18 @@ def _loop(words: list[str], n_points: int, number: int) -> list[int]:
     return found
 
 
-def _together(found: list[_Faces]) -> list[_Faces]:
+def _together(found: list[_NamedFaces]) -> list[_NamedFaces]:
     """Faces of one name that stand in several places of the file, as one; those without faces are left out."""
-    by_name: dict[str, _Faces] = {}
+    by_name: dict[str, _NamedFaces] = {}
     for each in found:
         if each.loops:
-            kept = by_name.setdefault(each.name, _Faces(each.name))
+            kept = by_name.setdefault(each.name, _NamedFaces(each.name))
             kept.loops += each.loops
             kept.materials += each.materials
     return list(by_name.values())
 
 
-def _body(found: _Faces, points: np.ndarray) -> FileBody:
+def _body(found: _NamedFaces, points: np.ndarray) -> FileBody:
     used, numbers = np.unique(np.concatenate(found.loops), return_inverse=True)
     ends = np.cumsum([len(loop) for loop in found.loops])[:-1]
     layer = found.materials.most_common(1)[0][0]

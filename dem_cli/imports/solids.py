@@ -9,8 +9,9 @@ import numpy as np
 
 from dem_cli.geometry import polygon, polyhedron
 from dem_cli.geometry.common_planes import Snapped, on_common_planes
+from dem_cli.geometry.decomposition import convex_parts, is_simple
 from dem_cli.geometry.facets import Facets, facets_of_outline, facets_of_surface
-from dem_cli.geometry.space_partition import Sides, convex_pieces, solid_volume
+from dem_cli.geometry.solid_decomposition import Sides, convex_pieces, solid_volume
 from dem_cli.imports.contents import FileBody, FileProblem
 from dem_cli.imports.shells import shells_of
 
@@ -97,20 +98,10 @@ def _outline(ring: np.ndarray) -> np.ndarray:
     found = polygon.simplified(ring)
     if len(found) < 3 or polygon.area(found) <= polygon.ROUND_OFF * polygon.size(found) ** 2:
         raise FileProblem("its corners lie on one line: it has no area")
-    if _crosses(found):
-        raise FileProblem("its outline crosses itself")
-    return found if polygon.signed_area(found) > 0.0 else found[::-1]
-
-
-def _crosses(ring: np.ndarray) -> bool:
-    """Whether two edges of a polygon that are not neighbours have a point in common."""
-    if polygon.is_convex(ring) or polygon.is_convex(ring[::-1]):
-        return False
-    a, b = ring, np.roll(ring, -1, axis=0)
-    side = polygon.cross(b[:, None] - a[:, None], a[None] - a[:, None])
-    other = polygon.cross(b[:, None] - a[:, None], b[None] - a[:, None])
-    across = side * other < 0.0
-    return bool((across & across.T).any())
+    found = found if polygon.signed_area(found) > 0.0 else found[::-1]
+    if not is_simple(found):
+        raise FileProblem("its outline crosses or touches itself")
+    return found
 
 
 def _points(shape: Any) -> np.ndarray:
@@ -172,11 +163,13 @@ def _parts(facets: Facets, decompose: bool, tolerance: float) -> tuple[Any, ...]
             f"it is concave: the corner at {_text(at)} lies {over.max():.3g} m in front of the {where} around "
             f"{_text(face)}; concave = 'decompose' makes convex parts of it"
         )
-    simplices, planes = facets.simplices()
-    pieces = convex_pieces(Sides(facets.points, simplices, planes, facets.normals, facets.heights))
     if facets.points.shape[1] == 2:
-        return tuple(polygon.in_order(piece) for piece in pieces)
-    return tuple(polyhedron.hull(piece) for piece in pieces)
+        return tuple(facets.points[numbers] for numbers in convex_parts(facets.points))
+    return tuple(polyhedron.hull(piece) for piece in convex_pieces(_sides(facets)))
+
+
+def _sides(facets: Facets) -> Sides:
+    return Sides(facets.points, *facets.triangles(), facets.normals, facets.heights)
 
 
 def _convex(facets: Facets) -> Any:
@@ -185,8 +178,7 @@ def _convex(facets: Facets) -> Any:
     if len(facets.loops) == len(facets.normals):  # faces as the file has them
         return polyhedron.Polyhedron(facets.points, tuple(facets.loops))
     found = polyhedron.hull(facets.points)
-    simplices, planes = facets.simplices()
-    whole = solid_volume(Sides(facets.points, simplices, planes, facets.normals, facets.heights))
+    whole = solid_volume(_sides(facets))
     if abs(_volume(found) - whole) > 1e-6 * whole:
         raise ValueError("its faces do not enclose what its corners do: is a face missing, or there twice?")
     return found

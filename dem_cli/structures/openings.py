@@ -36,7 +36,11 @@ class OpeningArch(CaseModel):
         None, description="rise of the inner face above the opening [m] (segmental, pointed)", examples=[0.3]
     )
     skew_deg: float | None = Field(
-        None, ge=0.0, lt=80.0, description="outermost joints against the vertical [deg] (flat); default: 20"
+        None,
+        ge=0.0,
+        lt=80.0,
+        description="outermost joints against the vertical [deg] (flat); default: 20",
+        examples=[20.0],
     )
     voussoirs: int = Field(ge=1, le=1000, description="number of voussoirs; even for a pointed arch", examples=[9])
     ring: Positive = Field(description="depth of the ring, from inner to outer face [m]", examples=[0.3])

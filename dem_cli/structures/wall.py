@@ -78,7 +78,7 @@ class Wall(StructureBase):
         0.0,
         ge=0.0,
         le=1.0,
-        description="share of the stones of a face that go through all leaves, evenly spaced",
+        description="share of the stones of a face that go through all leaves, evenly spaced [-]",
         examples=[0.2],
     )
     core: Core | None = Field(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dem_cli.geometry import polygon
-from dem_cli.geometry.decomposition import convex_parts
+from dem_cli.geometry.decomposition import ROUND_OFF, convex_parts
 
 Loop = tuple[int, ...]  # numbers of the corners around a stone, counter-clockwise
 SAME = 1e-9  # relative to the region: closer points are one
@@ -42,10 +42,10 @@ class Tiling:
 
     def parts(self, k: int) -> tuple[np.ndarray, ...]:
         """Convex parts of a stone, corners on straight sides left out."""
-        outline = self.outline(k)
-        if not polygon.is_convex(outline):
-            return tuple(polygon.simplified(outline[part]) for part in convex_parts(outline))
-        return (polygon.simplified(outline),)
+        outline = polygon.simplified(self.outline(k), ROUND_OFF)
+        if polygon.is_convex(outline):
+            return (outline,)
+        return tuple(outline[part] for part in convex_parts(outline))
 
     def edges(self) -> dict[tuple[int, int], int]:
         """The stone to the left of each edge, from corner to corner."""

@@ -13,7 +13,7 @@ from synthetic.drawn_elsewhere import by_trimesh, facade_by_ezdxf, obj_text, pri
 
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polygon
-from dem_cli.geometry.space_partition import volume
+from dem_cli.geometry.solid_decomposition import volume
 from dem_cli.model.blocks import corners_of
 from dem_cli.structures.imported import Import, imported
 
@@ -277,7 +277,10 @@ BAD = {
     "bad.svg": ("<html/>", "<html>, not an SVG drawing"),
     "worse.svg": ("<svg", "not an SVG drawing that can be read"),
     "open.svg": (f'{XMLNS}<path id="p" d="M 0 0 L 1 0 L 1 1"/></svg>', r"'p' is not closed: it ends at \[1, 1\]"),
-    "bow.svg": (f'{XMLNS}<polygon id="p" points="0,0 2,2 2,0 0,1"/></svg>', "'p': its outline crosses itself"),
+    "bow.svg": (
+        f'{XMLNS}<polygon id="p" points="0,0 2,2 2,0 0,1"/></svg>',
+        "'p': its outline crosses or touches itself",
+    ),
 }
 
 

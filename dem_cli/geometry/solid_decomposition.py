@@ -1,8 +1,8 @@
-"""Convex decomposition of concave polygons and polyhedra, exact: their hull cut by the planes of their concave sides.
+"""Convex decomposition of concave polyhedra, exact: their hull cut by the planes of their concave sides.
 
 The hull is cut by the plane of a side that goes through a piece until no side does (binary space partition; Fuchs,
 Kedem and Naylor 1980); pieces inside are kept, and joined again where two are convex together. Corners of the solid
-keep their coordinates. In any dimension d: sides are simplices of d corners, in the plane lines, in space triangles.
+keep their coordinates.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.geometry.polyhedron import newell
+
 ROUND_OFF = 1e-9  # of the size: points that are one, heights that are none
 THIN = 1e-6  # of the size: pieces of a side that are narrower are not cut along
 SAME_VOLUME = 1e-9  # relative: two pieces whose hull is no larger are convex together
@@ -18,22 +20,22 @@ MOST_PIECES = 200
 
 
 class Sides(NamedTuple):
-    """The surface of a solid: flat sides, each of one or several simplices."""
+    """The surface of a solid: flat sides, each of one or several triangles."""
 
-    points: np.ndarray  # corners [m], (n, d)
-    simplices: np.ndarray  # d corners each, outwards by the right hand or to the right of a line, (m, d)
-    planes: np.ndarray  # side that each simplex belongs to, (m,)
-    normals: np.ndarray  # outward and unit, of each side, (k, d)
+    points: np.ndarray  # corners [m], (n, 3)
+    triangles: np.ndarray  # counter-clockwise seen from outside; in a fan of a concave face some are not, (m, 3)
+    planes: np.ndarray  # side that each triangle belongs to, (m,)
+    normals: np.ndarray  # outward and unit, of each side, (k, 3)
     heights: np.ndarray  # of each side over the origin [m], (k,)
 
 
 def convex_pieces(sides: Sides) -> list[np.ndarray]:
-    """Corners (n, d) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
+    """Corners (n, 3) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
     size = float(np.linalg.norm(np.ptp(sides.points, axis=0)))
     gap = ROUND_OFF * size
     over = sides.points @ sides.normals.T - sides.heights
     cutting = np.flatnonzero((over > THIN * size).any(axis=0))
-    faces = [(k, sides.points[simplex]) for k, simplex in zip(sides.planes, sides.simplices) if k in set(cutting)]
+    faces = [(k, sides.points[corners]) for k, corners in zip(sides.planes, sides.triangles) if k in set(cutting)]
     waiting, leaves = [(hull_corners(sides.points), faces)], []
     while waiting:
         cell, inside = waiting.pop()
@@ -44,35 +46,34 @@ def convex_pieces(sides: Sides) -> list[np.ndarray]:
         if len(waiting) + len(leaves) > MOST_PIECES:
             raise ValueError(f"it takes more than {MOST_PIECES} convex pieces")
         for sign in (1.0, -1.0):
-            part = _half(cell, sign * sides.normals[k], sign * sides.heights[k], sides.points, gap)
+            below = sign * sides.normals[k], sign * float(sides.heights[k])
+            part = _half(cell, *below, sides.points, gap)
             if part is not None:
-                rest = [(j, cut) for j, piece in inside if j != k for cut in [_clipped(piece, *_half_space(
-                    sides, k, sign), gap)] if _width(cut, sides.normals[j]) > THIN * size]  # fmt: skip
-                waiting.append((part, rest))
+                cuts = [(j, _clipped(piece, *below, gap)) for j, piece in inside]
+                waiting.append((part, [(j, cut) for j, cut in cuts if j != k and _width(cut) > THIN * size]))
     kept = [cell for cell in leaves if _winding(sides, cell.mean(axis=0)) > 0.5]
     pieces = _joined(kept)
     whole, found = solid_volume(sides), sum(map(volume, pieces))
     if abs(found - whole) > SAME_VOLUME * whole:
-        raise ValueError(f"its convex pieces would have {found:.9g} of {whole:.9g} m{sides.points.shape[1]}")
+        raise ValueError(f"its convex pieces would have {found:.9g} of {whole:.9g} m3")
     return pieces
 
 
 def solid_volume(sides: Sides) -> float:
-    """Volume of a solid by the simplices of its surface [m^d]."""
-    arms = sides.points[sides.simplices] - sides.points.mean(axis=0)
-    d = arms.shape[2]
-    return abs(float(np.linalg.det(arms).sum())) / (1 if d == 1 else 2 if d == 2 else 6)
+    """Volume of a solid by the triangles of its surface [m3]."""
+    arms = sides.points[sides.triangles] - sides.points.mean(axis=0)
+    return abs(float(np.linalg.det(arms).sum())) / 6.0
 
 
 def volume(corners: np.ndarray) -> float:
-    """Volume of the hull of corners (n, d) [m^d]."""
+    """Volume of the hull of corners (n, 3) [m3]."""
     from scipy.spatial import ConvexHull
 
     return float(ConvexHull(corners - corners.mean(axis=0)).volume)
 
 
 def hull_corners(points: np.ndarray) -> np.ndarray:
-    """The corners of the hull of points (n, d), those left out that lie on its faces or edges; in their order."""
+    """The corners of the hull of points (n, 3), those left out that lie on its faces or edges; in their order."""
     from scipy.spatial import ConvexHull
 
     found = ConvexHull(points - points.mean(axis=0))
@@ -92,10 +93,6 @@ def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int 
     return chosen
 
 
-def _half_space(sides: Sides, k: int, sign: float) -> tuple[np.ndarray, float]:
-    return sign * sides.normals[k], sign * float(sides.heights[k])
-
-
 def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray, gap: float) -> np.ndarray | None:
     """Corners of the part of a convex piece below a plane; None: there is nothing of it."""
     over = cell @ normal - height
@@ -106,7 +103,7 @@ def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray
     low, high = np.flatnonzero(over < -gap), np.flatnonzero(over > gap)
     share = over[low][:, None] / (over[low][:, None] - over[high][None, :])
     crossings = cell[low][:, None] + share[:, :, None] * (cell[high][None, :] - cell[low][:, None])
-    crossings = crossings.reshape(-1, cell.shape[1])
+    crossings = crossings.reshape(-1, 3)
     near = np.linalg.norm(crossings[:, None] - known[None], axis=2)
     k = near.argmin(axis=1)
     crossings = np.where((near.min(axis=1) <= gap)[:, None], known[k], crossings)
@@ -123,7 +120,7 @@ def _apart(points: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -> np.ndarray:
-    """The part of a flat convex side (corners in order, (n, d)) below a plane; Sutherland and Hodgman 1974."""
+    """The part of a flat convex side (corners in order, (n, 3)) below a plane; Sutherland and Hodgman 1974."""
     if not len(piece):
         return piece
     over = piece @ normal - height
@@ -135,27 +132,18 @@ def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -
             kept.append(piece[k])
         if over[k] * over_after[k] < 0.0:
             kept.append(piece[k] + over[k] / (over[k] - over_after[k]) * (after[k] - piece[k]))
-    return np.array(kept).reshape(-1, piece.shape[1])
+    return np.array(kept).reshape(-1, 3)
 
 
-def _width(piece: np.ndarray, normal: np.ndarray) -> float:
-    """How wide a flat side is [m]: in the plane its length, in space the square root of its area."""
-    if len(piece) < len(normal):
-        return 0.0
-    if len(normal) == 2:
-        return float(np.linalg.norm(np.ptp(piece, axis=0)))
-    arms = piece - piece[0]
-    return float(np.sqrt(0.5 * np.linalg.norm(np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0))))
+def _width(piece: np.ndarray) -> float:
+    """How wide a flat side is: the square root of its area [m]."""
+    return float(np.sqrt(np.linalg.norm(newell(piece)))) if len(piece) > 2 else 0.0
 
 
 def _winding(sides: Sides, point: np.ndarray) -> float:
-    """How often the surface winds about a point: 1 inside, 0 outside; angles, in space of Van Oosterom and Strackee."""
-    arms = sides.points[sides.simplices] - point
+    """How often the surface winds about a point: 1 inside, 0 outside; by Van Oosterom and Strackee 1983."""
+    arms = sides.points[sides.triangles] - point
     lengths = np.linalg.norm(arms, axis=2)
-    if arms.shape[2] == 2:
-        (a, b) = (arms[:, 0], arms[:, 1])
-        angles = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
-        return abs(float(angles.sum())) / (2.0 * np.pi)
     a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
     la, lb, lc = lengths.T
     below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
