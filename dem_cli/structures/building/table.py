@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, StructureBase
-from dem_cli.structures.openings import Opening
+from dem_cli.structures.openings import Opening, check_apart
 from dem_cli.structures.tops import Gable
 from dem_cli.structures.wall import MOST_BLOCKS
 
@@ -45,6 +45,7 @@ class PlanWall(CaseModel):
     def _has_a_length(self) -> PlanWall:
         if self.axis[0] == self.axis[1]:
             raise KeyProblem("both ends are the same point; a wall has a length", "axis")
+        check_apart(self.openings)
         return self
 
 
