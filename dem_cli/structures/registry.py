@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, column, drums, temple_front, wall
+from dem_cli.structures import arch, bridge, column, drums, temple_front, wall
 from dem_cli.structures.vaults import shapes as vaults
 from dem_cli.structures.vaults.table import Vault
 
@@ -26,6 +26,7 @@ GENERATORS: dict[str, Generator] = {
         Generator("wall", wall.Wall, wall.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
+        Generator("bridge", bridge.Bridge, bridge.build),
         Generator("drums", drums.DrumColumn, drums.build),
         Generator("temple-front", temple_front.TempleFront, temple_front.build),
         Generator("vault", Vault, vaults.build),
