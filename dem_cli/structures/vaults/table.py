@@ -37,7 +37,8 @@ class Vault(StructureBase):
 
     kind: Literal["vault"] = "vault"
     shape: Literal["barrel", "groin", "dome"] = Field(
-        description="barrel: a tunnel; groin: two barrels that cross over a bay; dome: part of a sphere"
+        description="barrel: a tunnel; groin: two barrels that cross over a bay; dome: part of a sphere",
+        examples=["dome"],
     )
     thickness: Positive = Field(description="of the shell, from inner to outer face [m]", examples=[0.3])
     span: Positive | None = Field(None, description="clear span along x [m] (barrel, groin)", examples=[4.0])
