@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,11 +15,11 @@ from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
-from dem_cli.case.wording import show
-from dem_cli.errors import CaseError, CaseProblem, dotted
+from dem_cli.case.wording import show, unknown_name
+from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
-from dem_cli.model.bodies import bodies_of
+from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
@@ -88,7 +88,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
             problems += error.problems
     if case.ground is not None and blocks and not problems:
         blocks += ground_blocks(case.ground, blocks, problems)
-    problems += _repeated_names(blocks)
+    problems += [*_repeated_names(blocks), *_foreign_materials(blocks, list(case.materials))]
     if not blocks and not problems:
         problems.append(CaseProblem((), "there are no blocks; give a [[structure]] or a [[block]]"))
     if problems:
@@ -124,6 +124,17 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
     return problems
 
 
+def _foreign_materials(blocks: Sequence[Block], materials: Sequence[str]) -> Iterator[CaseProblem]:
+    """Materials that only a file names, which a structure took its blocks from."""
+    found: dict[tuple[KeyPath, str], list[str]] = {}
+    for block in blocks:
+        if block.material not in materials:
+            found.setdefault((block.path, block.material), []).append(block.id)
+    for (path, name), ids in found.items():
+        more = f" and {len(ids) - 1} more" if len(ids) > 1 else ""
+        yield CaseProblem((*path, "file"), f"block '{ids[0]}'{more}: {unknown_name('material', name, materials)}")
+
+
 def _sorted(blocks: list[Block]) -> list[Block]:
     """From the lowest up, then along x, in space also along y: neighbours get numbers close to each other."""
     corners = [corners_of(part) for block in blocks for part in block.parts]
@@ -143,6 +154,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
     thickness = np.array([block.thickness for block in blocks])
     density = np.array([m.density for m in case.materials.values()])[material]
     bodies = bodies_of(case.dimension, [block.parts for block in blocks], density, thickness)
+    bodies = _weighed(bodies, blocks)
     n, n_dof = len(blocks), case.dimension + bodies.inertias.shape[1]
     return Model(
         **bodies._asdict(),
@@ -155,6 +167,17 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
     )
+
+
+def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
+    """With the masses of blocks that have one of their own, spread evenly over them."""
+    given = [i for i, block in enumerate(blocks) if block.mass is not None]
+    if not given:
+        return bodies
+    masses, inertias = bodies.masses.copy(), bodies.inertias.copy()
+    masses[given] = [blocks[i].mass for i in given]
+    inertias[given] *= (masses[given] / bodies.masses[given])[:, None]
+    return bodies._replace(masses=masses, inertias=inertias)
 
 
 def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model:

@@ -55,6 +55,7 @@ SCOPES = (
     Scope("block.parts.faces", 3, "faces are those of a block in 3D: give dimension = 3"),
     Scope("block.polygon", 3, "a polygon with y is a prism in 3D: give dimension = 3, or vertices"),
     Scope("block.y", 3, "a polygon with y is a prism in 3D: give dimension = 3, or thickness"),
+    Scope("structure.up", 3, "a drawing in 2D lies in the plane of the case: give dimension = 3 for a mesh"),
     Scope("structure.leaves", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.through_stones", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.core", 3, "a wall has a core across its thickness in 3D: give dimension = 3"),

@@ -56,10 +56,12 @@ def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[
     loads = [f"{sum(load.kind == kind for load in case.load)} {kind}" for kind in ("dead", "live")]
     return [
         ("analysis", case.analysis.kind),
+        *_imports(case),
         ("blocks", f"{model.n_blocks:,} ({model.fixed.sum():,} fixed), {len(model.vertices):,} corners"),
         ("size", size),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
         ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
+        *_drawn(case),
         *([("imperfections", _imperfections(case))] if case.imperfection else []),
         ("point loads", ", ".join(loads) if case.load else "none"),
         *((str(load.path[0]), _surface_load(load)) for load in applied if load.path[0] != "load"),
@@ -74,6 +76,24 @@ def _surface_load(load: AppliedLoad) -> str:
     blocks = f"{n_blocks:,} block{'s' if n_blocks > 1 else ''}"
     kind = "dead" if load.dead else "live"
     return f"{kind}, on {load.area:.4g} m2 of {blocks}: [{resultant}] N in all, their middle at [{centre}] m"
+
+
+def _drawn(case: Case) -> list[tuple[str, str]]:
+    """What structures have drawn at random."""
+    from dem_cli.structures.registry import generated_figures
+
+    return [
+        (f"{table.id} {label}", text) for table in case.structure for label, text in generated_figures(table, case.seed)
+    ]
+
+
+def _imports(case: Case) -> list[tuple[str, str]]:
+    """How files of other programs were read."""
+    from dem_cli.structures.imported import Import, imported
+
+    tables = [table for table in case.structure if isinstance(table, Import)]
+    notes = [(f"{table.id}: " if len(tables) > 1 else "", note) for table in tables for note in imported(table).notes]
+    return [("import" if k == 0 else "", name + note) for k, (name, note) in enumerate(notes)]
 
 
 def _imperfections(case: Case) -> str:

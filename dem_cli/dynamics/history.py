@@ -63,9 +63,9 @@ class TimeHistory:
 
         sim = self.job.clock.compiled(lambda: make(math.inf))
         found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
-        if not math.isfinite(found.step):
+        if not found.held and analysis.time_step is None:
             history = self.job.settings.history
-            found = found._replace(step=min(history.loose_step, history.loose_share * self.duration))
+            found = found._replace(step=min(found.step, history.loose_step, history.loose_share * self.duration))
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
+from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.motion.units import SI_FACTORS
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
@@ -155,12 +155,7 @@ class RecordTable(MotionTable):
     @field_validator("file")
     @classmethod
     def _absolute(cls, file: str, info: ValidationInfo) -> str:
-        """Paths of a case that was loaded do not depend on where it lies."""
-        folder = (info.context or {}).get("folder")
-        path = Path(file).expanduser()
-        if folder is None or path.is_absolute():
-            return str(path)
-        return str((Path(folder).absolute() / path).resolve())
+        return absolute_path(file, info)
 
     @model_validator(mode="after")
     def _consistent(self) -> RecordTable:
@@ -173,7 +168,7 @@ class RecordTable(MotionTable):
             allowed = ", ".join(f"'{unit}'" for unit in units)
             raise KeyProblem(f"'{self.unit}' is not a unit of {self.quantity} (allowed: {allowed})", "unit")
         if not Path(self.file).is_file():
-            raise KeyProblem(_no_file(Path(self.file)), "file")
+            raise KeyProblem(missing_file(Path(self.file), "a record"), "file")
         return self
 
     @property
@@ -264,15 +259,3 @@ MOTIONS: dict[str, type[MotionTable]] = {
 def _some(value: float, key: str) -> None:
     if value == 0.0:
         raise KeyProblem("0 is not allowed; must be another number (kind = 'none' is no motion)", key)
-
-
-def _no_file(path: Path) -> str:
-    """`no such file: /x/east.csv, did you mean 'east.csv'?`"""
-    if path.is_dir():
-        return f"{path} is a folder; a record is a file"
-    try:
-        files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
-    except OSError:
-        return f"no such file: {path} (there is no folder '{path.parent}')"
-    close = get_close_matches(path.name, files, 1)
-    return f"no such file: {path}" + (f", did you mean '{close[0]}'?" if close else "")

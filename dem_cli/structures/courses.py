@@ -162,21 +162,32 @@ def are_through(share: float, count: int, course: int) -> list[bool]:
     return (np.diff(steps) > 0.0).tolist()
 
 
-def rubble(span: Span, levels: Span, size: float, course: int) -> list[np.ndarray]:
+def rubble(span: Span, levels: Span, size: float, course: int, below: Sequence[float]) -> list[np.ndarray]:
     """Stones of unequal lengths with inclined head joints, of that mean length [m]: convex shapes (4, 2).
 
-    They look irregular and are always the same.
+    They look irregular and are always the same. below: upper ends of the head joints below [m], of which theirs keep
+    clear.
     """
     low, high = span
     count = max(1, round((high - low) / size))
     spread = _scattered(count, 7 * course + 1) * 0.6 + 0.7
     joints = low + (high - low) * np.cumsum(spread)[:-1] / spread.sum()
     slope = (_scattered(count, 11 * course + 5)[1:] - 0.5) * 0.2 * size
-    feet, heads = np.concatenate([[low], joints - slope, [high]]), np.concatenate([[low], joints + slope, [high]])
+    feet = np.array([_clear(x, below, 0.12 * size) for x in joints - slope])
+    heads = feet + 2.0 * slope
+    feet, heads = np.concatenate([[low], feet, [high]]), np.concatenate([[low], heads, [high]])
     bottom, top = levels
     return [
         np.array([[feet[i], bottom], [feet[i + 1], bottom], [heads[i + 1], top], [heads[i], top]]) for i in range(count)
     ]
+
+
+def _clear(x: float, others: Sequence[float], reach: float) -> float:
+    """A place [m], moved aside where one of the others is closer than reach."""
+    nearest = min(others, key=lambda other: abs(other - x), default=np.inf)
+    if abs(nearest - x) >= reach:
+        return x
+    return nearest + (reach if x > nearest else -reach)
 
 
 def _scattered(count: int, start: int) -> np.ndarray:

@@ -1,12 +1,12 @@
-"""Identity of a run, which tells whether two are the same: the case, the records that it names, and the program."""
+"""Identity of a run, which tells whether two are the same: the case, the files that it names, and the program."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dem_cli.output.provenance import provenance
 
@@ -34,13 +34,19 @@ def hash_of_sources(package: Path) -> str:
 
 def facts(case: Case, text: str) -> dict[str, str]:
     """What must be the same for runs to be comparable, in words for users. text: the effective case."""
-    files = [Path(table.file) for table in case.motion if getattr(table, "file", None)]
-    records = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files))
+    drawn = _digest(case.structure)
     return {
         "the case": hashlib.sha256(text.encode()).hexdigest(),
-        "a record": records.hexdigest(),
+        "a record": _digest(case.motion),
+        **({"an imported file": drawn} if drawn != _digest(()) else {}),
         "the program": program(),
     }
+
+
+def _digest(tables: Iterable[Any]) -> str:
+    """Of all files that tables name."""
+    files = [Path(table.file) for table in tables if getattr(table, "file", None)]
+    return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
 
 
 def name_of(found: Mapping[str, str]) -> str:

@@ -16,7 +16,7 @@ IMPORT_NAMES = {  # distribution: how it is imported
 TOOLS = {"mypy", "pytest-timeout", "pytest-xdist", "ruff", "furo", "myst-parser", "sphinx"}  # run, not imported
 EXTRA_OF = {  # may be absent
     "matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench", "mujoco-core": "bench",
-    "compas_cra": "bench", "pyvista": "viz",
+    "compas_cra": "bench", "pyvista": "viz", "ezdxf": "import", "svgelements": "import",
     "imageio-ffmpeg": "movie", "dask": "cluster",
 }  # fmt: skip
 

@@ -71,7 +71,7 @@ def solid(table: Wall) -> Polygon:
         if hole.arch is None or hole.arch.form != "circle":
             filled = filled.difference(box(*hole.box))
         if hole.arch is not None and hole.arch.form != "flat":
-            filled = filled.difference(Polygon(hole.arch_joints[:, 0]))
+            filled = filled.difference(Polygon(hole.void.joints[:, 0]))
     return filled
 
 

@@ -1,0 +1,29 @@
+"""Files that a case names: paths that start at the case file, and what to say of one that is not there."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+
+from pydantic import ValidationInfo
+
+
+def absolute_path(file: str, info: ValidationInfo) -> str:
+    """A path of a case that was loaded, which no longer depends on where the case lies."""
+    folder = (info.context or {}).get("folder")
+    path = Path(file).expanduser()
+    if folder is None or path.is_absolute():
+        return str(path)
+    return str((Path(folder).absolute() / path).resolve())
+
+
+def missing_file(path: Path, what: str) -> str:
+    """`no such file: /x/east.csv, did you mean 'east.csv'?`; what: what it should be, such as "a record"."""
+    if path.is_dir():
+        return f"{path} is a folder; {what} is a file"
+    try:
+        files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
+    except OSError:
+        return f"no such file: {path} (there is no folder '{path.parent}')"
+    close = get_close_matches(path.name, files, 1)
+    return f"no such file: {path}" + (f", did you mean '{close[0]}'?" if close else "")

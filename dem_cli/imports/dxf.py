@@ -1,0 +1,146 @@
+"""DXF drawings, by ezdxf: closed polylines, and loops of single lines, as outlines; layers are kept."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dem_cli.errors import MissingExtra
+from dem_cli.imports.contents import Contents, FileBody, FileProblem
+
+UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}  # of $INSUNITS
+OUTLINES, PIECES = ("LWPOLYLINE", "POLYLINE"), ("LINE", "ARC")
+_SAME = 1e-9  # of the size of a drawing: ends of lines that meet
+
+
+def read(path: Path, chords: int | None = None) -> Contents:
+    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused."""
+    drawing = _drawing(path)
+    shown = {layer.dxf.name for layer in drawing.layers if not layer.is_off() and not layer.is_frozen()}
+    left_out: Counter[str] = Counter()
+    bodies, pieces = [], []
+    for entity in _entities(drawing):
+        kind, layer = entity.dxftype(), entity.dxf.layer
+        if layer not in shown and any(layer == known.dxf.name for known in drawing.layers):
+            left_out[f"{kind} on layer '{layer}', which is off"] += 1
+        elif kind in OUTLINES and (kind == "LWPOLYLINE" or entity.is_2d_polyline or entity.is_3d_polyline):
+            ring = _ring(_path(entity), layer, chords)
+            if _closed(entity, ring):
+                bodies.append(_body(ring, layer))
+            else:
+                pieces.append((layer, ring))
+        elif kind in PIECES:
+            pieces.append((layer, _ring(_path(entity), layer, chords)))
+        else:
+            left_out[kind] += 1
+    bodies += _loops(pieces)
+    words = [f"{count} {what}" for what, count in left_out.items()]
+    return Contents(bodies, UNITS.get(drawing.header.get("$INSUNITS", 0), ""), words)
+
+
+def _drawing(path: Path) -> Any:
+    try:
+        import ezdxf
+    except ImportError:
+        raise MissingExtra("reading DXF files needs ezdxf", "import") from None
+    try:
+        return ezdxf.readfile(path)
+    except Exception as error:  # of ezdxf: whatever its reader stumbles over
+        raise FileProblem(f"not a DXF file that can be read ({str(error) or type(error).__name__})") from None
+
+
+def _entities(drawing: Any) -> Iterable[Any]:
+    """What the model space shows, block references taken apart."""
+    from ezdxf import disassemble
+
+    return disassemble.recursive_decompose(drawing.modelspace())
+
+
+def _path(entity: Any) -> Any:
+    from ezdxf import path
+
+    try:
+        return path.make_path(entity)
+    except Exception as error:  # of ezdxf: a polyline without points, and so on
+        raise FileProblem(f"a {entity.dxftype()} of layer '{entity.dxf.layer}' has no shape ({error})") from None
+
+
+def _closed(entity: Any, ring: np.ndarray) -> bool:
+    """Whether a polyline says that it is closed, or ends where it begins."""
+    return bool(entity.is_closed) or bool(np.abs(ring[0] - ring[-1]).max() <= _SAME * np.abs(ring).max())
+
+
+def _ring(path: Any, layer: str, chords: int | None) -> np.ndarray:
+    """Corners along a path, (n, 2)."""
+    from ezdxf.path import Command
+
+    points, start = [path.start], path.start
+    for command in path.commands():
+        if command.type in (Command.CURVE3_TO, Command.CURVE4_TO):
+            if chords is None:
+                raise FileProblem(
+                    f"a curve on layer '{layer}' from [{start.x:g}, {start.y:g}]; blocks have straight sides: "
+                    "give chords, into how many of them each quarter of a circle is cut"
+                )
+            points += _curve(start, command, chords)
+        else:
+            points.append(command.end)
+        start = command.end
+    return np.array([[point.x, point.y] for point in points], float)
+
+
+def _curve(start: Any, command: Any, chords: int) -> list[Any]:
+    from ezdxf.math import Bezier3P, Bezier4P
+
+    inner = [command.ctrl] if hasattr(command, "ctrl") else [command.ctrl1, command.ctrl2]
+    bezier = (Bezier3P if len(inner) == 1 else Bezier4P)([start, *inner, command.end])
+    return [*(bezier.point(k / chords) for k in range(1, chords)), command.end]
+
+
+def _loops(pieces: list[tuple[str, np.ndarray]]) -> list[FileBody]:
+    """Outlines made of lines that meet end to end, in twos, on one layer. Raises FileProblem where they do not."""
+    from ezdxf import edgeminer
+    from ezdxf.math import Vec3
+
+    found = []
+    for layer in dict.fromkeys(layer for layer, _ in pieces):
+        rings = [ring for name, ring in pieces if name == layer]
+        size = float(np.abs(np.concatenate(rings)).max()) or 1.0
+        edges = [
+            edgeminer.make_edge(Vec3(*ring[0]), Vec3(*ring[-1]), _length(ring), payload=ring)
+            for ring in rings
+            if _length(ring) > _SAME * size
+        ]
+        deposit = edgeminer.Deposit(edges, gap_tol=_SAME * size)
+        for chain in edgeminer.find_all_simple_chains(deposit):
+            if not edgeminer.is_loop(chain, gap_tol=_SAME * size):
+                raise FileProblem(f"layer '{layer}': {_open_end(deposit, chain)}")
+            ring = [edge.payload[::-1] if edge.is_reverse else edge.payload for edge in chain]
+            found.append(_body(np.concatenate([piece[:-1] for piece in ring]), layer))
+    return found
+
+
+def _open_end(deposit: Any, chain: Any) -> str:
+    for point in (chain[0].start, chain[-1].end):
+        count = deposit.degree(point)
+        if count != 2:
+            break
+    how = "ends" if count < 2 else f"meets {count - 1} others"
+    return (
+        f"a line {how} at [{point.x:g}, {point.y:g}]; an outline is a closed polyline for each block, "
+        "or lines that meet in twos"
+    )
+
+
+def _length(ring: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(ring, axis=0).T).sum())
+
+
+def _body(ring: np.ndarray, layer: str) -> FileBody:
+    """An outline, its last corner left out where it is the first one again."""
+    same = len(ring) > 1 and np.abs(ring[0] - ring[-1]).max() <= _SAME * np.abs(ring).max()
+    return FileBody("", ring[:-1] if same else ring, layer=layer)

@@ -1,0 +1,49 @@
+"""Formats of geometry files by the end of their names, and what they hold: solids in space, or outlines in a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+from dem_cli.imports.contents import Contents, FileProblem
+
+
+class FileFormat(NamedTuple):
+    """A format that is read."""
+
+    module: str  # its reader, imported when it is used
+    flat: bool  # outlines in a plane, not solids
+    what: str
+
+
+FORMATS = {
+    ".stl": FileFormat("dem_cli.imports.stl", False, "solids"),
+    ".obj": FileFormat("dem_cli.imports.obj", False, "objects"),
+    ".ply": FileFormat("dem_cli.imports.ply", False, "solids"),
+    ".json": FileFormat("dem_cli.imports.compas_json", False, "meshes"),
+    ".dxf": FileFormat("dem_cli.imports.dxf", True, "outlines"),
+    ".svg": FileFormat("dem_cli.imports.svg", True, "outlines"),
+}
+
+
+def format_of(file: str | Path) -> FileFormat | None:
+    """The format that the end of a name says; None: one that is not read."""
+    return FORMATS.get(Path(file).suffix.lower())
+
+
+def read(file: str | Path, chords: int | None = None) -> Contents:
+    """All bodies in a file. Raises FileProblem; chords: straight pieces of a curve in a drawing."""
+    path, found = Path(file), format_of(file)
+    if found is None:
+        raise FileProblem(f"'{path.suffix}' is not read; allowed: {', '.join(FORMATS)}")
+    reader: Callable[..., Contents] = import_module(found.module).read
+    try:
+        contents = reader(path, chords) if found.flat else reader(path)
+    except OSError as error:
+        raise FileProblem(f"cannot be read ({error.strerror or error})") from None
+    if not contents.bodies:
+        also = f"; left out: {', '.join(contents.left_out)}" if contents.left_out else ""
+        raise FileProblem(f"no {found.what} in it{also}")
+    return contents
