@@ -14,7 +14,7 @@ import numpy as np
 
 SHORTEST = 0.25  # of the length of a block: no piece is shorter, and no head nearer to a joint above or below it
 SAME = 1e-6  # of the length of a block: the same place
-CUT, OFF, OVER = 1.0, 8.0, 40.0  # cost of cut blocks, of heads off their place, of heads near joints above and below
+CUT, OFF, OVER = 1.0, 2.0, 40.0  # cost of cut blocks, of heads off their place, of heads near joints above and below
 
 
 class Ends(NamedTuple):
@@ -71,7 +71,7 @@ def _places(ends: Ends, length: float, first: float, avoid: np.ndarray) -> np.nd
 def _costs(places: np.ndarray, length: float, first: float, avoid: np.ndarray) -> np.ndarray:
     """Of a head at each place."""
     off = (places - first) / length
-    cost = OFF * (off - np.rint(off)) ** 2
+    cost = OFF * np.abs(off - np.rint(off))
     if len(avoid):
         away = np.abs(places[:, None] - avoid[None, :]).min(axis=1) / length
         cost += OVER * np.maximum(SHORTEST - away, 0.0) ** 2
