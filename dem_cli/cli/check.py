@@ -73,7 +73,7 @@ def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Sta
     """The picture of a model before a run."""
     from dem_cli.output.folder import write_error
     from dem_cli.post.chart import check_format
-    from dem_cli.post.model_picture import ModelFacts, draw_model
+    from dem_cli.post.scene.model_picture import ModelFacts, draw_model
 
     check_format(path)
     lines = [f"blocks {found['blocks']}", f"size {found['size']}, mass {found['mass']}"]

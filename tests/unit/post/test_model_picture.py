@@ -11,9 +11,9 @@ from synthetic.spatial_case import spatial_case
 
 from dem_cli.assembly.assemble import assemble
 from dem_cli.cli.main import main
-from dem_cli.post.model_picture import DEAD, LIVE, ModelFacts, _forces
 from dem_cli.post.scene.axonometry import AS_BEST
 from dem_cli.post.scene.drawing import drawing_of
+from dem_cli.post.scene.model_picture import DEAD, LIVE, ModelFacts, _forces
 
 ROOT = Path(__file__).resolve().parents[3]
 BLOCKS = [
