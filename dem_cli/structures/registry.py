@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, building, column, drums, imported, temple_front, wall
-from dem_cli.structures.patterns import coursed_wall, voronoi_wall
+from dem_cli.structures import arch, bridge, building, column, drums, imported, temple_front, wall
+from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
 from dem_cli.structures.vaults import shapes as vaults
 from dem_cli.structures.vaults.table import Vault
 
@@ -28,11 +28,14 @@ GENERATORS: dict[str, Generator] = {
         Generator("wall", wall.Wall, wall.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
+        Generator("bridge", bridge.Bridge, bridge.build),
         Generator("drums", drums.DrumColumn, drums.build),
         Generator("temple-front", temple_front.TempleFront, temple_front.build),
         Generator("vault", Vault, vaults.build),
         Generator("voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures),
         Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
+        Generator("herringbone-wall", herringbone_wall.HerringboneWall, herringbone_wall.build),
+        Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
         Generator("building", building.Building, building.build),
         Generator("import", imported.Import, imported.build),
     )

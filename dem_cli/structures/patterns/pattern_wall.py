@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive, RandomStructure
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry import polygon
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
@@ -17,7 +17,26 @@ from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
 
-class PatternWall(RandomStructure):
+class DressedEnds(CaseModel):
+    """Quoins: squared stones that close the ends of a wall of irregular stones, long and short in turn."""
+
+    length: Positive = Field(description="length of the long ones [m]; the short ones are half of it", examples=[0.6])
+    height: Positive = Field(description="height, stretched to fill the wall with a whole number [m]", examples=[0.3])
+    material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["ashlar"])
+
+    def boxes(self, length: float, height: float) -> dict[str, np.ndarray]:
+        """Local name -> shape of each, in a wall of that size [m]."""
+        count = max(round(height / self.height), 1)
+        levels, found = [height * k / count for k in range(count)] + [height], {}
+        for k, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
+            for end, share in (("left", 1.0 - 0.5 * (k % 2)), ("right", 0.5 + 0.5 * (k % 2))):
+                reach = self.length * share
+                x0, x1 = (0.0, reach) if end == "left" else (length - reach, length)
+                found[f"quoin-{end}-{k + 1}"] = np.array([[x0, low], [x1, low], [x1, high], [x0, high]])
+        return found
+
+
+class PatternWall(StructureBase):
     """What every wall of irregular masonry accepts."""
 
     size: tuple[Positive, Positive] = Field(
@@ -28,6 +47,9 @@ class PatternWall(RandomStructure):
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
     openings: tuple[Opening, ...] = Field(
         (), description="doors and windows", examples=[[{"x": 0.8, "y": 0.0, "width": 0.9, "height": 2.0}]]
+    )
+    quoins: DressedEnds | None = Field(
+        None, description="squared stones at both ends; default: none", examples=[{"length": 0.6, "height": 0.3}]
     )
     gable: tops.Gable | None = Field(
         None,
@@ -61,6 +83,8 @@ class PatternWall(RandomStructure):
             if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.solids):
                 raise KeyProblem("reaches above the top of the wall there", "openings", i)
         check_apart(self.openings)
+        if self.quoins:
+            _check_quoins(self, self.quoins)
         for i, side in enumerate(self.sides):
             widest = side.widest(length)
             if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
@@ -85,8 +109,22 @@ class PatternWall(RandomStructure):
 
     @property
     def panel(self) -> WallPanel:
-        """Its face without its openings, lintels and arches."""
-        return WallPanel(self.outline, tuple(hole for opening in self.openings for hole in holes(opening)))
+        """Its face without its openings, lintels, arches and quoins."""
+        found = [hole for opening in self.openings for hole in holes(opening)]
+        quoins = self.quoins.boxes(*self.size) if self.quoins else {}
+        return WallPanel(self.outline, (*quoins.values(), *found))
+
+
+def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
+    """Raises KeyProblem where quoins leave nothing between them, or openings cross them."""
+    length = wall.size[0]
+    if quoins.length > length / 3.0:
+        message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
+        raise KeyProblem(message, "quoins", "length")
+    for i, opening in enumerate(wall.openings):
+        left, _, right, _ = opening.reach
+        if left < quoins.length * (1.0 - 1e-9) or right > length - quoins.length * (1.0 - 1e-9):
+            raise KeyProblem("crosses the quoins", "openings", i)
 
 
 def holes(opening: Opening) -> list[np.ndarray]:
@@ -104,7 +142,14 @@ def masonry(wall: PatternWall, tiling: Tiling) -> list[Block]:
     """Base, sides, stones, lintels and arches of a wall, in local places. Raises ValueError: openings leave nothing."""
     if not tiling.stones:
         raise ValueError("the openings leave nothing of the wall")
-    return [*_supports(wall), *blocks_of(tiling, wall.thickness), *_over_openings(wall)]
+    return [*_supports(wall), *_quoins(wall), *blocks_of(tiling, wall.thickness), *_over_openings(wall)]
+
+
+def _quoins(wall: PatternWall) -> list[Block]:
+    if not wall.quoins:
+        return []
+    shapes = wall.quoins.boxes(*wall.size).items()
+    return [Block(name, (shape,), wall.quoins.material, wall.thickness) for name, shape in shapes]
 
 
 def _supports(wall: PatternWall) -> list[Block]:

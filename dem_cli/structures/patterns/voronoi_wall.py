@@ -7,13 +7,14 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns import voronoi
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
 
 
-class VoronoiWall(PatternWall, voronoi.VoronoiPattern):
+class VoronoiWall(RandomStructure, PatternWall, voronoi.VoronoiPattern):
     """Stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal masonry.
     Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
 
