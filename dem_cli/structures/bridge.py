@@ -13,7 +13,8 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Stru
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.masonry import Masonry, masonry_blocks
+from dem_cli.structures.masonry import Masonry
+from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import Opening
 from dem_cli.structures.vaults.barrel import cut_along
 from dem_cli.structures.vaults.profile import heads_along
@@ -152,7 +153,7 @@ def _elevation(bridge: Bridge) -> Elevation:
     except ValidationError:
         message = f"{bridge.voussoirs} of a ring of {bridge.ring:g} are not convex; use more of them or a thinner ring"
         raise KeyProblem(message, "voussoirs") from None
-    top = min(float(opening.arch_joints[0, 1, 1]) for opening in openings)
+    top = min(float(opening.void.joints[0, 1, 1]) for opening in openings)
     found = Elevation(openings, faces, lift, top)
     for i, support in enumerate(_toes(found)):
         needed = [float(abs(support[2, 0] - support[1, 0])), float(abs(support[4, 0] - support[5, 0]))]
@@ -178,11 +179,11 @@ def _toes(elevation: Elevation) -> list[np.ndarray]:
     for i, (left, right) in enumerate(elevation.faces.tolist()):
         corners = [[left, elevation.springing], [right, elevation.springing]]
         if i < n:  # what springs to the right
-            corners.append(_at_level(elevation.openings[i].arch_joints[0], elevation.top))
+            corners.append(_at_level(elevation.openings[i].void.joints[0], elevation.top))
         else:
             corners.append([right, elevation.top])
         if i:
-            corners.append(_at_level(elevation.openings[i - 1].arch_joints[-1], elevation.top))
+            corners.append(_at_level(elevation.openings[i - 1].void.joints[-1], elevation.top))
         else:
             corners.append([left, elevation.top])
         found.append(np.array([corners[0], corners[1], corners[2], corners[2], corners[3], corners[0]]))
@@ -245,7 +246,7 @@ def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
     table, length = bridge.spandrels, float(elevation.faces[-1, 1])
     block, levels, spans = (length, 1.0), elevation.top + np.arange(2.0), list[tuple[tuple[float, float]]]()
     if table:
-        block, crown = table.block, max(opening.reach[3] for opening in elevation.openings)
+        block, crown = table.block, max(opening.void.reach[3] for opening in elevation.openings)
         high = crown + table.cover
         count = max(1, round((high - elevation.top) / block[1]))
         levels, spans = np.linspace(elevation.top, high, count + 1), [((0.0, length),)] * count
@@ -255,6 +256,7 @@ def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
         levels=levels,
         spans=spans,
         openings=elevation.openings,
+        fit_rings=False,
     )
     for one in masonry_blocks(masonry):
         yield from _voussoir(bridge, one) if not one.course else _spandrel(bridge, one)

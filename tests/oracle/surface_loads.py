@@ -58,7 +58,7 @@ def wrench(start, end, per_length, about) -> np.ndarray:
 
 
 def soil(table: dict) -> tuple[float, float]:
-    """Density, and horizontal over vertical stress, of a fluid, of earth (Rankine) or of a fill."""
+    """Weight per depth over gravity, horizontal over vertical stress: of a fluid, of earth (Rankine) or of a fill."""
     if "fluid" in table:
         return table["fluid"].get("density", 1000.0), 1.0
     if "earth" in table:
