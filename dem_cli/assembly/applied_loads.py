@@ -128,7 +128,7 @@ def _falling(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load
     pieces = surfaces.open_above(pieces, top, blocks)
     under = _within(pieces, *_strip(ends, small))
     if not under:
-        where = "block" if table.selected is None else show(table.selected)
+        where = "block" if table.selected is None else table.said
         raise _nothing(path, key, f"there is no {where} under {show(table.at or table.line)}")
     if table.spread:
         points, areas, _ = _quadrature(under)
@@ -190,8 +190,8 @@ def _pressure(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath
         looking = cosines >= np.cos(np.radians(table.within_deg)) - LOOKS_UP
     pieces = surfaces.exposed(model.chosen(table.selected, False), looking)
     if not pieces:
-        seen = "looks there" if table.facing is not None else f"looks {show(table.face)}"
-        raise _nothing(path, key, f"no face of {show(table.selected)} that nothing covers {seen}, within "
+        seen = "looks there" if table.facing is not None else f"looks towards {show(table.face)}"
+        raise _nothing(path, key, f"no face of {table.said} that nothing covers {seen}, within "
                        f"{table.within_deg:g}°")  # fmt: skip
     stress, of_level = _stress(case, table)
     low, high = table.levels or (-np.inf, np.inf)
@@ -236,7 +236,7 @@ def _fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     stress = SoilStress(0.0, table.density * case.gravity, table.level, table.sideways, False)
     found = _stressed(model, path, pieces, stress, (-np.inf, table.level))
     if found is None:
-        message = f"{show(table.level)} is not allowed: below it no face of {show(table.selected)} looks up"
+        message = f"{show(table.level)} is not allowed: below it no face of {table.said} looks up"
         raise _nothing(path, "level", message)
     weights = np.where(table.inertia, -found.forces[:, -1], 0.0)
     return found._replace(weights=weights)

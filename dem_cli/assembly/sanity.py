@@ -71,11 +71,11 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     for i, load in enumerate(case.load):
         chosen = model.chosen(load.selected, False)
         if len(chosen) and model.fixed[chosen].all():
-            what = f"block {show(load.selected)}" if load.block in model.numbers else f"all of {show(load.selected)}"
+            what = f"block {load.said}" if load.block in model.numbers else f"all of {load.said}"
             message = f"{what} is fixed: a load on it changes nothing"
             yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
         elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}: an arm that turns it"
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
 
@@ -146,7 +146,7 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     for i in range(len(case.load)):
         load, away = case.load[i], _away(case, model, i)
         if away > np.hypot.reduce(high - low):
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}; "
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 
