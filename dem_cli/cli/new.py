@@ -16,7 +16,8 @@ TEMPLATE_KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 def command(kind: str, output: str | None) -> None:
     """Print a commented case file to start from.
 
-    KIND: arch, block, bridge, column, facade or wall, to be pushed; out-of-plane: a wall in 3D, pushed out of its plane;
+    KIND: arch, arched-wall, block, bridge, column, facade or wall, to be pushed; out-of-plane, bonded-wall: walls in 3D,
+    pushed out of their plane, of one leaf and of two;
     voronoi-wall, coursed-wall, herringbone-wall, wall-section: rubble, irregular courses, stones aslant, three leaves;
     drums, temple-front, vault: round columns, what they carry, groin vaults and domes, in 3D; retaining: a wall under
     earth pressure; colonnade or shaken (an arch): in an earthquake; safety: how far an arch is from failure; sweep:
