@@ -66,6 +66,13 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
 
 def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads on blocks that cannot move, and at points outside of their block."""
+    surface_loads = [("pressure", *one) for one in enumerate(case.pressure)] + [
+        ("fill", *one) for one in enumerate(case.fill)
+    ]
+    for key, i, table in surface_loads:
+        if model.fixed[model.chosen(table.selected, False)].all():
+            path = (key, i, "block" if table.structure is None else "structure")
+            yield CaseProblem(path, f"all of {table.said} is fixed: a load on it changes nothing")
     for i, load in enumerate(case.load):
         chosen = model.chosen(load.selected, False)
         if len(chosen) and model.fixed[chosen].all():
