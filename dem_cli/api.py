@@ -13,6 +13,7 @@ from dem_cli.case.schema import Case, case_model
 from dem_cli.errors import CaseError
 
 if TYPE_CHECKING:
+    from dem_cli.assembly.assemble import Assembly
     from dem_cli.model.model import Model
 
 
@@ -51,6 +52,11 @@ def build_model(loaded: LoadedCase) -> Model:
 
     Raises CaseError, with file and line, on bad geometry and unknown blocks.
     """
+    return build_assembly(loaded).model
+
+
+def build_assembly(loaded: LoadedCase) -> Assembly:
+    """`build_model`, with the blocks and with the loads: where they act."""
     from dem_cli.assembly import sanity, validate
     from dem_cli.assembly.assemble import assembly
 
@@ -64,7 +70,7 @@ def build_model(loaded: LoadedCase) -> Model:
     found = validate.problems(loaded.case, made.model, made.blocks) or sanity.problems(loaded.case, made.model)
     if found:
         raise CaseError(found, loaded.render)
-    doubts = (*made.doubts, *sanity.doubts(loaded.case, made.model, made.blocks))
+    doubts = (*made.doubts, *sanity.doubts(loaded.case, made.model, made.blocks, made.loads))
     found_odd += [*map(loaded.render, doubts), *validate.warnings(made.model)]
     loaded.warnings += [line for line in found_odd if line not in loaded.warnings]
-    return made.model
+    return made

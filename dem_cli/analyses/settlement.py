@@ -14,6 +14,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.errors import CaseError, CaseProblem, SolverError
+from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics.equilibrium import stand
@@ -41,7 +42,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         track.write("gravity")
         track.frame("gravity")
         if status == "ok":
-            way = SettlementWay(sim, _motions(case, sim))
+            movement = SupportMovement(case, model)
+            way = SettlementWay(sim, movement.at(1.0), movement.at if movement.curved else None)
             status = _move(way, track, case.output.snapshots, job.budget)
             found |= measured_at_end(sim)
             if status == COLLAPSED:
@@ -62,13 +64,29 @@ def stiffness_ratio(model: Model, overlap: float = DEFAULT.stiffness.settlement_
     return float((~model.fixed).sum()) / overlap
 
 
-def _motions(case: Case, sim: Simulation) -> np.ndarray:
-    """Whole movement of every block, zero but for the settling supports, (n_blocks, n_dof) [m, rad]."""
-    names = sim.model.numbers
-    motion = np.zeros_like(sim.bodies.velocities)
-    for table in case.settlement:
-        motion[names[table.block]] += [*table.displacement, *table.rotation]
-    return motion
+class SupportMovement:
+    """How the supports of all [[settlement]] tables move: those of one table as one rigid body.
+
+    curved: some turn about a point that is not their own centroid, which then moves on a circle
+    """
+
+    def __init__(self, case: Case, model: Model):
+        self.tables, self.model = case.settlement, model
+        self.chosen = [model.chosen(table.selected, True) for table in self.tables]
+        turning = [len(chosen) > 1 and any(table.rotation) for table, chosen in zip(self.tables, self.chosen)]
+        self.curved = any(turning)
+
+    def at(self, share: float) -> np.ndarray:
+        """Movement of every block on a share of the way, zero but for the settling supports [m, rad], (n, n_dof)."""
+        motion = np.zeros_like(self.model.dead_loads)
+        for table, chosen in zip(self.tables, self.chosen, strict=True):
+            motion[chosen] += share * np.array([*table.displacement, *table.rotation])
+            if len(chosen) > 1 and any(table.rotation):
+                masses, centroids = self.model.masses[chosen], self.model.centroids[chosen]
+                arms = centroids - masses @ centroids / masses.sum()
+                turn = share * np.array(table.rotation)
+                motion[chosen, : self.model.dimension] += turned_as_one(arms, turn) - arms
+        return motion
 
 
 def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
@@ -104,7 +122,7 @@ def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
         sim.restore(end)
     share = low / way.rows
     supports = {
-        table.block: {
+        table.selected: {
             "displacement": [share * component for component in table.displacement],
             "rotation": _plain([share * angle for angle in table.rotation]),
         }

@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly import selection_checks
+from dem_cli.assembly.applied_loads import AppliedLoad, applied_loads
 from dem_cli.assembly.drawn_blocks import drawn_block
 from dem_cli.assembly.elevations import imperfect_in_space
+from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
+from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
-from dem_cli.case.cross_references import check_names
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
-from dem_cli.model.bodies import bodies_of
+from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.model import Model
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
@@ -35,15 +38,7 @@ class Assembly(NamedTuple):
     model: Model
     blocks: tuple[Block, ...]  # in the order of the model
     doubts: tuple[CaseProblem, ...] = ()  # what is allowed, but looks like a slip
-
-
-class PointLoad(NamedTuple):
-    """A [[load]] with its block found."""
-
-    block: int
-    force: np.ndarray  # [N], (d,)
-    arm: np.ndarray  # from the centroid to the point of application [m], (d,)
-    dead: bool
+    loads: tuple[AppliedLoad, ...] = ()  # table by table, where they act
 
 
 def assemble(case: Case) -> Model:
@@ -55,15 +50,17 @@ def assembly(case: Case) -> Assembly:
     """Model, blocks and names of a case. Raises CaseError: impossible shapes, names twice, unknown blocks."""
     blocks, names = case_blocks(case)
     body = _bodies(case, blocks, names)
-    problems = check_names(case, body.numbers, [block.fixed for block in blocks])
+    selections = Selections(BlockNames(case, blocks, names, body.centroids))
+    body = body._replace(selections=selections.several())
+    problems = selections.problems or list(selection_checks.problems(case, body))
     if problems:
-        raise CaseError(problems)
+        raise CaseError(list(dict.fromkeys(problems)))
     doubts: list[CaseProblem] = []
     if case.imperfection:  # names and numbers are those of the blocks as drawn
         blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
-        body = _bodies(case, blocks, names)
-    loads = _point_loads(case, body)
-    return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts))
+        body = _bodies(case, blocks, names)._replace(selections=selections.several())
+    loads = applied_loads(case, body)
+    return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts), tuple(loads))
 
 
 def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
@@ -89,6 +86,8 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
             blocks.append(drawn_block(table, i, case.dimension))
         except CaseError as error:
             problems += error.problems
+    if case.ground is not None and blocks and not problems:
+        blocks += ground_blocks(case.ground, blocks, problems)
     problems += [*_repeated_names(blocks), *_foreign_materials(blocks, list(case.materials))]
     if not blocks and not problems:
         problems.append(CaseProblem((), "there are no blocks; give a [[structure]] or a [[block]]"))
@@ -155,6 +154,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
     thickness = np.array([block.thickness for block in blocks])
     density = np.array([m.density for m in case.materials.values()])[material]
     bodies = bodies_of(case.dimension, [block.parts for block in blocks], density, thickness)
+    bodies = _weighed(bodies, blocks)
     n, n_dof = len(blocks), case.dimension + bodies.inertias.shape[1]
     return Model(
         **bodies._asdict(),
@@ -169,17 +169,19 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
     )
 
 
-def _point_loads(case: Case, model: Model) -> list[PointLoad]:
-    loads = []
-    for load in case.load:
-        block = model.numbers[load.block]
-        arm = np.zeros(model.dimension) if load.at is None else np.array(load.at) - model.centroids[block]
-        loads.append(PointLoad(block, np.array(load.force), arm, load.kind == "dead"))
-    return loads
+def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
+    """With the masses of blocks that have one of their own, spread evenly over them."""
+    given = [i for i, block in enumerate(blocks) if block.mass is not None]
+    if not given:
+        return bodies
+    masses, inertias = bodies.masses.copy(), bodies.inertias.copy()
+    masses[given] = [blocks[i].mass for i in given]
+    inertias[given] *= (masses[given] / bodies.masses[given])[:, None]
+    return bodies._replace(masses=masses, inertias=inertias)
 
 
-def _with_loads(case: Case, model: Model, loads: Sequence[PointLoad]) -> Model:
-    """Dead loads: weight and dead point loads. Live loads: by the pattern of the analysis, or zero."""
+def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model:
+    """Dead loads: weight and dead applied loads. Live loads: by the pattern of the analysis, or zero."""
     d, dead = model.dimension, [load for load in loads if load.dead]
     pattern = getattr(case.analysis, "pattern", None)
     weight = np.zeros_like(model.dead_loads)
@@ -188,10 +190,12 @@ def _with_loads(case: Case, model: Model, loads: Sequence[PointLoad]) -> Model:
     live = np.zeros_like(model.live_loads)
     if pattern == "mass":
         live[:, :d] = -weight[:, d - 1 : d] * _direction(case)
+        heavy = [load for load in dead if load.weights.any()]
+        live += _resultants(model, [load._replace(forces=np.outer(load.weights, _direction(case))) for load in heavy])
     elif pattern == "tilt":
-        turn = _quarter_turn(case)
+        turn = _quarter_turn(case, dead)
         live[:, :d] = weight[:, :d] @ turn.T
-        live += _resultants(model, [load._replace(force=turn @ load.force) for load in dead])
+        live += _resultants(model, [load._replace(forces=load.forces @ turn.T) for load in dead])
     elif pattern == "live":
         live = _resultants(model, [load for load in loads if not load.dead])
     dead_loads = weight + _resultants(model, dead)
@@ -208,7 +212,7 @@ def _direction(case: Case) -> np.ndarray:
     return direction / length
 
 
-def _quarter_turn(case: Case) -> np.ndarray:
+def _quarter_turn(case: Case, dead: Sequence[AppliedLoad]) -> np.ndarray:
     """What a table does to forces, seen from it, once it has tilted by 90° towards the direction of the case, (d, d).
 
     About the horizontal axis square to the direction: what pulled down pulls along it. At an angle θ on the way, dead
@@ -225,18 +229,22 @@ def _quarter_turn(case: Case) -> np.ndarray:
         }
         raise CaseError([CaseProblem(("analysis", "direction"), f"a table tilts {way[case.dimension]}")])
     towards /= length
-    for i, load in enumerate(case.load):
-        force = np.array(load.force)
-        along = force - (force @ towards) * towards - (force @ up) * up
-        if load.kind == "dead" and np.hypot.reduce(along) > ALONG_AXIS * np.hypot.reduce(force):
-            message = f"{show(load.force)} is not allowed: it has a part along the axis about which the table tilts"
-            raise CaseError([CaseProblem(("load", i, "force"), message)])
+    for load in dead:
+        along = load.forces - np.outer(load.forces @ towards, towards) - np.outer(load.forces @ up, up)
+        if np.abs(along).max() > ALONG_AXIS * np.abs(load.forces).max():
+            given = case.load[int(load.path[1])].force if load.path[0] == "load" else None
+            message = "it has a part along the axis about which the table tilts"
+            path = load.path if given is None else (*load.path, "force")
+            raise CaseError(
+                [CaseProblem(path, message if given is None else f"{show(given)} is not allowed: {message}")]
+            )
     return np.outer(up, towards) - np.outer(towards, up)
 
 
-def _resultants(model: Model, loads: Sequence[PointLoad]) -> np.ndarray:
+def _resultants(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
     """Forces and moments about the centroids, (n_blocks, n_dof) [N, N m]."""
     total = np.zeros_like(model.dead_loads)
     for load in loads:
-        total[load.block] += [*load.force, *moments(load.arm[None], load.force[None])[0]]
+        arms = load.points - model.centroids[load.blocks]
+        np.add.at(total, load.blocks, np.column_stack([load.forces, moments(arms, load.forces)]))
     return total

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> ImperfectBlocks:
     """As `imperfect`, for blocks in space. Raises CaseError, also for errors of blocks drawn by hand."""
     upright = [_elevation(case, i) for i in range(len(case.structure))]
-    problems = [*_of_drawn_blocks(case, blocks), *_of_solids(case, upright)]
+    problems = [*_of_drawn_blocks(case, model, blocks), *_of_solids(case, upright)]
     if problems:
         raise CaseError(problems)
     facing = tuple(table.model_copy(update={"origin": (0.0, 0.0), "rotation_deg": 0.0}) for table in case.structure)
@@ -37,7 +37,7 @@ def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> Imp
     for table, flat in zip(case.structure, upright, strict=True):
         if not flat:
             continue
-        found = imperfect(flat_case, _planar_model(case, flat), flat)
+        found = imperfect(flat_case, _planar_model(case, flat)._replace(selections=model.selections), flat)
         parts, _ = spatial_places(found.blocks, table)
         changed |= {block.id: tuple(next(parts) for _ in block.parts) for block in found.blocks}
         doubts |= dict.fromkeys(found.doubts)
@@ -47,11 +47,11 @@ def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> Imp
     )
 
 
-def _of_drawn_blocks(case: Case, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
+def _of_drawn_blocks(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
     """Tables about blocks drawn by hand, which have no elevation."""
     drawn = [block.id for block in blocks if block.path[0] == "block" and not block.fixed]
     for i, table in enumerate(case.imperfection):
-        if table.block in drawn:
+        if any(model.block_ids[k] in drawn for k in model.chosen(table.block)):
             message = "a block drawn by hand has no imperfections in 3D; draw it as it is"
             yield CaseProblem(("imperfection", i, "block"), message)
         elif drawn and table.block is None and table.structure is None:

@@ -94,8 +94,8 @@ def _site(case: Case, model: Model, blocks: Sequence[Block]) -> Site:
 
 def _chosen(site: Site, table: Imperfection) -> np.ndarray:
     """Numbers of the blocks that a table is about."""
-    if table.block is not None:  # none, where these are the blocks of one structure and it is of another
-        return np.array([site.model.numbers[name] for name in (table.block,) if name in site.model.numbers], np.int64)
+    if table.block is not None or table.course is not None:  # none, where these are blocks of another structure
+        return site.model.chosen(table.selected, False)
     chosen = ~site.model.fixed
     if table.structure is not None:
         chosen &= site.structure == [parameters.id for parameters in site.case.structure].index(table.structure)

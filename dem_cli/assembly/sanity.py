@@ -18,6 +18,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 
 if TYPE_CHECKING:
+    from dem_cli.assembly.applied_loads import AppliedLoad
     from dem_cli.case.schema import Case
 
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
@@ -26,18 +27,24 @@ HEAVY = 0.05  # dead loads over the weight: so much matters to what pushes
 LIGHT = 1e-3  # live loads over the weight that are most likely in another unit
 STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
 
+INSTEAD = {  # of a dead load that presses and does not push: what would
+    "load": "what is a mass, such as a roof or a floor, is drawn as a block",
+    "pressure": "what water or earth adds when it shakes is a pressure with kind = 'live'",
+    "fill": "with pattern = 'mass', inertia = true gives a fill its share",
+}
+
 
 def problems(case: Case, model: Model) -> list[CaseProblem]:
     """What can only be a mistake: point loads far outside the structure, joints that cannot carry it."""
     return [*_far_loads(case, model), *_soft_joints(case, model)]
 
 
-def doubts(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
+def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[AppliedLoad]) -> list[CaseProblem]:
     """What may be meant, and most often is not; `blocks` in the order of the model."""
     return [
         *size_doubts(_sizes(model, blocks)),
         *odd_loads(case, model),
-        *_loads_and_weight(case, model),
+        *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
     ]
 
@@ -60,33 +67,37 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
 def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads on blocks that cannot move, and at points outside of their block."""
     for i, load in enumerate(case.load):
-        block = model.numbers[load.block]
-        if model.fixed[block]:
-            message = f"block {show(load.block)} is fixed: a load on it changes nothing"
-            yield CaseProblem(("load", i, "block"), message)
-        elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[block]:
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}: an arm that turns it"
+        chosen = model.chosen(load.selected, False)
+        if len(chosen) and model.fixed[chosen].all():
+            what = f"block {show(load.selected)}" if load.block in model.numbers else f"all of {show(load.selected)}"
+            message = f"{what} is fixed: a load on it changes nothing"
+            yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
+        elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
+            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
 
-def _loads_and_weight(case: Case, model: Model) -> Iterator[CaseProblem]:
+def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Iterator[CaseProblem]:
     """Dead loads that press where it is mass that pushes, and live loads that are nothing beside the weight."""
     weight = float(model.masses[~model.fixed].sum()) * case.gravity
-    of_kind = {
-        kind: [(i, math.hypot(*load.force)) for i, load in enumerate(case.load) if load.kind == kind]
-        for kind in ("dead", "live")
-    }
     pattern = getattr(case.analysis, "pattern", None)
-    dead, live = (sum(force for _, force in of_kind[kind]) for kind in ("dead", "live"))
-    if (pattern == "mass" or case.analysis.kind in SHAKES) and dead > HEAVY * weight:
+    pressing = [load for load in loads if load.dead and not (pattern == "mass" and load.weights.any())]
+    live = [load for load in loads if not load.dead]
+    dead_force, live_force = (sum(map(_size, some)) for some in (pressing, live))
+    if (pattern == "mass" or case.analysis.kind in SHAKES) and dead_force > HEAVY * weight:
         pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
-        message = f"dead loads of {dead:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
-        message += "what is a mass, such as a roof or a floor, is drawn as a block"
-        yield CaseProblem(("load", of_kind["dead"][0][0]), message)
-    likely, forces = 1e3 * live > HEAVY * weight, [force for _, force in of_kind["live"] if force > 0.0]
-    if pattern == "live" and 0.0 < live < LIGHT * weight and likely and not all(map(_is_unit, forces)):
-        message = f"live loads of {live:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
-        yield CaseProblem(("load", of_kind["live"][0][0], "force"), message)
+        message = f"dead loads of {dead_force:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
+        yield CaseProblem(pressing[0].path, message + INSTEAD[str(pressing[0].path[0])])
+    likely, forces = 1e3 * live_force > HEAVY * weight, [_size(load) for load in live if _size(load) > 0.0]
+    if pattern == "live" and 0.0 < live_force < LIGHT * weight and likely and not all(map(_is_unit, forces)):
+        message = f"live loads of {live_force:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
+        of_load = live[0].path[0] == "load"
+        yield CaseProblem((*live[0].path, "force") if of_load else live[0].path, message)
+
+
+def _size(load: AppliedLoad) -> float:
+    """Resultant of a load [N]."""
+    return math.hypot(*load.resultant.tolist())
 
 
 def _is_unit(force: float) -> bool:
@@ -105,10 +116,10 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads at points further from their block than the structure is large."""
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
-    for i, load in enumerate(case.load):
-        away = _away(case, model, i)
+    for i in range(len(case.load)):
+        load, away = case.load[i], _away(case, model, i)
         if away > np.hypot.reduce(high - low):
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.block)}; "
+            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 
@@ -116,9 +127,10 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
 def _away(case: Case, model: Model, i: int) -> float:
     """How far a load acts from its block [m]; 0 on it and within."""
     load = case.load[i]
-    if load.at is None:
+    chosen = model.chosen(load.selected, False)
+    if load.at is None or load.falls or len(chosen) != 1:
         return 0.0
-    number, corners, starts = model.numbers[load.block], undeformed(model), model.part_starts
+    number, corners, starts = chosen[0], undeformed(model), model.part_starts
     own = np.flatnonzero(model.part_blocks == number)
     return min(distance(corners[starts[p] : starts[p + 1]], np.array(load.at)) for p in own)
 

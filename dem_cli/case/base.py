@@ -79,14 +79,15 @@ class StructureBase(CaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _thickness_within_block(cls, table: Any, info: ValidationInfo) -> Any:
-        """In 3D a block may be given with its thickness: block = [length, height, thickness]."""
-        block = table.get("block") if isinstance(table, dict) else None
-        if not isinstance(block, (list, tuple)) or len(block) != 3 or (info.context or {}).get("dimension") != 3:
-            return table
-        if "thickness" in table:
-            raise KeyProblem("block and thickness say the same; give one of them", "thickness")
-        return {**table, "block": block[:2], "thickness": block[2]}
+    def _thickness_within_size(cls, table: Any, info: ValidationInfo) -> Any:
+        """In 3D a size may be given with the thickness: block = [length, height, thickness]."""
+        for key in ("block", "size"):
+            size = table.get(key) if isinstance(table, dict) else None
+            if isinstance(size, (list, tuple)) and len(size) == 3 and (info.context or {}).get("dimension") == 3:
+                if "thickness" in table:
+                    raise KeyProblem(f"{key} and thickness say the same; give one of them", "thickness")
+                return {**table, key: size[:2], "thickness": size[2]}
+        return table
 
     @property
     def rotation(self) -> float:

@@ -1,18 +1,19 @@
 """Cross-references between the tables of a case: names that may be left out are filled in, the rest is checked.
 
-All but `check_names` work on the tables as read, so that slips are reported along with the validator's.
+They work on the tables as read, so that slips are reported along with the validator's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from typing import Any
 
-from dem_cli.case.schema import Case
-from dem_cli.case.wording import either, listing, show, unknown_name
+from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
+SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+WITH_LIVE_LOADS = ("load", "pressure")
 
 
 def complete(data: dict[str, Any], title: str) -> None:
@@ -26,7 +27,8 @@ def complete(data: dict[str, Any], title: str) -> None:
     only = next(iter(materials)) if isinstance(materials, dict) and len(materials) == 1 else ""
     tables = [table for _, table in entries(data, "structure")]
     taken = {table.get("id") for table in tables if isinstance(table.get("id", 0), str)}
-    for table in tables + [table for _, table in entries(data, "block")]:
+    ground = [data["ground"]] if isinstance(data.get("ground"), dict) else []
+    for table in tables + [table for _, table in entries(data, "block")] + ground:
         if only and table.get("material", "") == "":
             table["material"] = only
     for table in tables:
@@ -52,8 +54,8 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
             elif isinstance(name, str):
                 seen[name] = (*path, "id")
     analysis = data["analysis"] if isinstance(data.get("analysis"), dict) else {}
-    live = [table for _, table in entries(data, "load") if table.get("kind") == "live"]
-    if analysis.get("pattern") == "live" and not live:
+    loads = [table for key in WITH_LIVE_LOADS for _, table in entries(data, key)]
+    if analysis.get("pattern") == "live" and not any(table.get("kind") == "live" for table in loads):
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
@@ -63,10 +65,13 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Every `material` in a structure or a block, and where there are several, its absence."""
+    """Every `material` in a structure, a block or the ground, and where there are several, its absence."""
     materials = names(data, "materials")
-    for key in ("structure", "block"):
-        for path, table in entries(data, key):
+    ground: list[tuple[KeyPath, dict[str, Any]]] = []
+    if isinstance(data.get("ground"), dict):
+        ground = [(("ground",), data["ground"])]
+    for of_key in (entries(data, "structure"), entries(data, "block"), ground):
+        for path, table in of_key:
             if materials and table.get("material", "") == "":
                 yield CaseProblem((*path, "material"), f"missing; must be {either(materials)}")
             for place, name in mentions(table, path):
@@ -101,12 +106,21 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Structures of [[imperfection]] tables that do not exist."""
+    """Structures that do not exist, of tables that select blocks."""
     ids = [table["id"] for _, table in entries(data, "structure") if isinstance(table.get("id"), str)]
-    for path, table in entries(data, "imperfection"):
+    for path, table in [found for key in SELECTING for found in entries(data, key)] + _group_members(data):
         name = table.get("structure")
         if isinstance(name, str) and name not in ids:
             yield CaseProblem((*path, "structure"), unknown_name("structure", name, ids))
+
+
+def _group_members(data: dict[str, Any]) -> list[tuple[KeyPath, dict[str, Any]]]:
+    """Tables in groups."""
+    groups = data.get("groups")
+    members = (
+        [(name, many) for name, many in groups.items() if isinstance(many, list)] if isinstance(groups, dict) else ()
+    )
+    return [(("groups", name, k), one) for name, many in members for k, one in enumerate(many) if isinstance(one, dict)]
 
 
 def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
@@ -120,55 +134,3 @@ def names(data: dict[str, Any], key: str) -> list[str]:
     """Keys of a table of tables; none where it is no table."""
     table = data.get(key)
     return list(table) if isinstance(table, dict) else []
-
-
-def check_names(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None = None) -> list[CaseProblem]:
-    """Tables about blocks that do not exist, and settlements and motions of free blocks.
-
-    blocks  number of the block by its id and its aliases, known only after the structures are built
-    fixed   for each block, whether it is a support
-    """
-    found = [
-        CaseProblem((key, i, "block"), unknown_name("block", table.block, list(blocks)))
-        for key in ("imperfection", "load", "settlement", "monitor")
-        for i, table in enumerate(getattr(case, key))
-        if table.block is not None and table.block not in blocks
-    ]
-    found += [
-        CaseProblem(("monitor", i, "between", k), unknown_name("block", name, list(blocks)))
-        for i, monitor in enumerate(case.monitor)
-        for k, name in enumerate(monitor.between or ())
-        if name not in blocks
-    ]
-    for i, settlement in enumerate(case.settlement):
-        if fixed is not None and settlement.block in blocks and not fixed[blocks[settlement.block]]:
-            message = f"block {show(settlement.block)} is not fixed; only a fixed block can be moved"
-            found.append(CaseProblem(("settlement", i, "block"), message))
-    found += _initial_problems(case, blocks, fixed)
-    if case.damping is not None and case.damping.block is not None and case.damping.block not in blocks:
-        found.append(CaseProblem(("damping", "block"), unknown_name("block", case.damping.block, list(blocks))))
-    return [*found, *_motion_problems(case, blocks, fixed)]
-
-
-def _motion_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
-    """[[motion]] tables about blocks that do not exist or are not supports."""
-    supports = [name for name, number in blocks.items() if fixed is None or fixed[number]]
-    for i, motion in enumerate(case.motion):
-        for k, name in enumerate(motion.blocks):
-            path = ("motion", i, "blocks", k)
-            if name not in blocks:
-                yield CaseProblem(path, unknown_name("support", name, supports))
-            elif name not in supports:
-                message = f"block {show(name)} is not fixed; only a fixed block can be moved"
-                yield CaseProblem(path, f"{message} (fixed: {listing(supports)})")
-
-
-def _initial_problems(case: Case, blocks: Mapping[str, int], fixed: Sequence[bool] | None) -> Iterator[CaseProblem]:
-    """[[initial]] tables about blocks that do not exist or cannot move."""
-    for i, table in enumerate(case.initial):
-        for k, name in enumerate(table.names):
-            path = ("initial", i, "block") if table.block is not None else ("initial", i, "blocks", k)
-            if name not in blocks:
-                yield CaseProblem(path, unknown_name("block", name, list(blocks)))
-            elif fixed is not None and fixed[blocks[name]]:
-                yield CaseProblem(path, f"block {show(name)} is fixed; only blocks that can move have a start")

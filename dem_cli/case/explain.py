@@ -32,7 +32,10 @@ DOC_PAGES = {  # beside docs/case.md, which has them all; {kind} is replaced
 }
 
 EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
-    "pressure thrust surcharge earth earthpressure distributedload lineload weight": "load",
+    "lineload axle axleload pointload weight": "load",
+    "thrust earthpressure waterpressure water distributedload areaload hydrostatic backfill": "pressure",
+    "overburden spandrelfill ballast": "fill",
+    "selection subset": "groups",
     "window windows door gate opening": "structure.wall.openings",
     "earthquake groundmotion accelerogram shaking quake pga": "motion",
     "mortar": "joints.mohr-coulomb.cohesion",
@@ -43,7 +46,7 @@ EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
     "pier pillar tower": "structure.column",
     "foundation subsidence": "settlement",
     "depth outofplane": "structure.thickness",
-    "course layer": "structure.wall.courses",
+    "layer": "structure.wall.courses",
 }
 
 

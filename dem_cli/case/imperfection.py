@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from hashlib import blake2b
 from statistics import NormalDist
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
+from dem_cli.case.selection import Selection
 from dem_cli.case.wording import show
 
 ERRORS = ("height", "length", "wedge", "shift", "lean")  # the keys that change something
@@ -24,8 +25,8 @@ class NormalDistribution(CaseModel):
 Error = float | Pair | NormalDistribution  # for all the same | [least, most], drawn uniformly | drawn normally
 
 
-class Imperfection(CaseModel):
-    """[[imperfection]]: errors of one block, of the free blocks of one structure, or of all free blocks.
+class Imperfection(Selection):
+    """[[imperfection]]: errors of one block, of the free blocks of a structure or group, or of all free blocks.
 
     Errors are in the axes of the structure before it is turned. A number is the same for every block; [least, most]
     is drawn uniformly and { mean, deviation } normally, for each block from `seed`, the number of the table and
@@ -34,8 +35,12 @@ class Imperfection(CaseModel):
     errors are those of structures alone, in the plane in which they are drawn: x along them, y upwards.
     """
 
+    needs_blocks: ClassVar[bool] = False
+
     block: str | None = Field(
-        default=None, description="id of a block; default: all free blocks", examples=["wall-4-2"]
+        default=None,
+        description="id of a block, a pattern of ids with * and ?, or a name in [groups]; default: all free blocks",
+        examples=["wall-4-2"],
     )
     structure: str | None = Field(default=None, description="id of a structure: its free blocks", examples=["wall"])
     height: Error = Field(default=0.0, description="added to the height, at the top [m]", examples=[[-0.0005, 0.0005]])
@@ -63,16 +68,15 @@ class Imperfection(CaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Imperfection:
-        if self.block is not None and self.structure is not None:
-            raise KeyProblem("'block' and 'structure' are given; an imperfection has one of them, or none", "block")
         if not self.model_fields_set.intersection(ERRORS):
             raise ValueError("no error is given: height, length, wedge, shift or lean")
         for key in ("height", "length", "wedge", "lean"):
             _check_range(getattr(self, key), key)
         for axis, error in enumerate(self.shift):
             _check_range(error, "shift", axis)
-        if self.block is not None and self.lean != 0.0:
-            raise KeyProblem("not allowed beside 'block': a structure leans, a block is shifted", "lean")
+        for key in ("block", "course"):
+            if getattr(self, key) is not None and self.lean != 0.0:
+                raise KeyProblem(f"not allowed beside '{key}': a structure leans, a block is shifted", "lean")
         if self.restack and self.shift[1] != 0.0:
             message = f"{show(self.shift[1])} is not allowed beside restack = true, which sets the blocks down again"
             raise KeyProblem(message, "shift", 1)

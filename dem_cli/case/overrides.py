@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import tomli
 from pydantic import BaseModel
 
-from dem_cli.case.impossible import parsed
+from dem_cli.case.scanner import parsed
 from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, UsageError, dotted
 

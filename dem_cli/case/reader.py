@@ -15,11 +15,10 @@ import tomli
 from pydantic import ValidationError
 
 from dem_cli.case import cross_references, dimensions, retired_keys
-from dem_cli.case.impossible import impossible_values, parsed
 from dem_cli.case.messages import problems_from
 from dem_cli.case.overrides import Override, apply, parse
 from dem_cli.case.plausibility import doubts
-from dem_cli.case.scanner import KeyPositions
+from dem_cli.case.scanner import KeyPositions, impossible_values, parsed
 from dem_cli.case.schema import Case
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
 

@@ -1,13 +1,17 @@
-"""Line and column of every key and value of a TOML text. The text has been parsed before: its syntax is right."""
+"""Scanner of TOML text: its plain data, what in it no key can take, and line and column of every key and value."""
 
 from __future__ import annotations
 
+import datetime
 import re
 from bisect import bisect_right
+from collections.abc import Iterator
+from typing import Any
 
 import tomli
 
-from dem_cli.errors import KeyPath
+from dem_cli.case.wording import show
+from dem_cli.errors import CaseProblem, KeyPath
 
 BLANK = re.compile(r"(?:[ \t\n,]|#[^\n]*)*")  # between elements: space, lines, commas, comments
 KEY_PART = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\s.=\]"']+)[ \t]*""")
@@ -17,10 +21,42 @@ STRING = re.compile(
     re.DOTALL,
 )
 SCALAR = re.compile(r"[^,\]}\n#]*")
+LARGEST = 1e30  # what is larger overflows in products (masses, inertias); nothing in a case is
+DEEPEST = 20  # levels of lists and tables; the format has 6
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """TOML as plain data. Raises tomli.TOMLDecodeError, for lists in lists without end and endless digits too."""
+    try:
+        return tomli.loads(text)
+    except RecursionError:
+        raise tomli.TOMLDecodeError("lists or tables are nested too deeply", text, 0) from None
+    except tomli.TOMLDecodeError:
+        raise
+    except ValueError:  # of int(), which reads so many digits
+        raise tomli.TOMLDecodeError("a number has too many digits", text, 0) from None
+
+
+def impossible_values(value: Any, path: KeyPath = ()) -> Iterator[CaseProblem]:
+    """What no key of a case takes. inf and nan are left to the keys, which have words for them."""
+    if isinstance(value, (datetime.date, datetime.time)):
+        yield CaseProblem(path, f"{value} is a date; no key takes one")
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        size = abs(value)
+        if LARGEST < size < float("inf"):
+            said = show(value) if isinstance(value, float) or size < 10**50 else "a number of so many digits"
+            message = f"{said} is not allowed; numbers are at most {LARGEST:g} in size"
+            yield CaseProblem(path, message)
+    elif isinstance(value, (dict, list)):
+        if len(path) >= DEEPEST:
+            yield CaseProblem(path, "nested too deeply: no key takes that")
+            return
+        for key, item in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from impossible_values(item, (*path, key))
 
 
 class KeyPositions:
-    """Line and column (from 1) of keys and values, by key path."""
+    """Line and column (from 1) of keys and values, by key path, in a text whose syntax is right."""
 
     def __init__(self, text: str):
         self.text = text.replace("\r\n", "\n")

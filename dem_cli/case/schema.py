@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import or_
 from types import GenericAlias
-from typing import Annotated, Any, Literal, cast, get_args
+from typing import Annotated, Any, ClassVar, Literal, cast, get_args
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
@@ -30,7 +30,9 @@ from dem_cli.case.base import (
 from dem_cli.case.block_table import BlockTable
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
+from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure
 from dem_cli.case.reference import Reference
+from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
 
 
@@ -53,30 +55,16 @@ class Interface(CaseModel):
     joint: str = Field(description="a name in [joints]", examples=["seat"])
 
 
-class Load(CaseModel):
-    """[[load]]: a force on a block."""
+class Settlement(Selection):
+    """[[settlement]]: supports that are moved; those of a structure, a pattern or a group as one rigid body."""
 
-    block: str = Field(description="id of the block that it acts on", examples=["lintel"])
-    force: Vector = Field(description="force [N]", examples=[[100.0, 0.0]])
-    at: Vector | None = Field(
-        default=None, description="point of application [m]; default: centroid of the block", examples=[[0.0, 1.75]]
-    )
-    kind: Literal["dead", "live"] = Field(
-        default="dead", description="dead: constant; live: times the multiplier", examples=["live"]
-    )
-
-
-class Settlement(CaseModel):
-    """[[settlement]]: a support that is moved."""
-
-    block: str = Field(description="id of a fixed block", examples=["right-pier-base"])
     displacement: Vector = Field(
-        default=(0.0, 0.0), description="how far its centroid moves [m]", examples=[[0.01, -0.02]]
+        default=(0.0, 0.0), description="how far the centroid moves [m]", examples=[[0.01, -0.02]]
     )
     rotation_deg: Turn = Field(
         default=0.0,
-        description="turn about its centroid, counter-clockwise; in 3D axis times angle, in components along x, y and "
-        "z, right-handed [deg]",
+        description="turn about the centroid, of several supports their common one, counter-clockwise; in 3D axis "
+        "times angle, in components along x, y and z, right-handed [deg]",
         examples=[1.0],
     )
 
@@ -87,19 +75,23 @@ class Settlement(CaseModel):
         return tuple(math.radians(angle) for angle in degrees)
 
 
-PLACES = ("block", "point", "between")  # where a monitor may be
+PLACES = ("block", "structure", "point", "between")  # where a monitor may be
 AT_JOINTS = ("opening", "slip")
 OF_POINTS = ("displacement", "velocity", "acceleration")
 
 
-class Monitor(CaseModel):
-    """[[monitor]]: a number followed through the run."""
+class Monitor(Selection):
+    """[[monitor]]: a number followed through the run; of several blocks the mean, weighted by their masses."""
+
+    needs_blocks: ClassVar[bool] = False
 
     name: Name | None = Field(
         default=None, description="label; default: made of place, quantity and component", examples=["top"]
     )
     block: str | None = Field(
-        default=None, description="id of a block: its centroid is followed", examples=["top-right"]
+        default=None,
+        description="id of a block, a pattern of ids with * and ?, or a name in [groups]: the centroid is followed",
+        examples=["top-right"],
     )
     point: Vector | None = Field(
         default=None, description="instead of block: a point of the undeformed structure [m]", examples=[[0.0, 1.9]]
@@ -130,7 +122,7 @@ class Monitor(CaseModel):
         given = [key for key in PLACES if getattr(self, key) is not None]
         if len(given) != 1:
             found = " and ".join(f"'{key}'" for key in given) + " are" if given else "none of them is"
-            raise ValueError(f"{found} given; a monitor has one of 'block', 'point' and 'between'")
+            raise ValueError(f"{found} given; a monitor has one of 'block', 'structure', 'point' and 'between'")
         if (self.quantity in AT_JOINTS) != (self.between is not None):
             allowed = AT_JOINTS if self.between is not None else (*OF_POINTS, "rotation")
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
@@ -151,7 +143,7 @@ class Monitor(CaseModel):
         """Where it is, in words."""
         if self.between is not None:
             return " | ".join(self.between)
-        return self.block if self.block is not None else f"({', '.join(f'{x:g}' for x in self.point or ())})"
+        return self.selected or f"({', '.join(f'{x:g}' for x in self.point or ())})"
 
 
 class Output(CaseModel):
@@ -194,7 +186,15 @@ class Case(CaseModel):
     structure: tuple[Any, ...] = Field(default=(), description="generated blocks")
     block: tuple[BlockTable, ...] = Field(default=(), description="blocks drawn by hand")
     imperfection: tuple[Imperfection, ...] = Field(default=(), description="errors of blocks and structures")
+    ground: GroundTable | None = Field(default=None, description="one fixed block under all structures")
+    groups: dict[str, GroupMembers] = Field(
+        default={},
+        description="blocks under one name: lists of ids, patterns, other groups and tables",
+        examples=[{"front": ["left-13-*", {"structure": "right", "course": 13}]}],
+    )
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
+    pressure: tuple[Pressure, ...] = Field(default=(), description="pressure on faces: uniform, of water, of earth")
+    fill: tuple[Fill, ...] = Field(default=(), description="earth that lies on blocks")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")
     initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")
@@ -213,6 +213,19 @@ class Case(CaseModel):
         for one in self.reference:
             one.resolved_to(getattr(self.analysis, "resolution", None))
         return self
+
+    @model_validator(mode="after")
+    def _on_the_ground(self) -> Case:
+        """With a [ground], structures have no bases but those that they ask for."""
+        if self.ground is None:
+            return self
+        standing = tuple(
+            table.model_copy(update={"base": False})
+            if getattr(table, "base", False) is True and "base" not in table.model_fields_set
+            else table
+            for table in self.structure
+        )
+        return self.model_copy(update={"structure": standing})
 
     @model_validator(mode="after")
     def _vectors_of_space(self) -> Case:

@@ -11,7 +11,7 @@ import annotated_types as limits
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-MOST_NAMES = 24  # names beyond this are not listed
+MOST_NAMES = 27  # names beyond this are not listed
 # Kinds that are part of the format, but not of this version.
 FUTURE_KINDS = ("coursed-wall", "voronoi-wall")
 NUMBER_WORDS = {float: ("a number", "numbers"), int: ("an integer", "integers")}

@@ -20,7 +20,7 @@ NUMBER_LISTS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOM
 LEADING_KEYS = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
     "materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "motion", "monitor",
-    "reference",
+    "reference", "groups", "pressure", "fill",
 )  # fmt: skip
 
 
@@ -36,13 +36,20 @@ def case_text(case: Case) -> str:
         elif isinstance(value, CaseModel):
             data[key] = effective(value)
         elif isinstance(value, dict):
-            data[key] = {name: effective(table) for name, table in value.items()}
+            data[key] = {name: _plain(item) for name, item in value.items()}
         elif isinstance(value, tuple):
             data[key] = [effective(table) for table in value]
         else:
             data[key] = value
     dimensions.leave_out(data)
     return HEADER + on_one_line(tomli_w.dumps(data))
+
+
+def _plain(item: Any) -> Any:
+    """A table, or a list of tables and names, as plain values."""
+    if isinstance(item, tuple):
+        return [_plain(one) for one in item]
+    return effective(item) if isinstance(item, CaseModel) else item
 
 
 def text_of_tables(tables: Mapping[str, Any]) -> str:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
+    from dem_cli.assembly.applied_loads import AppliedLoad
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
     from dem_cli.post.scene.axonometry import Standpoint
@@ -42,11 +43,12 @@ def command(
     from dem_cli.pipeline.monitor_names import check_quantities, monitor_names
 
     loaded = load(case, overrides)
-    model = api.build_model(loaded)
+    made = api.build_assembly(loaded)
+    model = made.model
     with loaded.located():
         check_quantities(loaded.case, monitor_names(loaded.case.monitor))
     warn(loaded)
-    found = rows(loaded.case, model)
+    found = rows(loaded.case, model, made.loads)
     if loaded.case.sweep is not None:
         from dem_cli.cli.sweep import planned
 
@@ -98,7 +100,7 @@ def marks(case: Case, model: Model) -> list[tuple[str, np.ndarray]]:
     found = []
     for name, monitor in zip(monitor_names(case.monitor), case.monitor):
         if monitor.block is not None:
-            found.append((name, model.centroids[model.numbers[monitor.block]]))
+            found.append((name, model.centroids[model.chosen(monitor.block)].mean(axis=0)))
         elif monitor.point is not None:
             found.append((name, np.array(monitor.point)))
     return found
@@ -111,7 +113,7 @@ def unit(direction: Sequence[float]) -> np.ndarray:
     return np.array(direction, float) / np.hypot.reduce(np.array(direction, float))
 
 
-def rows(case: Case, model: Model) -> list[tuple[str, str]]:
+def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[tuple[str, str]]:
     """What the case is made of: label and text of each line."""
     from dem_cli.output.paraview.vertices import rest_vertices
 
@@ -126,8 +128,29 @@ def rows(case: Case, model: Model) -> list[tuple[str, str]]:
         ("size", size),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
         ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
+        *_drawn(case),
         *([("imperfections", _imperfections(case))] if case.imperfection else []),
         ("point loads", ", ".join(loads) if case.load else "none"),
+        *((str(load.path[0]), _surface_load(load)) for load in applied if load.path[0] != "load"),
+    ]
+
+
+def _surface_load(load: AppliedLoad) -> str:
+    """Where a pressure or a fill acts, its resultant and the middle of its forces."""
+    parts = (", ".join(f"{x + 0.0:.4g}" for x in vector) for vector in (load.resultant, load.centre.round(9)))
+    resultant, centre = parts
+    n_blocks = len(set(load.blocks.tolist()))
+    blocks = f"{n_blocks:,} block{'s' if n_blocks > 1 else ''}"
+    kind = "dead" if load.dead else "live"
+    return f"{kind}, on {load.area:.4g} m2 of {blocks}: [{resultant}] N in all, their middle at [{centre}] m"
+
+
+def _drawn(case: Case) -> list[tuple[str, str]]:
+    """What structures have drawn at random."""
+    from dem_cli.structures.registry import generated_figures
+
+    return [
+        (f"{table.id} {label}", text) for table in case.structure for label, text in generated_figures(table, case.seed)
     ]
 
 

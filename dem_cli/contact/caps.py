@@ -136,6 +136,11 @@ def steepest(layout: PointLayout, outline: np.ndarray) -> float:
     return max(float(each.max(initial=0.0)) for each in drawn)
 
 
+def highest(layout: PointLayout, outline: np.ndarray) -> float:
+    """Rise of the outline of the cap over a joint [m]; of layouts with ranges: the largest of many drawn ones."""
+    return max(float(half_profile(layout, (i,), outline)[1].max()) for i in range(SAMPLES))
+
+
 def odd_or_uneven(layout: PointLayout) -> ProfileFault | None:
     """Why a profile is none of a cap, which is the same on both sides of its middle; None: it is."""
     low, high = layout.sides or (1, 1)

@@ -56,6 +56,18 @@ def too_steep(between: Sequence[str], length: float, slope: float) -> ProfileFau
     )
 
 
+def too_deep(between: Sequence[str], rise: float, thickness: float) -> ProfileFault | None:
+    """Of the profile that takes this much [m] from block b, which is so thick [m] behind the joint; None: it is not."""
+    if rise < thickness:
+        return None
+    a, b = between
+    return ProfileFault(
+        "aperture",
+        f"too large for the joint of '{a}' and '{b}': it takes {rise:.3g} m from '{b}', which is {thickness:.3g} m "
+        "thick there",
+    )
+
+
 def draw(
     layout: PointLayout, key: tuple[int, ...], length: float, mirrored: bool = False
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

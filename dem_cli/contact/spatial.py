@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.caps import apothems, has_cap, odd_or_uneven, steepest
+from dem_cli.contact.caps import apothems, has_cap, highest, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
-from dem_cli.contact.layout import PointLayout, ProfileFault, too_steep
+from dem_cli.contact.layout import PointLayout, ProfileFault, too_deep, too_steep
 from dem_cli.contact.meetings import Meetings, meetings, polyhedra
 from dem_cli.contact.near_boxes import near_boxes
 from dem_cli.geometry.outlines import furthest
@@ -181,14 +181,28 @@ def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 def profile_fault(
     model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
 ) -> ProfileFault | None:
-    """Whether a cap is none that space knows, or too steep on the narrowest of these joints (n,) bool that has it."""
+    """Whether a cap is none that space knows, too steep on the narrowest of these joints (n,) bool that has it, or
+    deeper than the thinnest block."""
     found = meetings(model, faces, corners)
     has_it = among & (found.kinds == FACES) & np.array([has_cap(layout, frame[:3]) for frame in found.frames], bool)
     if fault := odd_or_uneven(layout):
         return fault
     if not has_it.any():
         return None
-    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in np.flatnonzero(has_it)}
-    k = min(outlines, key=lambda i: float(apothems(outlines[i]).min()))
-    between = [model.block_ids[i] for i in model.part_blocks[faces.parts[k]]]
-    return too_steep(between, 2.0 * float(apothems(outlines[k]).min()), steepest(layout, outlines[k]))
+    outlines = {k: found.places[found.starts[k] : found.starts[k + 1]] for k in map(int, np.flatnonzero(has_it))}
+    widths = {k: 2.0 * float(apothems(outline).min()) for k, outline in outlines.items()}
+    depths = {k: _thickness(model, corners, faces.parts[k, 1], found.frames[k, :3]) for k in outlines}
+    narrowest, thinnest = min(widths, key=widths.__getitem__), min(depths, key=depths.__getitem__)
+    flattest = min(depths, key=lambda k: depths[k] / widths[k])  # where the cap rises with the length of the joint
+
+    def between(k: int) -> list[str]:
+        return [model.block_ids[i] for i in model.part_blocks[faces.parts[k]]]
+
+    faults = [too_steep(between(narrowest), widths[narrowest], steepest(layout, outlines[narrowest]))]
+    faults += [too_deep(between(k), highest(layout, outlines[k]), depths[k]) for k in (thinnest, flattest)]
+    return next(filter(None, faults), None)
+
+
+def _thickness(model: Model, corners: np.ndarray, part: int, normal: np.ndarray) -> float:
+    """How far a part reaches along a normal [m]."""
+    return float(np.ptp(corners[model.part_starts[part] : model.part_starts[part + 1]] @ normal))

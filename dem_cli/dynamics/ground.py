@@ -24,10 +24,10 @@ class GroundMotion:
 
     def __init__(self, motions: Sequence[Motion], model: Model):
         self.dimension, self.n_dof = model.dimension, model.dead_loads.shape[1]
-        own = {
-            i: [motion for motion in motions if model.block_ids[i] in motion.blocks]
-            for i in np.flatnonzero(model.fixed).tolist()
-        }
+        named = [
+            (motion, {i for name in motion.blocks for i in model.chosen(name, True).tolist()}) for motion in motions
+        ]
+        own = {i: [motion for motion, blocks in named if i in blocks] for i in np.flatnonzero(model.fixed).tolist()}
         self.base = [motion for motion in motions if not motion.blocks]
         shared = next(iter(own.values()), [])
         if shared and all(found == shared for found in own.values()):

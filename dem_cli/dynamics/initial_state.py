@@ -14,19 +14,27 @@ from dem_cli.geometry.rotation import swept
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.model.model import Model
+    from dem_cli.tables.initial_state import InitialState
 
 
 def set_initial(case: Case, sim: Simulation) -> None:
     """Moves the blocks of all [[initial]] tables, one after the other."""
-    names, rest = sim.model.numbers, measures.largest_overlap(sim)
+    rest = measures.largest_overlap(sim)
     for table in case.initial:
-        chosen = np.array([names[name] for name in table.names])
+        chosen = _chosen(sim.model, table)
         if table.tilt:
             sim.turn(chosen, np.array(table.turn), _pivot(sim, chosen, np.array(table.turn)))
         sim.displace(chosen, np.array(table.displacement))
         sim.throw(chosen, np.array(table.velocity))
         sim.find_faces()
     _check_apart(case, sim, rest)
+
+
+def _chosen(model: Model, table: InitialState) -> np.ndarray:
+    """Numbers of the blocks that a table moves, each once."""
+    found = np.concatenate([model.chosen(name, False) for name in table.names])
+    return found[np.sort(np.unique(found, return_index=True)[1])]
 
 
 def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
@@ -41,11 +49,11 @@ def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
 
 def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
-    model, names = sim.model, sim.model.numbers
+    model = sim.model
     faces = sim.tracking.faces_within(sim.bodies, 0.0)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - sim.settings.history.inside * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
-        tables = [i for i, t in enumerate(case.initial) if {names[name] for name in t.names} & set(pair)]
+        tables = [i for i, t in enumerate(case.initial) if set(_chosen(model, t).tolist()) & set(pair)]
         if not tables:
             continue
         a, b = (model.block_ids[i] for i in pair)

@@ -48,7 +48,7 @@ class Rocking(NamedTuple):
 def reference_block(case: Case, model: Model, joints: Joints, table: DampingTable) -> RockingBlock:
     """The block that [damping] names, else the heaviest free one on a support. Raises CaseError where there is none."""
     if table.block is not None:
-        chosen = model.numbers[table.block]
+        chosen = int(model.chosen(table.block)[0])
         mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
         path, what = ("damping", "block"), f"block '{table.block}' rests on nothing"
     else:

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.dynamics.frequencies import limiting
+from dem_cli.dynamics.landing import landing
 from dem_cli.errors import CaseError, CaseProblem
 
 if TYPE_CHECKING:
@@ -21,14 +22,16 @@ class TimeStep(NamedTuple):
     limit: float  # the largest stable one, 2/ω_max [s]
     highest: float  # ω_max [rad/s]
     exact: bool  # False: ω_max is a bound above the eigenvalue
-    blocks: tuple[str, ...]  # the block that moves most in the fastest vibration, and the one across its joint
+    blocks: tuple[str, ...]  # the block that moves most in the fastest vibration, and the one across its joint, if any
+    held: bool = True  # False: no joint holds any block yet
 
     @property
     def cause(self) -> str:
         """What sets the limit, in words."""
         if not self.blocks:
-            return "no joint holds any block"
+            return "nothing can vibrate"
         named = " on ".join(f"'{name}'" for name in self.blocks)
+        named += " where it lands on a face" if len(self.blocks) == 1 else ""
         return f"{named} vibrates at {'' if self.exact else 'no more than '}{self.highest / (2 * math.pi):.4g} Hz"
 
 
@@ -39,15 +42,20 @@ def time_step(
 
     stiffer: what Maxwell elements multiply frequencies by. Dashpots do not come into it: they are implicit
     (docs/numerics.md). All contact points in the list count as
-    closed. Both times are infinite where no joint holds any block. Raises CaseError where `forced` is not stable.
+    closed; a block that no joint holds counts as lying on the face on which it vibrates fastest. Both times are
+    infinite where nothing can vibrate. Raises CaseError where `forced` is not stable.
     """
-    highest = limiting(sim)
-    limit = 2.0 / (stiffer * highest.frequency) if highest.frequency > 0.0 else math.inf
+    highest, (loose, pebble) = limiting(sim), landing(sim)
     names: tuple[str, ...] = ()
-    if highest.block >= 0:
+    if loose > highest.frequency:
+        names = (sim.model.block_ids[pebble],)
+    elif highest.block >= 0:
         a, b = sim.joints.blocks[highest.joint].tolist()
         names = tuple(sim.model.block_ids[i] for i in (highest.block, b if a == highest.block else a))
-    found = TimeStep(margin * limit, limit, highest.frequency, highest.exact, names)
+    frequency = max(highest.frequency, loose)
+    limit = 2.0 / (stiffer * frequency) if frequency > 0.0 else math.inf
+    exact = highest.exact or loose > highest.frequency
+    found = TimeStep(margin * limit, limit, frequency, exact, names, highest.frequency > 0.0)
     if forced is None:
         return found
     if forced > limit:

@@ -6,6 +6,7 @@ one instant and relative to the base: samples are (n, n_watched, 3, n_dof).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -88,10 +89,11 @@ class JointMonitors(NamedTuple):
 
 
 class PointMonitor(NamedTuple):
-    """A vector at a material point, its length or a component of it; or how far the point's block has turned."""
+    """A vector at material points, its mean over them, the length or a component of that; or how far blocks turned."""
 
     column: int
-    point: int
+    points: list[int]
+    weights: np.ndarray  # of the points in the mean, (n_points,)
     quantity: str
     component: str | None
     absolute: bool
@@ -99,13 +101,19 @@ class PointMonitor(NamedTuple):
     def fill(self, out: np.ndarray, motion: PointMotion, base: np.ndarray) -> None:
         """Its column of out (n, n_monitors)."""
         if self.quantity == "rotation":
-            vectors = motion.orientations[:, self.point]
+            vectors = self._mean(motion.orientations)
             length = angles_of(vectors)
         else:
-            vectors = getattr(motion, self.quantity)[:, self.point]
+            vectors = self._mean(getattr(motion, self.quantity))
             vectors = vectors + base[:, OF_BASE[self.quantity]] if self.absolute else vectors
             length = np.linalg.norm(vectors, axis=1)
         out[:, self.column] = length if self.component is None else vectors[:, "xyz".index(self.component)]
+
+    def _mean(self, vectors: np.ndarray) -> np.ndarray:
+        """Of vectors of all points (n, n_points, ...) over its own, (n, ...)."""
+        if len(self.points) == 1:
+            return vectors[:, self.points[0]]
+        return np.tensordot(vectors[:, self.points], self.weights, (1, 0))
 
 
 class Monitors:
@@ -125,7 +133,7 @@ class Monitors:
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
             if table.between is None:
-                self._at_points.append(self._point_monitor(column, table, found[0]))
+                self._at_points.append(self._point_monitor(column, table, found))
             else:
                 pairs += self._pairs(column, table.quantity, *found)
         self._at_joints: JointMonitors | None = None
@@ -163,10 +171,11 @@ class Monitors:
 
     def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
-        names, found = self.model.numbers, list[tuple[int, ...]]()
+        found = list[tuple[int, ...]]()
         for monitor in self.tables:
             if monitor.point is None:
-                found.append(tuple(names[name] for name in monitor.between or (monitor.block,) if name is not None))
+                chosen = [self.model.chosen(name, False) for name in monitor.between or (monitor.selected,)]
+                found.append(tuple(np.concatenate(chosen).tolist()))
             else:
                 block = block_at(self.model, np.array(monitor.point))
                 assert block is not None  # assembly/validate.py
@@ -178,10 +187,14 @@ class Monitors:
         self._places.append((block, arm))
         return len(self._places) - 1
 
-    def _point_monitor(self, column: int, table: Monitor, block: int) -> PointMonitor:
-        centroid = self.model.centroids[block]
-        arm = np.zeros(self.model.dimension) if table.point is None else np.array(table.point) - centroid
-        return PointMonitor(column, self._point(block, arm), table.quantity, table.component, table.absolute)
+    def _point_monitor(self, column: int, table: Monitor, blocks: Sequence[int]) -> PointMonitor:
+        """Of a point, or of the centroids of blocks, weighted by their masses."""
+        arm = np.zeros(self.model.dimension)
+        if table.point is not None:
+            arm = np.array(table.point) - self.model.centroids[blocks[0]]
+        masses = self.model.masses[list(blocks)]
+        points = [self._point(block, arm) for block in blocks]
+        return PointMonitor(column, points, masses / masses.sum(), table.quantity, table.component, table.absolute)
 
     def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:
         """Of one monitor: first and second point, distance, axis and the number of the monitor."""

@@ -13,7 +13,7 @@ from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import cross
 
 NOTHING = np.empty((0, 2))
-SAME_AREA = 1e-12  # relative: a hull of two polygons that is no larger than both is their union
+SAME_AREA = 1e-12  # relative: a hull of two polygons that is as large as both is their union
 
 
 def halves(shape: np.ndarray, start: np.ndarray, end: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
@@ -71,7 +71,7 @@ def union(a: np.ndarray, b: np.ndarray) -> np.ndarray | None:
     points = points[np.lexsort((points[:, 0], points[:, 1]))]
     hull = points[polygon.outline(points, polygon.ROUND_OFF * polygon.size(points))]
     whole = polygon.area(a) + polygon.area(b)
-    return hull if len(hull) > 2 and polygon.area(hull) <= whole * (1.0 + SAME_AREA) else None
+    return hull if len(hull) > 2 and abs(polygon.area(hull) - whole) <= whole * SAME_AREA else None
 
 
 def unions(parts: Sequence[np.ndarray], gap: float) -> list[np.ndarray]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.geometry import polygon
-from dem_cli.geometry.polygon import ROUND_OFF
 from dem_cli.geometry.rotation import cross
+
+ROUND_OFF = 1e-12  # relative to the size of the polygon: corners on a line; below what convex parts are checked for
 
 
 def convex_parts(corners: np.ndarray) -> list[np.ndarray]:

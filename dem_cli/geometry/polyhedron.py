@@ -105,7 +105,7 @@ def prisms(polygons: Sequence[np.ndarray], low: np.ndarray | float, high: np.nda
     for side, at in enumerate((first, first + np.repeat(counts, counts))):
         corners[at, 0], corners[at, 1], corners[at, 2] = flat[:, 0], ends[:, side], flat[:, 1]
     return [
-        Polyhedron(corners[i:j], _prism_faces(int(n))) for i, j, n in zip(starts[:-1], starts[1:], counts, strict=True)
+        Polyhedron(corners[i:j], prism_faces(int(n))) for i, j, n in zip(starts[:-1], starts[1:], counts, strict=True)
     ]
 
 
@@ -140,7 +140,11 @@ def newell(loop: np.ndarray) -> np.ndarray:
 
 
 @cache
-def _prism_faces(n: int) -> tuple[np.ndarray, ...]:
+def prism_faces(n: int) -> tuple[np.ndarray, ...]:
+    """Faces between two loops of n corners, the second after the first, that run round as a prism has them.
+
+    The n around, then the first loop, seen from outside counter-clockwise, and the second one.
+    """
     around = [np.array([(i + 1) % n, i, n + i, n + (i + 1) % n]) for i in range(n)]
     return (*around, np.arange(n), np.arange(2 * n - 1, n - 1, -1))
 

@@ -55,7 +55,14 @@ def hand_check(case: Case) -> float | None:
     None where the case is anything else: other blocks or loads, openings, a turned wall, a load that is not
     horizontal and proportional to weight.
     """
-    if len(case.structure) != 1 or case.block or case.load or not _pushed_sideways(case.analysis):
+    if (
+        len(case.structure) != 1
+        or case.block
+        or case.load
+        or case.pressure
+        or case.fill
+        or not _pushed_sideways(case.analysis)
+    ):
         return None
     wall = case.structure[0]
     if wall.kind != "wall" or not _regular(wall):

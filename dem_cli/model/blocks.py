@@ -20,6 +20,7 @@ class Block:
     thickness  depth out of plane [m]; in space 1
     across     of a generated block, that is drawn in a plane: from where to where it goes square to that in space [m];
                None: half the thickness to either side
+    mass       of the whole block [kg]; None: by the density of its material
     path       where in the case file it comes from, for error messages
     """
 
@@ -30,6 +31,7 @@ class Block:
     fixed: bool = False
     across: tuple[float, float] | None = None
     course: int = 0
+    mass: float | None = None
     path: KeyPath = field(default=(), compare=False)
 
 

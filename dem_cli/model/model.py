@@ -28,7 +28,7 @@ NO_AXES = np.zeros((0, 4))
 
 
 class ModelArrays(NamedTuple):
-    """What a model is made of, as results keep it (but for the aliases)."""
+    """What a model is made of, as results keep it (but for names of the case file)."""
 
     dimension: int  # 2 or 3
     block_ids: tuple[str, ...]  # name of each block
@@ -45,6 +45,7 @@ class ModelArrays(NamedTuple):
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
     aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
+    selections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # what the case file calls several blocks: (name, ids)
     # In space alone; in the plane they are empty, for there faces and axes follow from the corners:
     part_faces: np.ndarray = NONE  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
     face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
@@ -82,6 +83,23 @@ class Model(ModelArrays):
         """Number of each block by its name or alias; a name comes before an alias."""
         names = {name: i for i, name in enumerate(self.block_ids)}
         return names | {alias: names[name] for alias, name in self.aliases if alias not in names and name in names}
+
+    @cached_property
+    def groups(self) -> dict[str, np.ndarray]:
+        """Numbers of the blocks of each selection by its name."""
+        names = self.numbers
+        return {name: np.array([names[i] for i in ids if i in names], np.int64) for name, ids in self.selections}
+
+    def chosen(self, name: str | None, fixed: bool | None = None) -> np.ndarray:
+        """Numbers of the blocks that a name in the case file stands for; none where there is no such name.
+
+        fixed: of several, those that are supports alone, or (False) those that can move, where there are any.
+        """
+        if name in self.numbers:
+            return np.array([self.numbers[name]], np.int64)
+        found = self.groups.get(name or "", NONE)
+        kept = found if fixed is None else found[self.fixed[found] == fixed]
+        return kept if len(kept) else found
 
     @cached_property
     def vertex_blocks(self) -> np.ndarray:

@@ -25,7 +25,9 @@ class MotionTable(CaseModel):
         default=(1.0, 0.0), description="of positive values, in 3D any in space; its length does not matter [-]"
     )
     blocks: tuple[str, ...] = Field(
-        default=(), description="ids of the fixed blocks that move; default: all of them", examples=[["ground"]]
+        default=(),
+        description="ids of the fixed blocks that move, patterns, groups; default: all of them",
+        examples=[["ground"]],
     )
     start: NonNegative = Field(default=0.0, description="time at which it begins [s]")
     event: Name | None = Field(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from dem_cli.engine import measures
@@ -17,12 +19,13 @@ class SettlementWay:
     """Supports move evenly, look by look; stations on the way are kept, so that one can go back.
 
     motion    whole movement of every block, zero but for the settling supports [m, rad], (n_blocks, n_dof)
+    path      movement at a share of the way, where it is not that share of the whole: of supports that turn together
     done      looks so far, of `rows`
     standing, failing   where it was last seen to come to rest, and to fail, with the supports held
     """
 
-    def __init__(self, sim: Simulation, motion: np.ndarray):
-        self.sim, settlement = sim, sim.settings.settlement
+    def __init__(self, sim: Simulation, motion: np.ndarray, path: Callable[[float], np.ndarray] | None = None):
+        self.sim, self.path, settlement = sim, path, sim.settings.settlement
         self.rows, self.done = settlement.rows, 0
         d, n_turns = sim.model.dimension, sim.model.inertias.shape[1]
         reach = np.column_stack([np.ones((len(motion), d)), *[sim.shape.radii] * n_turns])
@@ -44,6 +47,9 @@ class SettlementWay:
 
     def go_on(self, budget: Budget) -> None:
         """The supports move on until the next look."""
+        if self.path is not None:
+            way = self.path((self.done + 1) / self.rows) - self.path(self.done / self.rows)
+            self.sim.move_supports(way / self.chunk)
         self.sim.advance(self.chunk, slot.HOLD_LOAD)
         budget.spend(self.chunk, "moving the supports")
         check_finite(self.sim)

@@ -86,6 +86,10 @@ class Arch(StructureBase):
         "faces [m]",
         examples=[1.5],
     )
+    base: bool = Field(
+        True,
+        description="fixed blocks below the piers or behind the springings; false: other blocks are below it",
+    )
 
     @property
     def piers(self) -> Pier | None:
@@ -103,6 +107,8 @@ class Arch(StructureBase):
         SHAPE_JOINTS[self.shape](self)
         if self.piers:
             _check_piers(self, self.piers)
+        if not self.base and self.base_extension:
+            raise KeyProblem("not used without base", "base_extension")
         return self
 
 
@@ -218,6 +224,8 @@ def build(arch: Arch) -> list[Block]:
 
 def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
     """The two fixed blocks: below a pier as wide as it, or behind a springing joint, square to it."""
+    if not arch.base:
+        return []
     blocks = []
     for side, (inner, outer) in (("left", joints[0]), ("right", joints[-1])):
         sign = -1.0 if side == "left" else 1.0

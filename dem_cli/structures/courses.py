@@ -73,8 +73,8 @@ def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequ
     """
     pieces = _as_repeated(pattern, span, length, anchor)
     if len({unit.length for unit in pattern.units}) > 1 or pattern.units[0].header:
-        pieces = _closers(pieces, length)
-        pieces = _mirrored(_closers(_mirrored(pieces), length))
+        pieces = _closers(pieces, length, below)
+        pieces = _mirrored(_closers(_mirrored(pieces), length, [-x for x in below]))
     pieces = _closed(pieces, length, below)
     return _mirrored(_closed(_mirrored(pieces), length, [-x for x in below]))
 
@@ -102,7 +102,7 @@ def _mirrored(pieces: Sequence[Piece]) -> list[Piece]:
     return [Piece(-piece.end, -piece.start, piece.header) for piece in reversed(pieces)]
 
 
-def _closers(pieces: list[Piece], length: float) -> list[Piece]:
+def _closers(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
     """With a quarter block at the left end: after the header beside it, as queen closers are, not at the very end."""
     if len(pieces) < 3:
         return pieces
@@ -112,6 +112,8 @@ def _closers(pieces: list[Piece], length: float) -> list[Piece]:
     if not fits or not header.header or abs(header.end - header.start - 0.5 * length) > small:
         return pieces
     joint = quarter.start + 0.5 * length
+    if below and _clearance(joint, below) < 0.1 * length:
+        return pieces
     return [Piece(quarter.start, joint, True), Piece(joint, header.end, True), *pieces[2:]]
 
 
@@ -162,21 +164,32 @@ def are_through(share: float, count: int, course: int) -> list[bool]:
     return (np.diff(steps) > 0.0).tolist()
 
 
-def rubble(span: Span, levels: Span, size: float, course: int) -> list[np.ndarray]:
+def rubble(span: Span, levels: Span, size: float, course: int, below: Sequence[float]) -> list[np.ndarray]:
     """Stones of unequal lengths with inclined head joints, of that mean length [m]: convex shapes (4, 2).
 
-    They look irregular and are always the same.
+    They look irregular and are always the same. below: upper ends of the head joints below [m], of which theirs keep
+    clear.
     """
     low, high = span
     count = max(1, round((high - low) / size))
     spread = _scattered(count, 7 * course + 1) * 0.6 + 0.7
     joints = low + (high - low) * np.cumsum(spread)[:-1] / spread.sum()
     slope = (_scattered(count, 11 * course + 5)[1:] - 0.5) * 0.2 * size
-    feet, heads = np.concatenate([[low], joints - slope, [high]]), np.concatenate([[low], joints + slope, [high]])
+    feet = np.array([_clear(x, below, 0.12 * size) for x in joints - slope])
+    heads = feet + 2.0 * slope
+    feet, heads = np.concatenate([[low], feet, [high]]), np.concatenate([[low], heads, [high]])
     bottom, top = levels
     return [
         np.array([[feet[i], bottom], [feet[i + 1], bottom], [heads[i + 1], top], [heads[i], top]]) for i in range(count)
     ]
+
+
+def _clear(x: float, others: Sequence[float], reach: float) -> float:
+    """A place [m], moved aside where one of the others is closer than reach."""
+    nearest = min(others, key=lambda other: abs(other - x), default=np.inf)
+    if abs(nearest - x) >= reach:
+        return x
+    return nearest + (reach if x > nearest else -reach)
 
 
 def _scattered(count: int, start: int) -> np.ndarray:

@@ -6,22 +6,18 @@ so that walls that meet pass through each other in alternate courses.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from dem_cli.case.base import CaseModel, Positive
-from dem_cli.geometry import cuts
-from dem_cli.geometry.polygon import rectangle
-from dem_cli.geometry.polyhedron import prism
-from dem_cli.model.blocks import Block
 from dem_cli.structures import courses, tops
-from dem_cli.structures.courses import Piece, Span
-from dem_cli.structures.openings import BoxHole, Opening
-from dem_cli.structures.stones import Part, Stone, put_together
+from dem_cli.structures.course_layout import CoursePlan
+from dem_cli.structures.courses import Span
+from dem_cli.structures.openings import Opening
+from dem_cli.structures.voids import Void
 
 LEAVES = "abc"  # names of leaves, from the front (y = −thickness / 2) to the back
 CORE_LEAF = "b"
@@ -66,6 +62,7 @@ class Masonry:
     quoins: Quoins | None = None
     quoin_courses: int = 0  # the lowest ones have quoins; gables do without
     openings: Sequence[Opening] = ()
+    fit_rings: bool = True  # whether outer corners of arches are drawn to bed joints close by
     top: tops.Profile | None = None
 
     def pattern(self, k: int) -> courses.Pattern:
@@ -97,174 +94,20 @@ class Masonry:
             at = [-half, -self.core.thickness / 2.0, self.core.thickness / 2.0, half]
         return list(zip(at[:-1], at[1:], strict=True))
 
+    def plan(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> CoursePlan:
+        """Course k, with quoins and openings in its way, above these head joints."""
+        low, high = self.levels_of(k)
+        stops = [x for void in voids for x in void.stops(low, high, self.small)]
+        stops += [] if self.top is None else tops.stops(self.top, low, high)
+        length, pattern = self.block_length(k), self.pattern(k)
+        return CoursePlan(low, high, self.spans[k], taken, length, pattern, self.anchor, stops, below)
+
+    def full(self, k: int) -> float:
+        """Area of a full block of course k [m2]."""
+        low, high = self.levels_of(k)
+        return self.block_length(k) * (high - low)
+
     @property
     def small(self) -> float:
         """What is narrower is not made [m]."""
         return SMALL * min(self.length, float(np.diff(self.levels).min()))
-
-
-def masonry_blocks(masonry: Masonry) -> list[Block]:
-    """Blocks of a wall in its elevation, with the depth that they have in space as `across`.
-
-    Names: "<course>-<number>", in leaves of their own "<course>-<number>a" (front), "b", "c"; "quoin-left-<number>",
-    "quoin-right-<number>"; "lintel-<opening>", "arch-<opening>-<number>". What is cut to less than a quarter of a block
-    is one with its neighbour.
-    """
-    stones = put_together(list(_cut_stones(masonry)), masonry.small)
-    named = [*_named(stones), *_over_openings(masonry)]
-    shapes = iter(cuts.welded([part.shape for _, stone in named for part in stone.parts], WELD * masonry.length))
-    return [_block(name, stone, [next(shapes) for _ in stone.parts], masonry) for name, stone in named]
-
-
-def _block(name: str, stone: Stone, shapes: Sequence[np.ndarray], masonry: Masonry) -> Block:
-    depths = {part.across for part in stone.parts}
-    others: dict[str, Any] = {"thickness": masonry.thickness, "course": stone.course}
-    if depths == {masonry.whole}:
-        return Block(name, tuple(shapes), stone.material, **others)
-    if len(depths) == 1:
-        return Block(name, tuple(shapes), stone.material, across=depths.pop(), **others)
-    solids = (prism(shape, *part.across) for shape, part in zip(shapes, stone.parts, strict=True))
-    return Block(name, tuple(solids), stone.material, **others)
-
-
-def _named(stones: Sequence[Stone]) -> Iterator[tuple[str, Stone]]:
-    """Stones by course, from left to right; those that go through count in every leaf and are named as in the first."""
-    by_course: dict[int, list[Stone]] = {}
-    for stone in stones:
-        if stone.name:
-            yield stone.name, stone
-        else:
-            by_course.setdefault(stone.course, []).append(stone)
-    for course in sorted(by_course):
-        ordered = sorted(by_course[course], key=lambda stone: tuple(np.round(stone.box[:2], 9)))
-        leaves = sorted({stone.leaf for stone in ordered} - {""}) or [""]
-        for leaf in leaves:
-            for n, stone in enumerate([stone for stone in ordered if stone.leaf in ("", leaf)]):
-                if stone.leaf == leaf or leaf == leaves[0]:
-                    yield f"{course}-{n + 1}{stone.leaf}", stone
-
-
-def _over_openings(masonry: Masonry) -> Iterator[tuple[str, Stone]]:
-    """Lintels and voussoirs."""
-    for i, opening in enumerate(masonry.openings):
-        if opening.lintel and opening.lintel_box:
-            x0, y0, x1, y1 = opening.lintel_box
-            part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), masonry.whole)
-            yield f"lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
-        for n, shape in enumerate(opening.voussoirs):
-            assert opening.arch is not None
-            yield f"arch-{i + 1}-{n + 1}", Stone(0, (Part(shape, masonry.whole),), 0.0, material=opening.arch.material)
-
-
-def _cut_stones(masonry: Masonry) -> Iterator[Stone]:
-    """Stones of all courses, with what openings and the top of the wall leave of each."""
-    holes = [hole for opening in masonry.openings for hole in opening.holes]
-    for stone in _stones(masonry):
-        x0, y0, x1, y1 = stone.box
-        shapes = uncut = [part.shape for part in stone.parts]
-        for hole in holes:
-            left, low, right, high = hole.box
-            if left < x1 and x0 < right and low < y1 and y0 < high:
-                shapes = [piece for shape in shapes for piece in hole.left_of(shape, masonry.small)]
-        if masonry.top is not None:
-            shapes = [piece for shape in shapes for piece in tops.below(shape, masonry.top, masonry.small)]
-        cut = len(shapes) != len(uncut) or any(a is not b for a, b in zip(shapes, uncut, strict=True))
-        groups = cuts.connected(shapes, masonry.small) if cut else [list(range(len(shapes)))]
-        for group in groups:
-            yield stone._replace(parts=tuple(Part(shapes[i], stone.parts[0].across) for i in group))
-
-
-def _stones(masonry: Masonry) -> Iterator[Stone]:
-    """Stones of all courses, uncut, and quoins."""
-    taken = _quoin_spans(masonry)
-    yield from _quoins(masonry, taken)
-    below: list[float] = []
-    for k, spans in enumerate(masonry.spans):
-        gaps = [span for (_, course), span in taken.items() if course == k] + _crossed(masonry, k)
-        obstacles = [] if masonry.bond == "stack" else below
-        pieces = [
-            courses.laid(masonry.pattern(k), part, masonry.block_length(k), masonry.anchor, obstacles)
-            for span in spans
-            for part in courses.without(span, gaps, masonry.small)
-        ]
-        yield from _in_leaves(masonry, k, pieces)
-        below = [x for run in pieces for piece in run for x in (piece.start, piece.end)]
-
-
-def _crossed(masonry: Masonry, k: int) -> list[Span]:
-    """Where openings and lintels take the whole height of course k: there it begins and ends."""
-    low, high = masonry.levels_of(k)
-    slack = masonry.small
-    boxes = [hole.box for opening in masonry.openings for hole in opening.holes if isinstance(hole, BoxHole)]
-    return [(x0, x1) for x0, y0, x1, y1 in boxes if y0 <= low + slack and y1 >= high - slack]
-
-
-def _quoin_spans(masonry: Masonry) -> dict[tuple[str, int], Span]:
-    """(end and number of the quoin, course) -> from where to where it goes."""
-    quoins, found = masonry.quoins, {}
-    if quoins is None:
-        return {}
-    for k, spans in enumerate(masonry.spans[: masonry.quoin_courses]):
-        n = k // quoins.height
-        length = quoins.length / (1.0 + n % 2)
-        group = [
-            other
-            for other in masonry.spans[n * quoins.height : min((n + 1) * quoins.height, masonry.quoin_courses)]
-            if other
-        ]
-        if not spans or spans[-1][1] - spans[0][0] < 2.0 * length:
-            continue
-        start, end = min(other[0][0] for other in group), max(other[-1][1] for other in group)
-        found[f"left-{n + 1}", k] = (spans[0][0], start + length)
-        found[f"right-{n + 1}", k] = (end - length, spans[-1][1])
-    return found
-
-
-def _quoins(masonry: Masonry, taken: dict[tuple[str, int], Span]) -> Iterator[Stone]:
-    assert masonry.quoins is not None or not taken
-    for name in dict.fromkeys(name for name, _ in taken):
-        own = {k: span for (other, k), span in taken.items() if other == name}
-        boxes = [(span, masonry.levels_of(k)) for k, span in own.items()]
-        shapes = cuts.unions([rectangle(x0, y0, x1 - x0, y1 - y0) for (x0, x1), (y0, y1) in boxes], masonry.small)
-        parts = tuple(Part(shape, masonry.whole) for shape in shapes)
-        first = min(own)
-        material = masonry.quoins.material if masonry.quoins else ""
-        yield Stone(first + 1, parts, _full(masonry, first), material=material, name=f"quoin-{name}")
-
-
-def _full(masonry: Masonry, k: int) -> float:
-    """Area of a full block of course k [m2]."""
-    low, high = masonry.levels_of(k)
-    return masonry.block_length(k) * (high - low)
-
-
-def _in_leaves(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]]) -> Iterator[Stone]:
-    """Stones of course k: pieces through the whole wall, or side by side in its leaves, with a core between them."""
-    low, high = masonry.levels_of(k)
-    full = _full(masonry, k)
-    through = iter(courses.are_through(masonry.through_stones, sum(map(len, runs)), k))
-    for run in runs:
-        whole = [next(through) or (piece.header and masonry.leaves > 1) for piece in run]
-        for piece, is_whole in zip(run, whole, strict=True):
-            shape = rectangle(piece.start, low, piece.end - piece.start, high - low)
-            if is_whole or masonry.leaves == 1:
-                yield Stone(k + 1, (Part(shape, masonry.whole),), full)
-                continue
-            for leaf, across in zip(LEAVES, masonry.depths, strict=False):
-                if masonry.core is None or leaf != CORE_LEAF:
-                    yield Stone(k + 1, (Part(shape, across),), full, leaf)
-        if masonry.core is not None:
-            yield from _in_core(masonry, k, [p for p, is_whole in zip(run, whole, strict=True) if not is_whole])
-
-
-def _in_core(masonry: Masonry, k: int, pieces: Sequence[Piece]) -> Iterator[Stone]:
-    """Rubble between the faces, where they do not touch."""
-    assert masonry.core is not None
-    size = masonry.core.size or masonry.block_length(k) / 2.0
-    low, high = masonry.levels_of(k)
-    starts = [piece.start for i, piece in enumerate(pieces) if not i or pieces[i - 1].end != piece.start]
-    ends = [piece.end for i, piece in enumerate(pieces, 1) if i == len(pieces) or pieces[i].start != piece.end]
-    for span in zip(starts, ends, strict=True):
-        for shape in courses.rubble(span, (low, high), size, k):
-            part = Part(shape, masonry.depths[1])
-            yield Stone(k + 1, (part,), size * (high - low), CORE_LEAF, masonry.core.material)

@@ -99,9 +99,11 @@ def corner_blocks(blocks: Sequence[Block]) -> dict[str, str]:
     free = [block for block in blocks if not block.fixed]
     if not free:
         return {}
-    corners = [np.concatenate([corners_of(part) for part in block.parts]) for block in free]
+    corners = [  # of blocks in space as seen from -y
+        np.concatenate([corners_of(part)[:, [0, -1]] for part in block.parts]) for block in free
+    ]
     owner = np.repeat(np.arange(len(free)), [len(own) for own in corners])
-    vertices = np.concatenate(corners)[:, [0, -1]]  # of blocks in space as seen from -y
+    vertices = np.concatenate(corners)
     first = np.searchsorted(owner, np.arange(len(free)))
     low, high = np.minimum.reduceat(vertices, first), np.maximum.reduceat(vertices, first)
     foot, extent = low.min(axis=0), np.ptp(vertices, axis=0)

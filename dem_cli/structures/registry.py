@@ -7,7 +7,10 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, column, imported, wall
+from dem_cli.structures import arch, bridge, building, column, drums, imported, temple_front, wall
+from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
+from dem_cli.structures.vaults import shapes as vaults
+from dem_cli.structures.vaults.table import Vault
 
 
 class Generator(NamedTuple):
@@ -16,6 +19,7 @@ class Generator(NamedTuple):
     kind: str  # as in the case file
     parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
     build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
+    figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
 
 
 GENERATORS: dict[str, Generator] = {
@@ -24,6 +28,15 @@ GENERATORS: dict[str, Generator] = {
         Generator("wall", wall.Wall, wall.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
+        Generator("bridge", bridge.Bridge, bridge.build),
+        Generator("drums", drums.DrumColumn, drums.build),
+        Generator("temple-front", temple_front.TempleFront, temple_front.build),
+        Generator("vault", Vault, vaults.build),
+        Generator("voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures),
+        Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
+        Generator("herringbone-wall", herringbone_wall.HerringboneWall, herringbone_wall.build),
+        Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
+        Generator("building", building.Building, building.build),
         Generator("import", imported.Import, imported.build),
     )
 }
@@ -32,3 +45,8 @@ GENERATORS: dict[str, Generator] = {
 def generated_blocks(table: StructureBase, seed: int) -> list[Block]:
     """Blocks of a structure, in local places; seed: of the case. Raises ValueError where it is impossible."""
     return GENERATORS[table.kind].build(table.drawn_from(seed))  # type: ignore[attr-defined]
+
+
+def generated_figures(table: StructureBase, seed: int) -> list[tuple[str, str]]:
+    """What a structure drew at random: label and text of each line; seed: of the case."""
+    return GENERATORS[table.kind].figures(table.drawn_from(seed))  # type: ignore[attr-defined]

@@ -51,6 +51,14 @@ def cuts_off(profile: Profile, shape: np.ndarray, gap: float) -> bool:
     return left < polygon.area(shape) - gap * polygon.size(shape)
 
 
+def stops(profile: Profile, low: float, high: float) -> list[float]:
+    """Where a profile has corners in a course, or meets one of its bed joints [m]."""
+    found = [x for x, y in profile.tolist() if low <= y <= high]
+    for (x0, y0), (x1, y1) in zip(profile[:-1].tolist(), profile[1:].tolist(), strict=True):
+        found += [x0 + (y - y0) / (y1 - y0) * (x1 - x0) for y in (low, high) if (y0 < y) != (y1 < y)]
+    return found
+
+
 def below(shape: np.ndarray, profile: Profile, gap: float) -> list[np.ndarray]:
     """Convex pieces of a convex polygon that lie below a profile; beside its ends that is level."""
     low, high = shape[:, 0].min(), shape[:, 0].max()

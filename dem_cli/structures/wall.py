@@ -13,7 +13,8 @@ from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
 from dem_cli.structures.bases import base_block
 from dem_cli.structures.courses import HEADER_BONDS
-from dem_cli.structures.masonry import Core, Masonry, Quoins, masonry_blocks
+from dem_cli.structures.masonry import Core, Masonry, Quoins
+from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
@@ -77,7 +78,7 @@ class Wall(StructureBase):
         0.0,
         ge=0.0,
         le=1.0,
-        description="share of the stones of a face that go through all leaves, evenly spaced",
+        description="share of the stones of a face that go through all leaves, evenly spaced [-]",
         examples=[0.2],
     )
     core: Core | None = Field(
@@ -221,7 +222,7 @@ def _check_top(wall: Wall) -> None:
     top = _top(wall)
     for i, opening in enumerate(wall.openings if top is not None else ()):
         gap = NARROWEST_PIECE * opening.width
-        if any(tops.cuts_off(top, shape, gap) for shape in opening.solids):  # type: ignore[arg-type]
+        if any(tops.cuts_off(top, shape, gap) for shape in opening.void.solids):  # type: ignore[arg-type]
             raise KeyProblem("reaches above the top of the wall there", "openings", i)
 
 

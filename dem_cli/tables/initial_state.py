@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, Twist, Vector
+from dem_cli.case.base import KeyProblem, Twist, Vector
+from dem_cli.case.selection import Selection
 
 TOWARDS_LEFT = (0.0, -1.0, 0.0)  # axis of a tilt towards −x, which is counter-clockwise in the plane of x and z
 
 
-class InitialState(CaseModel):
-    """[[initial]]: how blocks start, once the structure has come to rest."""
+class InitialState(Selection):
+    """[[initial]]: how blocks start, once the structure has come to rest; several are moved as one."""
 
-    block: str | None = Field(default=None, description="id of a block that can move", examples=["column-1"])
+    needs_blocks: ClassVar[bool] = False
+
     blocks: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
         default=None,
-        description="instead of block: ids of several, which are moved as one",
+        description="instead of block: several ids, patterns and groups",
         examples=[["column-7", "column-8"]],
     )
     tilt: float = Field(
@@ -44,8 +46,9 @@ class InitialState(CaseModel):
 
     @model_validator(mode="after")
     def _someone(self) -> InitialState:
-        if (self.block is None) == (self.blocks is None):
-            found = "'block' and 'blocks' are" if self.block else "neither 'block' nor 'blocks' is"
+        if (self.selected is None) == (self.blocks is None):
+            given = "structure" if self.structure else "block"
+            found = f"'{given}' and 'blocks' are" if self.blocks else "neither 'block' nor 'blocks' is"
             raise ValueError(f"{found} given; one of them says what moves")
         if not (self.tilt or any(self.displacement) or any(self.velocity)):
             raise ValueError("nothing moves; give tilt, displacement or velocity")
@@ -66,5 +69,5 @@ class InitialState(CaseModel):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Ids of all blocks that it moves."""
-        return self.blocks if self.blocks is not None else (self.block or "",)
+        """What the blocks that it moves are called."""
+        return self.blocks if self.blocks is not None else (self.selected or "",)

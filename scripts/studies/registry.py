@@ -15,6 +15,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "loads": ("studies.loads.study", "failure loads by limit analysis and by DEM"),
     "motions": ("studies.motions", "artificial accelerograms and response spectra"),
     "motion_in_space": ("studies.motion_in_space.study", "blocks that move in space: exact motions, twins, structures"),
+    "paper001": ("studies.paper001.study", "paper 001: walls of regular, Voronoi and coursed stones, a stone house"),
     "profile": ("studies.profile", "the moment that a joint with a profile carries"),
     "pulses": ("studies.pulses.study", "published pulse tests of a column and two arches"),
     "random_structures": (

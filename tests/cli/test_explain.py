@@ -96,4 +96,4 @@ def test_words_that_people_use(words, path, explain):
 
 
 def test_words_as_they_are_typed(explain):
-    assert explain("Earth pressure")[1].startswith("[[load]]")
+    assert explain("Earth pressure")[1].startswith("[[pressure]]")

@@ -79,3 +79,14 @@ def test_profiles_that_no_cap_has(profile, key, why):
     found = profile_problems(made.case, made.model)
     assert [problem.path for problem in found] == ([("joints", "dry", "profile", key)] if key else [])
     assert all(why in problem.message for problem in found)
+
+
+@pytest.mark.parametrize(("thick", "deep"), [(0.005, False), (0.003, True)])
+def test_a_cap_deeper_than_its_block(thick, deep):
+    """Nothing would be left of the block there, and the other block would come out on the far side of it."""
+    case = block_on_cap()
+    case["block"][1] = box("block", (0.0, 0.0, 0.0), (WIDE, DEEP, thick))
+    made = scene(case)
+    found = profile_problems(made.case, made.model)
+    assert [problem.path for problem in found] == ([("joints", "dry", "profile", "aperture")] if deep else [])
+    assert all(f"takes 0.004 m from 'block', which is {thick:g} m thick there" in each.message for each in found)

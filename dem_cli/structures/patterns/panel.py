@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns.short_edges import collapsed, drawn_onto, sides_of
-from dem_cli.structures.patterns.tiling import SAME, Box, Tiling, merged, without_holes
+from dem_cli.structures.patterns.tiling import SAME, Tiling, merged, without_holes
 
 LEAST_SHARE = 0.25  # of the mean stone: what is smaller becomes part of a neighbour
 
@@ -19,11 +19,11 @@ class WallPanel(NamedTuple):
     """What is to be filled with stones.
 
     outline  convex, counter-clockwise, its lowest side level [m], (n, 2)
-    holes    left, bottom, right and top of what is left out [m]: openings, lintels, stones that others lay
+    holes    convex, counter-clockwise: what is left out, openings, lintels, stones that others lay [m], each (n, 2)
     """
 
     outline: np.ndarray
-    holes: tuple[Box, ...] = ()
+    holes: tuple[np.ndarray, ...] = ()
 
     @property
     def area(self) -> float:
@@ -31,9 +31,14 @@ class WallPanel(NamedTuple):
         return polygon.area(self.outline)
 
 
-def rectangular(length: float, height: float, holes: Sequence[Box] = ()) -> WallPanel:
-    """The panel of a wall from its lower left corner [m]."""
-    return WallPanel(polygon.rectangle(0.0, 0.0, length, height), tuple(holes))
+def rectangular(length: float, height: float, boxes: Sequence[Sequence[float]] = ()) -> WallPanel:
+    """The panel of a wall from its lower left corner, with rectangular holes [left, bottom, right, top] [m]."""
+    return WallPanel(polygon.rectangle(0.0, 0.0, length, height), tuple(_rectangle(box) for box in boxes))
+
+
+def _rectangle(box: Sequence[float]) -> np.ndarray:
+    x0, y0, x1, y1 = box
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], float)
 
 
 def fitted(tiling: Tiling, panel: WallPanel, mean: float, shortest: float) -> Tiling:
@@ -48,8 +53,7 @@ def fitted(tiling: Tiling, panel: WallPanel, mean: float, shortest: float) -> Ti
     tiling = without_holes(tiling, panel.holes)
     if not tiling.stones:
         return tiling
-    boxes = [polygon.rectangle(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in panel.holes]
-    tiling = collapsed(tiling, shortest * side, sides_of([panel.outline, *boxes]))
+    tiling = collapsed(tiling, shortest * side, sides_of([panel.outline, *panel.holes]))
     return merged(tiling, LEAST_SHARE * mean)
 
 
@@ -60,7 +64,7 @@ def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[
     """
     parts = [tiling.parts(k) for k in range(len(tiling.stones))]
     middles = np.array([_middle(each) for each in parts])
-    step = SAME * float(np.ptp(tiling.corners, axis=0).max())
+    step = SAME * polygon.size(tiling.corners)
     sideways, up = np.rint(middles / step).T
     courses = np.array(tiling.courses)
     order = np.lexsort((sideways, np.where(courses > 0, 0.0, up), courses))

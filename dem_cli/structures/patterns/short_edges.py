@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.geometry import polygon
 from dem_cli.geometry.decomposition import is_simple
-from dem_cli.structures.patterns.tiling import SAME, Box, Loop, Tiling, around
+from dem_cli.structures.patterns.tiling import SAME, Loop, Tiling, around
 
 Sides = np.ndarray  # straight sides of the region and of its holes: both ends of each [m], (n, 2, 2)
 
@@ -33,7 +33,7 @@ def collapsed(tiling: Tiling, shortest: float, sides: Sides) -> Tiling:
     Corners on a side of the region stay on it, its own corners stay where they are. Ends that cannot be one (on two
     sides, or a stone would turn inside out) are left as they are. Stones that lose their area are gone.
     """
-    gap = SAME * float(np.ptp(tiling.corners, axis=0).max())
+    gap = SAME * polygon.size(tiling.corners)
     on = on_sides(tiling.corners, sides, gap)
     short = _short_edges(tiling, shortest)
     while True:
@@ -52,29 +52,38 @@ def collapsed(tiling: Tiling, shortest: float, sides: Sides) -> Tiling:
     return Tiling(places[used], stones, [tiling.courses[k] for k in kept])
 
 
-def drawn_onto(tiling: Tiling, holes: Sequence[Box], reach: float, sides: Sides) -> Tiling:
+def drawn_onto(tiling: Tiling, holes: Sequence[np.ndarray], reach: float, sides: Sides) -> Tiling:
     """The stones with corners closer than `reach` [m] to a side of a hole moved onto it: no slivers along openings."""
-    gap = SAME * float(np.ptp(tiling.corners, axis=0).max())
+    gap = SAME * polygon.size(tiling.corners)
     on = on_sides(tiling.corners, sides, gap)
     places = tiling.corners.copy()
-    for left, bottom, right, top in holes:
-        low, high = np.array([left, bottom]), np.array([right, top])
-        near = ((places >= low - reach) & (places <= high + reach)).all(axis=1)
-        for axis, value in ((0, left), (0, right), (1, bottom), (1, top)):
-            close = near & (np.abs(places[:, axis] - value) < reach)
-            places[close, axis] = value
-    moved = (places != tiling.corners).any(axis=1)
-    off = moved & (on & ~on_sides(places, sides, gap)).any(axis=1)
+    for hole in holes:
+        for start, end in sides_of([hole]):
+            places = _drawn_onto_side(places, start, end, reach)
+    off = (places != tiling.corners).any(axis=1) & (on & ~on_sides(places, sides, gap)).any(axis=1)
     places[off] = tiling.corners[off]
     while True:
         changed = (places != tiling.corners).any(axis=1)
-        wrong = [
-            loop for loop in tiling.stones if changed[list(loop)].any() and not is_simple(_strict(places[list(loop)]))
-        ]
+        wrong = [loop for loop in tiling.stones if changed[list(loop)].any() and not is_simple(places[list(loop)])]
         if not wrong:
             return Tiling(places, tiling.stones, tiling.courses)
         back = sorted({i for loop in wrong for i in loop})
         places[back] = tiling.corners[back]
+
+
+def _drawn_onto_side(places: np.ndarray, start: np.ndarray, end: np.ndarray, reach: float) -> np.ndarray:
+    """Points near a side moved onto it, those near one of its ends to that end."""
+    along, arms = end - start, places - start
+    length = float(np.hypot(*along))
+    share = np.clip((arms @ along) / length**2, 0.0, 1.0)
+    share[share * length < reach] = 0.0
+    share[(1.0 - share) * length < reach] = 1.0
+    feet = np.where((share == 1.0)[:, None], end, start + share[:, None] * along)
+    for axis in (0, 1):
+        if start[axis] == end[axis]:
+            feet[:, axis] = start[axis]
+    near: np.ndarray = np.hypot(*(places - feet).T) < reach
+    return np.where(near[:, None], feet, places)
 
 
 def _short_edges(tiling: Tiling, shortest: float) -> list[tuple[int, int]]:
@@ -135,11 +144,6 @@ def _bent(places: np.ndarray, before: Sequence[Loop], after: Sequence[Loop], tar
     for old, new in zip(before, after, strict=True):
         if not moved[list(old)].any() or not new:
             continue
-        if len(set(new)) < len(new) or not is_simple(_strict(places[list(new)])):
+        if len(set(new)) < len(new) or not is_simple(places[list(new)]):
             wrong |= set(old)
     return wrong
-
-
-def _strict(outline: np.ndarray) -> np.ndarray:
-    """An outline without the corners on its straight sides."""
-    return polygon.simplified(outline)

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dem_cli.geometry import polygon
-from dem_cli.geometry.decomposition import convex_parts
+from dem_cli.geometry.decomposition import ROUND_OFF, convex_parts
 
 Loop = tuple[int, ...]  # numbers of the corners around a stone, counter-clockwise
-Box = tuple[float, float, float, float]  # left, bottom, right, top [m]
 SAME = 1e-9  # relative to the region: closer points are one
 
 
@@ -43,10 +42,10 @@ class Tiling:
 
     def parts(self, k: int) -> tuple[np.ndarray, ...]:
         """Convex parts of a stone, corners on straight sides left out."""
-        outline = self.outline(k)
-        if not polygon.is_convex(outline):
-            return tuple(polygon.simplified(outline[part]) for part in convex_parts(outline))
-        return (polygon.simplified(outline),)
+        outline = polygon.simplified(self.outline(k), ROUND_OFF)
+        if polygon.is_convex(outline):
+            return (outline,)
+        return tuple(outline[part] for part in convex_parts(outline))
 
     def edges(self) -> dict[tuple[int, int], int]:
         """The stone to the left of each edge, from corner to corner."""
@@ -102,89 +101,124 @@ def _outline(loops: Sequence[Loop]) -> Loop | None:
     return tuple(outline) if len(outline) == len(free) else None
 
 
-def without_holes(tiling: Tiling, holes: Sequence[Box]) -> Tiling:
-    """What holes leave of the stones: a stone around one corner of a hole stays one, others fall apart."""
+def without_holes(tiling: Tiling, holes: Sequence[np.ndarray]) -> Tiling:
+    """What convex holes (n, 2) leave of the stones; one around a single corner of a hole stays whole."""
     for hole in holes:
-        tiling = _Cut(tiling, hole).rest()
+        tiling = _Cut(tiling, hole).outside()
     return tiling
 
 
+def within(tiling: Tiling, outline: np.ndarray) -> Tiling:
+    """What of the stones lies in a convex outline (n, 2)."""
+    return _Cut(tiling, outline).inside()
+
+
 class _Cut:
-    """One hole being cut out; new corners are made once for both stones at an edge."""
+    """Stones cut by the sides of a convex polygon; new corners are made once for both stones at an edge."""
 
-    def __init__(self, tiling: Tiling, hole: Box):
-        self.tiling, self.hole = tiling, hole
+    def __init__(self, tiling: Tiling, shape: np.ndarray):
+        self.tiling, self.shape = tiling, shape
+        self.ends = np.roll(shape, -1, axis=0)
         self.corners = list(tiling.corners)
-        self.new: dict[tuple[int, int, int], int] = {}  # (edge, side of the hole) -> corner
+        self.new: dict[tuple[int, int, int], int] = {}  # (edge, side of the polygon) -> corner
         self.on_edge: dict[tuple[int, int], list[int]] = defaultdict(list)
-        self.gap = SAME * float(np.abs(np.ptp(tiling.corners, axis=0)).max())
+        self.gap = SAME * polygon.size(tiling.corners)
+        arms = tiling.corners[:, None] - shape
+        self.left = _left_of(self.ends - shape, arms, self.gap)  # of each corner from each side [m], (n, n_sides)
 
-    def rest(self) -> Tiling:
-        stones: list[Loop] = []
-        courses: list[int] = []
+    def outside(self) -> Tiling:
+        """The stones without what lies in the polygon."""
+        return self._whole([self._without(k) for k in range(len(self.tiling.stones))])
+
+    def inside(self) -> Tiling:
+        """What of the stones lies in the polygon."""
+        found: list[list[Loop]] = []
         for k in range(len(self.tiling.stones)):
-            pieces = self._stone(k)
-            stones += pieces
-            courses += [self.tiling.courses[k]] * len(pieces)
-        loops = [self._with_new_corners(loop) for loop in stones]
-        return Tiling(np.array(self.corners), loops, courses)
+            pieces = []
+            for part in self._parts(k):
+                for side in range(len(self.shape)):
+                    part = self._half(part, side, 1.0)
+                pieces += [part] if part else []
+            found.append(united([self._with_new_corners(piece) for piece in pieces]))
+        return self._whole(found)
 
-    def _stone(self, k: int) -> list[Loop]:
+    def _whole(self, pieces: Sequence[list[Loop]]) -> Tiling:
+        courses = [course for course, some in zip(self.tiling.courses, pieces, strict=True) for _ in some]
+        loops = [self._with_new_corners(loop) for some in pieces for loop in some]
+        idle = self._idle(loops)
+        return Tiling(np.array(self.corners), [tuple(i for i in loop if i not in idle) for loop in loops], courses)
+
+    def _idle(self, loops: Sequence[Loop]) -> set[int]:
+        """New corners on straight edges at which no third edge ends."""
+        neighbours: dict[int, set[int]] = {i: set() for i in range(len(self.left), len(self.corners))}
+        for loop in loops:
+            for i, j in around(loop):
+                for here, there in ((i, j), (j, i)):
+                    if here >= len(self.left):
+                        neighbours[here].add(there)
+        return {
+            i
+            for i, others in neighbours.items()
+            if len(others) == 2 and np.hypot(*(self.shape - self.corners[i]).T).min() > self.gap
+        }
+
+    def _parts(self, k: int) -> list[Loop]:
         loop, outline = self.tiling.stones[k], self.tiling.outline(k)
-        left, bottom, right, top = self.hole
-        low, high = outline.min(axis=0), outline.max(axis=0)
-        gap = self.gap
-        if low[0] >= right - gap or high[0] <= left + gap or low[1] >= top - gap or high[1] <= bottom + gap:
+        if polygon.is_convex(outline):
+            return [loop]
+        return [tuple(loop[i] for i in part) for part in convex_parts(outline)]
+
+    def _without(self, k: int) -> list[Loop]:
+        loop = self.tiling.stones[k]
+        if (self.left[list(loop)].max(axis=0) <= 0.0).any():
             return [loop]
         pieces = []
-        for part in (
-            [loop] if polygon.is_convex(outline) else [tuple(loop[i] for i in p) for p in convex_parts(outline)]
-        ):
-            pieces += self._around_hole(part)
-        return pieces if self._corners_inside(outline) > 1 else united(pieces)
+        for part in self._parts(k):
+            rest = part
+            for side in range(len(self.shape)):
+                pieces.append(self._half(rest, side, -1.0))
+                rest = self._half(rest, side, 1.0)
+        pieces = [self._with_new_corners(piece) for piece in pieces if piece]
+        outline = self.tiling.outline(k)
+        inside = sum(_strictly_inside(outline, corner, self.gap) for corner in self._sharp_corners())
+        return pieces if inside > 1 else united(pieces)
 
-    def _corners_inside(self, outline: np.ndarray) -> int:
-        left, bottom, right, top = self.hole
-        corners = np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
-        return sum(_strictly_inside(outline, corner, self.gap) for corner in corners)
+    def _sharp_corners(self) -> np.ndarray:
+        """Corners of the polygon where it turns by more than 60°."""
+        along = self.ends - self.shape
+        along = along / np.hypot(*along.T)[:, None]
+        return self.shape[(along * np.roll(along, 1, axis=0)).sum(axis=1) < 0.5]
 
-    def _around_hole(self, loop: Loop) -> list[Loop]:
-        """Convex pieces of a convex part: left and right of the hole at full height, the rest below and above it."""
-        left, bottom, right, top = self.hole
-        found, middle = [], loop
-        for side, axis, value, sign in ((0, 0, left, 1), (1, 0, right, -1), (2, 1, bottom, 1), (3, 1, top, -1)):
-            piece = self._half(middle, side, axis, value, -sign)
-            middle = self._half(middle, side, axis, value, sign)
-            if piece:
-                found.append(piece)
-            if not middle:
-                break
-        return found
-
-    def _half(self, loop: Loop, side: int, axis: int, value: float, sign: int) -> Loop:
-        """The piece of a convex loop where sign (x - value) > 0; (): none."""
-        if not loop:
-            return ()
-        away = sign * (np.array([self.corners[i][axis] for i in loop]) - value)
-        away[np.abs(away) <= self.gap] = 0.0
-        if away.max() <= 0.0:
+    def _half(self, loop: Loop, side: int, sign: float) -> Loop:
+        """The piece of a convex loop to the left (1) or the right (-1) of a side of the polygon; (): none."""
+        away = [sign * self._away(i, side) for i in loop]
+        if not loop or max(away) <= 0.0:
             return ()
         kept: list[int] = []
-        for k, i in enumerate(loop):
-            j, here, there = loop[(k + 1) % len(loop)], away[k], away[(k + 1) % len(loop)]
+        for i, j, here, there in zip(loop, (*loop[1:], loop[0]), away, (*away[1:], away[0]), strict=True):
             if here >= 0.0:
                 kept.append(i)
             if here * there < 0.0:
-                kept.append(self._crossing(i, j, side, axis, value))
+                kept.append(self._crossing(i, j, side))
         return tuple(kept)
 
-    def _crossing(self, i: int, j: int, side: int, axis: int, value: float) -> int:
+    def _away(self, i: int, side: int) -> float:
+        """How far a corner lies to the left of a side [m]; 0 on its line."""
+        if i < len(self.left):
+            return float(self.left[i, side])
+        start, along = self.shape[side], self.ends[side] - self.shape[side]
+        return float(_left_of(along[None], (self.corners[i] - start)[None, None], self.gap)[0, 0])
+
+    def _crossing(self, i: int, j: int, side: int) -> int:
         i, j = min(i, j), max(i, j)
         key = (i, j, side)
         if key not in self.new:
             a, b = self.corners[i], self.corners[j]
-            point = a + (value - a[axis]) / (b[axis] - a[axis]) * (b - a)
-            point[axis] = value
+            here, there = self._away(i, side), self._away(j, side)
+            point = a + here / (here - there) * (b - a)
+            for axis in (0, 1):  # exactly on sides along an axis
+                if self.shape[side, axis] == self.ends[side, axis]:
+                    point[axis] = self.shape[side, axis]
             self.new[key] = len(self.corners)
             self.corners.append(point)
             self.on_edge[i, j].append(self.new[key])
@@ -194,9 +228,8 @@ class _Cut:
         """The loop with all corners that were made on its edges."""
         found: list[int] = []
         for i, j in around(loop):
-            found.append(i)
             between = self._all_between(min(i, j), max(i, j))
-            found += between if i < j else between[::-1]
+            found += [i, *(between if i < j else between[::-1])]
         return tuple(found)
 
     def _all_between(self, i: int, j: int) -> list[int]:
@@ -210,6 +243,13 @@ class _Cut:
             inner = self._all_between(min(a, b), max(a, b))
             found += [*(inner if a < b else inner[::-1]), b]
         return found[:-1]
+
+
+def _left_of(along: np.ndarray, arms: np.ndarray, gap: float) -> np.ndarray:
+    """How far points lie to the left of lines [m]: directions (m, 2), arms from a point of each line (n, m, 2)."""
+    away = (along[:, 0] * arms[:, :, 1] - along[:, 1] * arms[:, :, 0]) / np.hypot(*along.T)
+    found: np.ndarray = np.where(np.abs(away) <= gap, 0.0, away)
+    return found
 
 
 def _strictly_inside(outline: np.ndarray, point: np.ndarray, gap: float) -> bool:

@@ -1,4 +1,4 @@
-"""Voronoi patterns: rubble and polygonal masonry as cells of random seeds, relaxed (Lloyd 1982), in an outline."""
+"""Voronoi patterns: rubble and polygonal masonry as cells of random seeds, relaxed (Lloyd 1982), in a convex shape."""
 
 from __future__ import annotations
 

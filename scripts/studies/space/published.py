@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from dem_cli import api
+from dem_cli.case.overrides import Override, override_of
 from studies.places import CASES
-from studies.solution import from_file
 from studies.space.measure import dem, limits
 
 FILE = CASES / "validation" / "lemos_wall.toml"
@@ -20,7 +20,9 @@ PATTERNS = {  # length of blocks and offset [m]: what a prototype of this solver
 }
 
 
-RIGID = ('joints.dry.kn="auto"', 'joints.dry.ks="auto"')
+START = {"analysis.kinematics": "fixed", "analysis.follow": 0.0, "analysis.resolution": 0.002}  # geometry of the start
+STEPS_THAT_GROW = Override("analysis.step", ("analysis", "step"), None)
+RIGID = {"joints.dry.kn": "auto", "joints.dry.ks": "auto"}
 
 
 def measure() -> list[dict[str, Any]]:
@@ -28,9 +30,10 @@ def measure() -> list[dict[str, Any]]:
     rows = []
     for (length, offset), prototype in PATTERNS.items():
         keys = {"block": [length, 1.0], "blocks_per_course": round(20.0 / length), "offset": offset}
-        pattern = [f"structure.0.{key}={value}" for key, value in keys.items()]
-        for joints, changes in (("given", ()), ("stiff", RIGID)):
-            loaded = from_file(FILE, *pattern, *changes)
+        pattern = {f"structure.0.{key}": value for key, value in keys.items()}
+        for joints, changes in (("given", {}), ("stiff", RIGID)):
+            wanted = (override_of(*one) for one in (pattern | START | changes).items())
+            loaded = api.load_case(FILE, [*wanted, STEPS_THAT_GROW])
             case, model = loaded.case, api.build_model(loaded)
             name = f"{length:g} × 1 m, offset {offset:g} m, {joints} joints"
             rows.append({"name": name, "prototype": prototype} | dem(case, model) | limits(case, model))

@@ -17,7 +17,7 @@ def said(**tables):
     case = spatial_case(**{"structure": [WALL], **tables})
     made = assembly(case)
     found = validate.problems(case, made.model, made.blocks) or sanity.problems(case, made.model)
-    found = [*found, *sanity.doubts(case, made.model, made.blocks)]
+    found = [*found, *sanity.doubts(case, made.model, made.blocks, made.loads)]
     return [f"{'.'.join(map(str, p.path))}: {p.message}" for p in found] + validate.warnings(made.model)
 
 

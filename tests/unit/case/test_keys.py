@@ -93,7 +93,7 @@ def test_names_of_the_user_and_lists_are_seen():
         ("friction", ["joints.NAME.friction", "analysis.perturb.friction"]),
         ("structure.arch.thickness", ["structure.thickness"]),
         ("structure.0.openings.1.width", ["structure.openings.width"]),
-        ("openings.width", ["structure.openings.width"]),
+        ("openings.width", ["structure.openings.width", "structure.walls.openings.width"]),
         ("[[structure]]", ["structure"] * len(GENERATORS)),
         ("joints.barton", ["joints.NAME"]),
         ("barton", ["joints.NAME"]),

@@ -247,10 +247,17 @@ def test_a_forced_step_above_the_limit_is_refused():
     assert f"{limit:.4g} s" in str(seen.value)
 
 
-def test_no_joint_no_limit():
+def test_a_block_that_flies_limits_the_step_by_where_it_may_land():
+    """It has a step before it has a joint: that of lying on the face on which it vibrates fastest."""
     ground = block("ground", rectangle(-1, -1, 3, 0), fixed=True)
-    sim = simulation(tables(ground, block("flies", rectangle(0, 1, 1, 2))))
+    flies = block("flies", rectangle(0, 1.5, 0.1, 1.55))
+    sim = simulation(tables(ground, flies, joints=joint(1e9)))
     found = time_step(sim)
-    assert (found.step, found.limit, found.blocks) == (math.inf, math.inf, ())
-    assert found.cause == "no joint holds any block"
+    exact = math.sqrt(max(sway(0.1, 0.05, 1e8, 1e8, 10.0)[1], sway(0.05, 0.1, 5e7, 5e7, 10.0)[1]))
+    assert found.limit == pytest.approx(2.0 / exact, rel=1e-9)
+    assert not found.held
+    assert found.cause == f"'flies' where it lands on a face vibrates at {exact / (2.0 * math.pi):.4g} Hz"
     assert lowest(sim, 3).mechanisms == 3
+    rests = simulation(tables(ground, block("rests", rectangle(0, 0, 1, 1)), flies, joints=joint(1e9)))
+    assert (time_step(rests).limit, time_step(rests).blocks) == (found.limit, ("flies",))
+    assert time_step(rests).held

@@ -10,7 +10,8 @@ from engine import block, scene, simulation, tables
 from scipy.spatial.transform import Rotation
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.frequencies import modes, system
+from dem_cli.dynamics.frequencies import limiting, modes, system
+from dem_cli.dynamics.landing import landing
 from dem_cli.dynamics.rocking_stiffness import turn_sideways
 from dem_cli.engine.properties import joint_properties
 from dem_cli.model.scales import smallest_edge
@@ -92,3 +93,19 @@ def test_rocking_stiffness_in_any_plan(angle):
     ).joints
     sways = 2.0 * 2000.0 * 9.81 * (1.5 / 0.5) ** 2 / 1e9
     assert turn_sideways(made.model, joints) == pytest.approx(sways, rel=1e-6)
+
+
+@pytest.mark.parametrize("turn", [Rotation.identity(), TILTED])
+def test_a_block_lands_as_it_would_stand(turn):
+    """On the largest face, whatever the direction: as fast as where that face lies on a base."""
+    joints = {"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8}}
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    far = block("base", (corners - [0.5, 0.5, 9.0]).tolist(), fixed=True)
+    flat = SIDES[[1, 2, 0]]  # it lies on 0.8 m x 1.5 m
+    loose = simulation({"dimension": 3, **tables(far, block("b", turn.apply(corners * flat).tolist()), joints=joints)})
+    base = block("base", (corners * [9, 9, 1] - [4, 4, 1]).tolist(), fixed=True)
+    lies = simulation({"dimension": 3, **tables(base, block("b", (corners * flat).tolist()), joints=joints)})
+    frequency, which = landing(loose)
+    assert frequency == pytest.approx(limiting(lies).frequency, rel=1e-9)
+    assert loose.model.block_ids[which] == "b"
+    assert landing(lies) == (0.0, -1)

@@ -1,0 +1,95 @@
+"""Pieces of surfaces: segments in the plane (2, 2), convex polygons in space (n, 3), cut by half-spaces and integrated.
+
+A half-space is normal · x <= offset. One text for both dimensions: a polygon stays in its plane whatever cuts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dem_cli.geometry.polyhedron import newell
+
+ON_PLANE = 1e-12  # of the size of a piece: so close to a plane a corner lies on it
+GAUSS = 0.5 / np.sqrt(3.0)  # of a segment, from its middle: two points are exact for cubics
+
+
+def kept(piece: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
+    """What of a piece lies in a half-space; (0, d): nothing. Sutherland and Hodgman (1974)."""
+    heights = piece @ normal - offset
+    heights[np.abs(heights) <= ON_PLANE * np.ptp(piece, axis=0).sum()] = 0.0
+    if (heights <= 0.0).all():
+        return piece
+    if (heights >= 0.0).all():
+        return piece[:0]
+    after = np.roll(heights, -1)
+    following = np.roll(piece, -1, axis=0)
+    crossing = heights * after < 0.0
+    if len(piece) == 2:
+        crossing[1] = False  # there is one way between two ends
+    share = np.where(crossing, heights / np.where(crossing, heights - after, 1.0), 0.0)
+    cuts = piece + share[:, np.newaxis] * (following - piece)
+    both = np.stack([piece, cuts], axis=1).reshape(-1, piece.shape[1])
+    return both[np.column_stack([heights <= 0.0, crossing]).ravel()]
+
+
+def inside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """What of a piece lies in all half-spaces; (0, d): nothing."""
+    for normal, offset in zip(normals, offsets, strict=True):
+        piece = kept(piece, normal, offset)
+        if not len(piece):
+            break
+    return piece
+
+
+def outside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> Iterator[np.ndarray]:
+    """What of a piece does not lie in all half-spaces together, in convex pieces."""
+    for normal, offset in zip(normals, offsets, strict=True):
+        beyond = kept(piece, -normal, -offset)
+        if len(beyond):
+            yield beyond
+        piece = kept(piece, normal, offset)
+        if not len(piece):
+            return
+
+
+def measure(piece: np.ndarray) -> float:
+    """Length of a segment [m], area of a polygon [m²]; 0 of nothing."""
+    if len(piece) < piece.shape[1]:
+        return 0.0
+    return float(np.linalg.norm(piece[1] - piece[0] if piece.shape[1] == 2 else newell(piece)))
+
+
+def quadrature(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, d) and weights (n,) [m, m²] whose sums are the integrals of polynomials of second degree, exactly.
+
+    Two points of Gauss on a segment, the middles of the sides of each triangle from the first corner of a polygon.
+    """
+    if piece.shape[1] == 2:
+        middle, along = piece.mean(axis=0), piece[1] - piece[0]
+        return middle + np.outer([-GAUSS, GAUSS], along), np.full(2, 0.5 * np.hypot(*along))
+    a, b, c = np.broadcast_arrays(piece[0], piece[1:-1], piece[2:])
+    areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return 0.5 * np.concatenate([a + b, b + c, c + a]), np.tile(areas / 3.0, 3)
+
+
+def shadow(normals: np.ndarray, offsets: np.ndarray, level: float = 1e-9) -> tuple[np.ndarray, np.ndarray]:
+    """Half-spaces of all that lies in or under a convex body, which is within the half-spaces given.
+
+    Up is the last axis. Faces that look up or sideways stay; each pair of one that looks up and one that looks down
+    gives an upright plane (Fourier and Motzkin: the height between them is not negative). level: |normal| of a
+    vertical component that counts as none.
+    """
+    up = normals[:, -1]
+    down, rising = np.flatnonzero(up < -level), np.flatnonzero(up > level)
+    i, j = (each.ravel() for each in np.meshgrid(rising, down))
+    planes = normals[i] * -up[j, np.newaxis] + normals[j] * up[i, np.newaxis]
+    heights = offsets[i] * -up[j] + offsets[j] * up[i]
+    lengths = np.linalg.norm(planes, axis=1)
+    upright = lengths > level
+    rest = np.flatnonzero(up >= -level)
+    return (
+        np.concatenate([planes[upright] / lengths[upright, np.newaxis], normals[rest]]),
+        np.concatenate([heights[upright] / lengths[upright], offsets[rest]]),
+    )

@@ -1,0 +1,184 @@
+"""Blocks of a building: elevations of its walls set up on their axes, cut where they meet askew, floors, the base."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dem_cli.geometry import polyhedron
+from dem_cli.geometry.halfspaces import behind_all
+from dem_cli.geometry.polyhedron import Polyhedron
+from dem_cli.model.blocks import Block
+from dem_cli.structures.building.elevation import Elevation, Pocket, Stone
+from dem_cli.structures.building.floors import Slab, floors_of
+from dem_cli.structures.building.plan import Axis, Junction, Plan, plan_of
+from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
+from dem_cli.structures.building.table import Building
+
+WELD = 1e-12  # of the size of a building: coordinates that close are the same, but for round-off
+ASKEW = 1e-9  # of the thickness: an end that is cut askew
+
+Planes = list[tuple[np.ndarray, float]]
+
+
+def build(building: Building) -> list[Block]:
+    """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
+    plan = plan_of(building)
+    floors = floors_of(building, plan)
+    passes = _passes(plan, floors.pockets)
+    elevations = [
+        _elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))
+    ]
+    walls = [block for each in elevations for block in _set_up(each)]
+    blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
+    return _welded(blocks)
+
+
+def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
+    """Which wall passes in each course: in turn, but none through a wall on whose other face a floor bears there."""
+    held = {
+        (id(junction), pocket.course): 1 - junction.of(wall)
+        if pocket.across[1] <= pocket.across[0]
+        else junction.of(wall)
+        for wall, found in pockets.items()
+        for junction in plan.met(wall)
+        for pocket in found
+        if _behind(plan, wall, junction, pocket)
+    }
+
+    def passes(junction: Junction, course: int) -> int:
+        return held.get((id(junction), course), turn_by_turn(junction, course))
+
+    return passes
+
+
+def _behind(plan: Plan, wall: int, junction: Junction, pocket: Pocket) -> bool:
+    """Whether a wall that ends at this one would come out in a pocket on its other face."""
+    mine = junction.of(wall)
+    other, end = junction.walls[1 - mine], junction.ends[1 - mine]
+    low, high = plan.zone(wall, junction)
+    if junction.ends[mine] or not end or pocket.right <= low or pocket.left >= high:
+        return False
+    right, left = plan.axes[wall].faces.tolist()
+    side = plan.towards(other, wall, -end)
+    return pocket.across[0] > right if side > 0 else pocket.across[1] < left
+
+
+def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> Elevation:
+    """What a wall is laid from, courses of a gable above the others."""
+    table = building.walls[wall]
+    courses = [each.courses or building.courses for each in building.walls]
+    levels = building.levels[: courses[wall] + 1]
+    eaves = float(levels[-1])
+    if table.gable is not None:
+        count = max(1, round(table.gable.height / building.block[1]))
+        levels = np.concatenate([levels, eaves + table.gable.height * np.arange(1, count + 1) / count])
+
+    def present(other: int, course: int) -> bool:
+        return course < courses[other]
+
+    runs = [runs_of(plan, wall, course, present, passes) for course in range(len(levels) - 1)]
+    return Elevation(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
+
+
+def _set_up(elevation: Elevation) -> list[Block]:
+    """Blocks of a wall in the places of the plan."""
+    stones = elevation.stones()
+    boxes = np.array([box for stone in stones for box in stone.boxes])
+    x0, z0, x1, z1 = boxes[:, :4].T
+    corners = np.stack([x0, z0, x1, z0, x1, z1, x0, z1], axis=1).reshape(-1, 4, 2)
+    solids = iter(polyhedron.prisms(list(corners), boxes[:, 4], boxes[:, 5]))
+    to_plan = _turn(elevation.axis)
+    blocks = []
+    for stone in stones:
+        parts = [next(solids) for _ in stone.boxes]
+        planes = _planes(elevation, stone)
+        if planes:
+            parts = [part for part in (behind_all(part, planes) for part in parts) if part is not None]
+        material = stone.material or elevation.table.material
+        blocks.append(Block(stone.name, tuple(map(to_plan, parts)), material, course=stone.course))
+    return blocks
+
+
+def _planes(elevation: Elevation, stone: Stone) -> Planes:
+    """Planes that a stone is cut along: ends of its run that are askew, slopes of a gable."""
+    axis, found = elevation.axis, []
+    for line, sign in ((stone.start, -1.0), (stone.stop, 1.0)):
+        if line is not None and abs(line[1] - line[0]) > ASKEW * axis.thickness:
+            right, left = axis.faces
+            normal = sign * np.array([left - right, line[0] - line[1], 0.0])
+            normal /= np.linalg.norm(normal)
+            found.append((normal, float(normal @ [line[0], right, 0.0])))
+    if max(box[3] for box in stone.boxes) > elevation.eaves and stone.course:
+        found += elevation.roof_planes()
+    return found
+
+
+def _turn(axis: Axis) -> Callable[[Polyhedron], Polyhedron]:
+    """From coordinates of a wall to those of the plan."""
+
+    def turned(solid: Polyhedron) -> Polyhedron:
+        x, y, z = solid.vertices.T
+        flat = axis.start + x[:, None] * axis.along + y[:, None] * axis.across
+        return Polyhedron(np.column_stack([flat, z]), solid.faces)
+
+    return turned
+
+
+def _slab(slab: Slab) -> Block:
+    return Block(slab.name, (upright(slab.outline, slab.low, slab.high),), slab.material, mass=slab.mass)
+
+
+def upright(outline: np.ndarray, low: float, high: float) -> Polyhedron:
+    """A prism over an outline in plan (n, 2), counter-clockwise, from one height to another."""
+    solid = polyhedron.prism(outline[::-1], low, high)  # drawn in x and z, from y to y
+    x, up, y = solid.vertices.T
+    return Polyhedron(np.column_stack([x, y, up]), tuple(face[::-1] for face in solid.faces))
+
+
+def _base(building: Building, elevations: Sequence[Elevation]) -> list[Block]:
+    """The fixed blocks below."""
+    depth, beyond = building.base_depth, building.base_extension
+    if building.base == "none":
+        return []
+    footprints = {each.axis.name: _footprint(each, beyond) for each in elevations}
+    if building.base == "slab":
+        corners = np.concatenate(list(footprints.values()))
+        (x0, y0), (x1, y1) = corners.min(axis=0), corners.max(axis=0)
+        footprints = {"": np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])}
+    return [
+        Block(f"base-{name}".strip("-"), (upright(outline, -depth, 0.0),), "", fixed=True)
+        for name, outline in footprints.items()
+    ]
+
+
+def _footprint(elevation: Elevation, beyond: float) -> np.ndarray:
+    """Corners of the ground below a wall and so far beyond it [m], (4, 2)."""
+    axis = elevation.axis
+    (low, high), (right, left) = elevation.span, axis.faces
+    local = np.array(
+        [
+            [low - beyond, right - beyond],
+            [high + beyond, right - beyond],
+            [high + beyond, left + beyond],
+            [low - beyond, left + beyond],
+        ]
+    )
+    return axis.start + local @ np.stack([axis.along, axis.across])
+
+
+def _welded(blocks: Sequence[Block]) -> list[Block]:
+    """The same with coordinates that differ by round-off made the same number: faces that touch share it."""
+    parts = [part for block in blocks for part in block.parts]
+    points = np.concatenate([part.vertices for part in parts])
+    gap = WELD * float(np.ptp(points, axis=0).max())
+    for axis in range(3):
+        values, back = np.unique(points[:, axis], return_inverse=True)
+        first = np.concatenate([[True], np.diff(values) > gap])
+        points[:, axis] = values[first][np.cumsum(first) - 1][back]
+    pieces = iter(np.split(points, np.cumsum([len(part.vertices) for part in parts])[:-1]))
+    return [
+        replace(block, parts=tuple(Polyhedron(next(pieces), part.faces) for part in block.parts)) for block in blocks
+    ]

@@ -1,0 +1,1 @@
+"""Vaults: barrel, groin and dome."""

@@ -1,0 +1,170 @@
+"""Groin (cross) vaults: two barrels over a bay that meet in its diagonal planes, on four corners.
+
+The second barrel is the first one stretched by the ratio of the spans, so that the groins are plane: corners of both
+webs on a groin are the same points. One eighth is drawn; the rest is its mirror images, exact to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.case.base import KeyProblem
+from dem_cli.geometry.frusta import frustum, skewed
+from dem_cli.geometry.polyhedron import Polyhedron, box, hull
+from dem_cli.model.blocks import Block
+from dem_cli.structures.arch import Pier
+from dem_cli.structures.vaults.profile import arch_of, symmetric_joints
+from dem_cli.structures.vaults.table import Vault
+
+EIGHT = 8  # corners of a piece between two joints and two heads
+Place = Callable[[np.ndarray], np.ndarray]
+SIDES = ("south", "north", "west", "east")
+CORNERS = {"sw": (-1.0, -1.0), "se": (1.0, -1.0), "ne": (1.0, 1.0), "nw": (-1.0, 1.0)}
+
+
+class Bay(NamedTuple):
+    """What the webs of a groin vault have in common; a web is drawn as the northern one of a square bay."""
+
+    joints: np.ndarray  # of the profile [inner, outer], x and z, (voussoirs + 1, 2, 2)
+    stretch: float  # of y against x
+    half: float  # from the middle to the edge, along x [m]
+
+
+def build_groin(vault: Vault) -> list[Block]:
+    """Blocks in local places: fixed ones, piers, stones astride the groins, webs."""
+    section = arch_of(vault)
+    joints = symmetric_joints(section)
+    joints[..., 1] += vault.piers.height if vault.piers else 0.0
+    span = vault.span or 0.0
+    bay = Bay(joints, (vault.length or span) / span, float(joints[-1, 1, 0]))
+    return [*_feet(vault, bay), *_stones(vault, bay)]
+
+
+def _stones(vault: Vault, bay: Bay) -> Iterator[Block]:
+    """Stones of the webs and astride their groins, from the springings up."""
+    n = len(bay.joints) - 1
+    stone = 2.0 * bay.half / vault.rows
+    for k in sorted(range(n), key=lambda k: (min(k, n - 1 - k), k)):
+        course = min(k + 1, n - k)
+        edges = _heads(bay, k, stone, odd=course % 2 == 0)
+        pieces = [_piece(bay, k, low, high) for low, high in zip([None, *edges[:-1]], edges, strict=True)]
+        inner = vault.groins == "mitred"
+        for side in SIDES:
+            own = pieces if inner else pieces[1:]
+            for number, piece in enumerate(own, 1):
+                yield Block(f"{side}-{k + 1}-{number}", (_placed(piece, bay, side),), "", course=course)
+        if not inner:
+            yield from _astride(bay, pieces[0], k, course)
+
+
+def _astride(bay: Bay, piece: np.ndarray, k: int, course: int) -> Iterator[Block]:
+    """Stones that turn the corner: two pieces; four of the keystones make the boss."""
+    n = len(bay.joints) - 1
+    if 2 * k + 1 == n:
+        yield Block("boss", tuple(_placed(piece, bay, side) for side in SIDES), "", course=course)
+    elif 2 * k + 1 > n:  # right of the middle: the piece of the northern web that meets the eastern one
+        for name, (x, y) in CORNERS.items():
+            parts = tuple(_solid(turned(piece) * [x, y, 1.0]) for turned in (_along_y(bay), _along_x(bay)))
+            yield Block(f"{name}-{n - k}", parts, "", course=course)
+
+
+def _heads(bay: Bay, k: int, stone: float, odd: bool) -> list[float]:
+    """Distances from the middle of the heads of voussoir k in a web, along x of the square bay, up to its edge [m].
+
+    What is left towards the groin is at least a quarter of a stone long.
+    """
+    groin = float(np.abs(bay.joints[k : k + 2, :, 0]).max())
+    places = bay.half - stone * (np.arange(int(bay.half / stone) + 1) + (0.5 if odd else 1.0))
+    inner = places[places >= groin + stone / 4.0 * (1.0 - 1e-9)]
+    return [*sorted(inner.tolist()), bay.half]
+
+
+def _piece(bay: Bay, k: int, low: float | None, high: float) -> np.ndarray:
+    """Corners of voussoir k of the northern web of a square bay, from low (None: the groin) to high, (n, 3)."""
+    (inner, outer), (next_inner, next_outer) = bay.joints[k : k + 2]
+    face = np.array([inner, outer, next_outer, next_inner])
+    if low is None and 2 * k + 2 == len(bay.joints):  # the keystone goes to the middle of the bay
+        face = np.array([inner, [0.0, inner[1]], next_inner, next_outer, [0.0, outer[1]], outer])
+    starts = np.abs(face[:, 0]) if low is None else np.full(len(face), low)
+    ends = np.full(len(face), high)
+    return np.concatenate([np.column_stack([face[:, 0], y, face[:, 1]]) for y in (starts, ends)])
+
+
+def _placed(piece: np.ndarray, bay: Bay, side: str) -> Polyhedron:
+    """A piece of the northern web in its place in another one; voussoirs count from the west or from the south."""
+    return _solid(
+        {
+            "north": lambda: _along_y(bay)(piece),
+            "south": lambda: _along_y(bay)(piece) * [1.0, -1.0, 1.0],
+            "east": lambda: _along_x(bay)(piece),
+            "west": lambda: _along_x(bay)(piece) * [-1.0, 1.0, 1.0],
+        }[side]()
+    )
+
+
+def _along_y(bay: Bay) -> Place:
+    return lambda piece: piece * [1.0, bay.stretch, 1.0]
+
+
+def _along_x(bay: Bay) -> Place:
+    return lambda piece: piece[:, [1, 0, 2]] * [1.0, bay.stretch, 1.0]
+
+
+def _solid(piece: np.ndarray) -> Polyhedron:
+    """The polyhedron of a piece; that of a keystone at the groin has points within its edges."""
+    return hull(piece) if len(piece) > EIGHT else frustum(*np.split(piece, 2))
+
+
+def _feet(vault: Vault, bay: Bay) -> Iterator[Block]:
+    """Fixed blocks and piers at the corners, from below."""
+    (inner, outer), s = bay.joints[-1], bay.stretch
+    foot = np.array([[inner[0], inner[0], inner[1]], [outer[0], outer[0], outer[1]], [inner[0], outer[0], inner[1]]])
+    feet = [_along_y(bay)(foot), _along_x(bay)(foot)]  # below the piece of each web
+    down = np.array([0.0, 0.0, -vault.thickness])
+    courses: list[tuple[Polyhedron, ...]] = []
+    if vault.piers:
+        low = np.array([inner[0], s * inner[0]])
+        courses = _pier(vault.piers, low, feet, outer[0] * np.array([1.0, s]))
+        ground = box([*low, -vault.thickness], [*(low + vault.piers.width), 0.0])
+        base: tuple[Polyhedron, ...] = (ground,)
+    else:
+        base = tuple(skewed(face, down) for face in feet)
+    for name, signs in CORNERS.items():
+        if vault.base:
+            yield Block(f"base-{name}", mirrored(base, signs), "", fixed=True)
+        for k, parts in enumerate(courses, 1):
+            material = vault.piers.material if vault.piers else ""
+            yield Block(f"{name}-pier-{k}", mirrored(parts, signs), material, course=k)
+
+
+def _pier(pier: Pier, low: np.ndarray, feet: list[np.ndarray], outer: np.ndarray) -> list[tuple[Polyhedron, ...]]:
+    """Courses of a pier at the corner (+x, +y); the uppermost one is cut to the feet of both webs."""
+    least = float((outer - low).max())
+    if pier.width < least * (1.0 - 1e-9):
+        message = f"{pier.width:g} is not allowed; must be at least {least:g}, as the springing of the webs"
+        raise KeyProblem(message, "piers", "width")
+    high, levels = low + pier.width, pier.height * np.arange(pier.courses + 1) / pier.courses
+    courses: list[tuple[Polyhedron, ...]]
+    courses = [(box([*low, a], [*high, b]),) for a, b in zip(levels[:-1], levels[1:], strict=True)]
+    top, floor = float(feet[0][:, 2].max()), float(levels[-2])
+    if top > pier.height:
+        parts = [frustum(face * [1.0, 1.0, 0.0] + [0.0, 0.0, floor], face) for face in feet]
+        beside = ((outer[0], low[1], high[0], high[1]), (low[0], outer[1], outer[0], high[1]))
+        small = 1e-9 * pier.width
+        parts += [
+            box([x0, y0, floor], [x1, y1, top]) for x0, y0, x1, y1 in beside if x1 - x0 > small and y1 - y0 > small
+        ]
+        courses[-1] = tuple(parts)
+    return courses
+
+
+def mirrored(parts: tuple[Polyhedron, ...], signs: tuple[float, float]) -> tuple[Polyhedron, ...]:
+    """Polyhedra at (+x, +y) in the corner of these signs; mirrored ones have their faces turned round."""
+    flip = signs[0] * signs[1] < 0.0
+    return tuple(
+        Polyhedron(part.vertices * [*signs, 1.0], tuple(face[::-1] for face in part.faces) if flip else part.faces)
+        for part in parts
+    )

@@ -1,0 +1,36 @@
+"""Study of paper 001: walls of three kinds."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from studies.paper001 import walls
+from studies.study import StudyRunner
+
+
+class PaperStudy(StudyRunner):
+    """Sections that are measured one by one and shown together."""
+
+    def said(self, section: str, found: Any) -> str:
+        return f"{section}: {len(found)} runs"
+
+    def measure(self, section: str, options: argparse.Namespace) -> Any:
+        return self.sections[section]()
+
+
+def values(found: Mapping[str, Any]) -> dict[str, Any]:
+    """What page.md.j2 shows."""
+    return walls.values(found)
+
+
+STUDY = PaperStudy(
+    "paper001",
+    "Paper 001: walls of many patterns, a stone house",
+    {kind: partial(walls.measure, kind) for kind in walls.FILES},
+    values,
+    pictures={"curves": ("", walls.draw_curves)},
+    machine=True,
+)
