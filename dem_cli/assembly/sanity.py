@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
 SINKS = 0.5  # of the smallest edge: a block that is so far in another one is about to come out on its other side
 HEAVY = 0.05  # dead loads over the weight: so much matters to what pushes
+SLIVER = 0.25 * (1.0 - 1e-6)  # of a full block of a wall: smaller pieces are most often not meant
 LIGHT = 1e-3  # live loads over the weight that are most likely in another unit
 STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
 
@@ -46,6 +47,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_slivers(case, model, blocks),
     ]
 
 
@@ -69,11 +71,11 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     for i, load in enumerate(case.load):
         chosen = model.chosen(load.selected, False)
         if len(chosen) and model.fixed[chosen].all():
-            what = f"block {show(load.selected)}" if load.block in model.numbers else f"all of {show(load.selected)}"
+            what = f"block {load.said}" if load.block in model.numbers else f"all of {load.said}"
             message = f"{what} is fixed: a load on it changes nothing"
             yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
         elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}: an arm that turns it"
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
 
@@ -100,6 +102,31 @@ def _size(load: AppliedLoad) -> float:
     return math.hypot(*load.resultant.tolist())
 
 
+def _slivers(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
+    """Walls of which ends or openings leave pieces below a quarter of a block: one warning each, with the smallest."""
+    for i, wall in enumerate(case.structure):
+        if wall.kind != "wall":
+            continue
+        masonry = [k for k, block in enumerate(blocks) if block.course and block.path[:2] == ("structure", i)]
+        own = [k for k in masonry if not (wall.core and blocks[k].id.endswith("b"))]  # not of its rubble
+        shares = {k: float(model.shapes.volumes[k]) / _full_block(case, wall, blocks[k]) for k in own}
+        small = [k for k in own if shares[k] < SLIVER]
+        if small:
+            least = min(small, key=lambda k: shares[k])
+            more = f", and {len(small) - 1} more are below a quarter" if len(small) > 1 else ""
+            message = f"block '{blocks[least].id}' is {shares[least]:.2g} of a full one{more}: ends and openings are "
+            way = "; length in place of blocks_per_course lays none" if wall.is_plain else ""
+            yield CaseProblem(("structure", i), f"{message}off the grid of blocks{way}")
+
+
+def _full_block(case: Case, wall: Any, block: Block) -> float:
+    """Volume of a full block in the course of a block of a wall, in the plane its area [m^d]."""
+    k = block.course - 1
+    length = wall.course_lengths[k] if k < len(wall.course_lengths) else wall.block[0]
+    height = wall.course_heights[k] if k < len(wall.course_heights) else wall.block[1]
+    return float(length * height * (1.0 if case.dimension == 2 else wall.thickness / wall.leaves))
+
+
 def _is_unit(force: float) -> bool:
     """Whether a force is a power of ten, as where the multiplier is the load itself."""
     return math.log10(force).is_integer()
@@ -119,7 +146,7 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     for i in range(len(case.load)):
         load, away = case.load[i], _away(case, model, i)
         if away > np.hypot.reduce(high - low):
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}; "
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 

@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, bridge, building, column, drums, imported, temple_front, wall
+from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall
+from dem_cli.structures.building.build import build as build_building
+from dem_cli.structures.building.table import Building
 from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
 from dem_cli.structures.vaults import shapes as vaults
 from dem_cli.structures.vaults.table import Vault
@@ -36,7 +38,7 @@ GENERATORS: dict[str, Generator] = {
         Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
         Generator("herringbone-wall", herringbone_wall.HerringboneWall, herringbone_wall.build),
         Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
-        Generator("building", building.Building, building.build),
+        Generator("building", Building, build_building),
         Generator("import", imported.Import, imported.build),
     )
 }
