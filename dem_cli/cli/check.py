@@ -99,13 +99,7 @@ def marks(case: Case, model: Model) -> list[tuple[str, np.ndarray]]:
 
     found = []
     for name, monitor in zip(monitor_names(case.monitor), case.monitor):
-<<<<<<< HEAD
-        if monitor.block is not None:
-            found.append((name, model.centroids[model.chosen(monitor.block)].mean(axis=0)))
-        elif monitor.point is not None:
-=======
         if monitor.point is not None:
->>>>>>> main
             found.append((name, np.array(monitor.point)))
         elif monitor.between is None:
             blocks = model.chosen(monitor.selected, False)

@@ -190,4 +190,6 @@ def test_courses_of_one_stone_are_a_column():
     ids=["rubble", "courses", "herringbone", "herringbone with quoins", "section"],
 )
 def test_verdicts_under_gravity(table, stands):
-    assert dem_cli.run(CASE | {"structure": [table]}).summary["status"] == ("ok" if stands else "does not stand under its dead loads")
+    assert dem_cli.run(CASE | {"structure": [table]}).summary["status"] == (
+        "ok" if stands else "does not stand under its dead loads"
+    )
