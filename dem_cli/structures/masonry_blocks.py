@@ -27,7 +27,9 @@ def masonry_blocks(masonry: Masonry) -> list[Block]:
     "quoin-right-<number>"; "lintel-<opening>", "arch-<opening>-<number>". What is cut to less than a quarter of a block
     is one with its neighbour.
     """
-    voids = [opening.void.fitted(masonry.levels) for opening in masonry.openings]
+    voids = [opening.void for opening in masonry.openings]
+    if masonry.fit_rings:
+        voids = [void.fitted(masonry.levels) for void in voids]
     over = list(_over_openings(masonry, voids))
     laid = list(_cut_stones(masonry, voids))
     exact = _welded([*laid, *over], WELD * masonry.length)

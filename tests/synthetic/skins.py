@@ -27,10 +27,37 @@ def model_of(*structures: dict[str, Any], **tables: Any) -> Model:
 
 
 def open_area(model: Model) -> float:
-    """Area of all faces that no other block touches and that do not lie within a compound [m²]."""
+    """Area of all faces that no other block touches and that do not lie within a compound [m²].
+
+    What pairs of blocks share is found apart, by shapely; the joints of the model must cover all of it.
+    """
     faces = loops_of(model)
     own = sum(float(np.linalg.norm(newell(loop))) for _, _, loop in faces)
-    return own - 2.0 * float(StartJoints(model).faces.areas.sum()) - 2.0 * _within_compounds(faces)
+    shared, joints = _between_blocks(faces), StartJoints(model).faces
+    areas: dict[tuple[int, int], float] = {}
+    for pair, area in zip(np.sort(joints.blocks, axis=1).tolist(), joints.areas.tolist(), strict=True):
+        areas[tuple(pair)] = areas.get(tuple(pair), 0.0) + area
+    for pair, area in shared.items():
+        if not model.fixed[list(pair)].all():
+            assert areas.get(pair, 0.0) > area * (1.0 - 1e-9) - 1e-12, [model.block_ids[i] for i in pair]
+    return own - 2.0 * sum(shared.values()) - 2.0 * _within_compounds(faces)
+
+
+def _between_blocks(faces: list[tuple[int, int, np.ndarray]]) -> dict[tuple[int, int], float]:
+    """Area that each pair of blocks shares [m²]."""
+    boxes = np.array([[loop.min(axis=0) - 1e-9, loop.max(axis=0) + 1e-9] for _, _, loop in faces])
+    areas = np.array([newell(loop) for _, _, loop in faces])
+    normals = areas / np.linalg.norm(areas, axis=1)[:, None]
+    found: dict[tuple[int, int], float] = {}
+    for i, (block, _, loop) in enumerate(faces):
+        near = normals[:i] @ normals[i] < -0.999999
+        near &= (boxes[:i, 0] <= boxes[i, 1]).all(axis=1) & (boxes[:i, 1] >= boxes[i, 0]).all(axis=1)
+        for k in np.flatnonzero(near).tolist():
+            other = faces[k]
+            if other[0] != block and (area := _shared(loop, other[2])):
+                pair = (min(block, other[0]), max(block, other[0]))
+                found[pair] = found.get(pair, 0.0) + area
+    return found
 
 
 def loops_of(model: Model) -> list[tuple[int, int, np.ndarray]]:
