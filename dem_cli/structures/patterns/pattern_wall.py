@@ -6,7 +6,6 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
-from dem_cli.geometry import polygon
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
@@ -80,7 +79,7 @@ class PatternWall(StructureBase):
         top = self.outline[2:] if not self.gable else self.outline[[4, 3, 2]]
         for i, opening in enumerate(self.openings):
             check_opening(opening, i, length, height)
-            if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.solids):
+            if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.void.solids):
                 raise KeyProblem("reaches above the top of the wall there", "openings", i)
         check_apart(self.openings)
         if self.quoins:
@@ -92,6 +91,11 @@ class PatternWall(StructureBase):
                 message = f"{side.strip:g} is not allowed; must be at most {widest:g}, {of}"
                 raise KeyProblem(message, "sides", i, "strip")
         return self
+
+    @property
+    def has_free_ends(self) -> bool:
+        """Whether neither quoins nor fixed sides hold its stones at one end or the other."""
+        return not self.quoins and not {"-x", "+x"} <= {side.face for side in self.sides}
 
     @property
     def base_depth(self) -> float:
@@ -110,7 +114,7 @@ class PatternWall(StructureBase):
     @property
     def panel(self) -> WallPanel:
         """Its face without its openings, lintels, arches and quoins."""
-        found = [hole for opening in self.openings for hole in holes(opening)]
+        found = [hole for opening in self.openings for hole in opening.void.outlines]
         quoins = self.quoins.boxes(*self.size) if self.quoins else {}
         return WallPanel(self.outline, (*quoins.values(), *found))
 
@@ -122,20 +126,9 @@ def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
         message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
         raise KeyProblem(message, "quoins", "length")
     for i, opening in enumerate(wall.openings):
-        left, _, right, _ = opening.reach
+        left, _, right, _ = opening.void.reach
         if left < quoins.length * (1.0 - 1e-9) or right > length - quoins.length * (1.0 - 1e-9):
             raise KeyProblem("crosses the quoins", "openings", i)
-
-
-def holes(opening: Opening) -> list[np.ndarray]:
-    """Convex shapes that an opening, its lintel or its arch take out of a pattern."""
-    round_one = opening.arch is not None and opening.arch.form == "circle"
-    boxes = [box for box in (() if round_one else (opening.box,)) + (opening.lintel_box,) if box]
-    found = [rectangle(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in boxes]
-    if opening.arch is not None:
-        outer = np.concatenate([opening.arch_joints[[0, -1], 0], opening.arch_joints[:, 1]])
-        found.append(polygon.in_order(np.unique(outer if not round_one else outer[2:-1], axis=0)))
-    return found
 
 
 def masonry(wall: PatternWall, tiling: Tiling) -> list[Block]:
@@ -169,7 +162,7 @@ def _over_openings(wall: PatternWall) -> list[Block]:
             x0, y0, x1, y1 = opening.lintel_box
             shape = rectangle(x0, y0, x1 - x0, y1 - y0)
             blocks.append(Block(f"lintel-{i + 1}", (shape,), opening.lintel.material, wall.thickness))
-        for n, shape in enumerate(opening.voussoirs):
+        for n, shape in enumerate(opening.void.voussoirs):
             material = opening.arch.material if opening.arch else ""
             blocks.append(Block(f"arch-{i + 1}-{n + 1}", (shape,), material, wall.thickness))
     return blocks

@@ -41,7 +41,7 @@ class WallSection(RandomStructure):
     shortest: float = Field(0.05, ge=0.0, le=0.3, description="edges below this share of `cell` collapse [-]")
     core_material: str = Field("", description="a name in [materials]; default: that of the faces", examples=["rubble"])
     base: bool = Field(True, description="a fixed block below, as wide as the section")
-    base_height: Positive | None = Field(None, description="height of the base [m]; default: a course")
+    base_height: Positive | None = Field(None, description="height of the base [m]; default: a course", examples=[0.3])
     base_extension: NonNegative = Field(
         0.0, description="how far the base goes beyond each face, in 3D also beyond each end [m]", examples=[0.5]
     )

@@ -70,7 +70,7 @@ UNITS = [
      "size of blocks, root of their area, did you mean 0.02646 (26.46 mm) or 0.2646 (26.46 cm)?"),
     ('kind = "gravity"', 'kind = "gravity"\n' + LIVE, "load.0.kind: not used: kind = 'gravity' has no live load"),
     ('"gravity"', '"pushover"\n' + LIVE + LIVE, "load.0.kind: not used (and 1 more): the live load of pattern = 'mass' "
-     "is the weight of the blocks; point loads take part with pattern = 'live'"),
+     "is the weight of the blocks; point loads and pressures take part with pattern = 'live'"),
     ('"gravity"', '"pushover"\ndirection = [0.0, -1.0]', "analysis.direction: along gravity: blocks become heavier, "
      "and nothing pushes them sideways"),
     ('"gravity"', '"pushover"\ndirection = [0.0, 2.0]', "analysis.direction: along gravity: blocks become lighter, and "
