@@ -16,6 +16,7 @@ from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
+from dem_cli.structures.registry import loose_ends
 
 if TYPE_CHECKING:
     from dem_cli.assembly.applied_loads import AppliedLoad
@@ -47,6 +48,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_loose_ends(case),
         *_slivers(case, model, blocks),
     ]
 
@@ -146,6 +148,17 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
     for k, name in enumerate(names):
         if not (by_material == k).any():
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _loose_ends(case: Case) -> Iterator[CaseProblem]:
+    """Stones that lie aslant at free ends: whether they stand is the first question."""
+    if case.analysis.kind == "gravity":
+        return
+    for i, table in enumerate(case.structure):
+        if key := loose_ends(table):
+            message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
+            message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
+            yield CaseProblem(("structure", i, key), message)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
