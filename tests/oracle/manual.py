@@ -45,6 +45,13 @@ def statics() -> dict[str, Answers]:
     }
     found: dict[str, Answers] = {name: {"failure_load": load} for name, load in loads.items()}
     found["spring_penetration"] = {"monitors.block displacement y.value": -weight / 1e9}
+    found["dam_level"] = {"critical_value": 21.6 ** (1 / 3)}
+    turn = radians(1.0)
+    found["settlement_group"] = {
+        "monitors.pair displacement y.value": -0.02,
+        "monitors.second displacement y.value": sin(turn) - 0.02,
+        "monitors.beam rotation.value": turn,
+    }
     found["settlement_two_blocks"] = leaning_blocks(0.1)
     return found
 

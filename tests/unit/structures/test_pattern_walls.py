@@ -8,6 +8,8 @@ from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
 import dem_cli
+from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.sanity import doubts
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polygon
 from dem_cli.structures.registry import GENERATORS, generated_blocks, generated_figures
@@ -190,6 +192,23 @@ def test_courses_of_one_stone_are_a_column():
     ids=["rubble", "courses", "herringbone", "herringbone with quoins", "section"],
 )
 def test_verdicts_under_gravity(table, stands):
-    assert dem_cli.run(CASE | {"structure": [table]}).summary["status"] == (
-        "ok" if stands else "does not stand under its dead loads"
-    )
+    status = dem_cli.run(CASE | {"structure": [table]}).summary["status"]
+    assert status == ("ok" if stands else "does not stand under its dead loads")
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        (WALLS["rubble"] | {"relax": 0}, "relax"),
+        (WALLS["rubble"] | {"relax": 3}, None),
+        (QUOINS | {"relax": 0}, None),
+        (WALLS["herringbone"], "angle_deg"),
+        (WALLS["herringbone"] | {"quoins": QUOINS["quoins"]}, None),
+    ],
+)
+def test_stones_that_may_slide_out_at_free_ends_are_a_doubt(table, key):
+    made = dem_cli.load(CASE | {"structure": [table], "analysis": push([1.0, 0.0])})
+    found = [doubt.path for doubt in doubts(made.case, *assembly(made.case)[:2], []) if "slide out" in doubt.message]
+    assert found == ([("structure", 0, key)] if key else [])
+    gravity = dem_cli.load(CASE | {"structure": [table]}).case
+    assert not [doubt for doubt in doubts(gravity, *assembly(gravity)[:2], []) if "slide out" in doubt.message]
