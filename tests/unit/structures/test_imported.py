@@ -296,7 +296,7 @@ def test_a_model_of_compas_dem_has_supports_materials_and_transformations(tmp_pa
     ]
     assert found.notes[-1] == "the file says tuff: 1600 kg/m3"
     here, there = (block.parts[0].vertices for block in found.blocks)
-    assert np.array_equal(there, here + [5.0, 0.0, 0.0])
+    assert np.array_equal(there - here, np.tile([5.0, 0.0, 0.0], (8, 1)))
 
 
 PLAIN_MESH = {**MESH, "data": {**MESH["data"], "attributes": {}}}
