@@ -72,6 +72,25 @@ def test_neighbours_of_a_rounded_file_lie_on_common_planes(tmp_path, boxes):
     assert far < 2e-4
 
 
+def test_a_soup_in_single_precision_far_from_the_origin_falls_into_its_stones(tmp_path, boxes):
+    """Tilted, in STL, all stones touching, coordinates rounded to 2e-6 m: each edge has four faces or more."""
+    tilt = trimesh.transformations.euler_matrix(0.2, 0.1, 0.6)
+    tilt[:2, 3] = 20.0, 10.0
+    meshes = [trimesh.creation.box(bounds=[low, high]).apply_transform(tilt) for _, low, high in boxes]
+    trimesh.util.concatenate(meshes).export(tmp_path / "tilted.stl")
+    found = read(tmp_path / "tilted.stl")
+    assert len(found.blocks) == len(boxes)
+    assert "corners moved onto common planes" in found.notes[1]
+    wanted = sorted(np.prod(np.subtract(high, low)) for _, low, high in boxes)
+    assert sorted(volumes(found.blocks).values()) == pytest.approx(wanted, rel=1e-4)
+    back = np.concatenate([block.parts[0].vertices for block in found.blocks]) - tilt[:3, 3]
+    heights = (back @ tilt[:3, :3])[:, 2]
+    for level in (0.0, 0.25, 0.5, 0.75):
+        bed = back[np.abs(heights - level) < 1e-3]
+        normal = np.linalg.svd(bed - bed.mean(axis=0))[2][-1]
+        assert np.abs((bed - bed.mean(axis=0)) @ normal).max() < 1e-13
+
+
 def test_what_is_exact_keeps_every_bit(tmp_path):
     x = np.array([0.1, 0.30000000000000004, 1 / 3, 2 / 3, 0.7])
     solids = {
