@@ -121,7 +121,9 @@ REFUSED = {
     "height: not used without piers or abutments": ONE | {"height": 1.0},
     "piers width: 0.5 is not allowed; must be at least 0.794118, as the springings": TWO | {"piers": {"width": 0.5}},
     "piers width: 0.8 is not allowed; must be at least 0.9, as the springings": ROUND | {"piers": {"width": 0.8}},
-    "abutments width: 0.4 is not allowed; must be at least 0.45, as the": ROUND | {"abutments": {"width": 0.4}},
+    "abutments width: 0.4 is not allowed; must be at least 0.45, as the springings": (
+        ROUND | {"abutments": {"width": 0.4, "courses": 4}}
+    ),
     "fill: not used without spandrels.thickness, walls at either side": TWO | {"fill": {}},
     "spandrels thickness: 2 is not allowed; must be at most 1.5, half the width": (
         SPACE | {"spandrels": {"block": [1.0, 0.5], "thickness": 2.0}}
