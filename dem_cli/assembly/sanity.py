@@ -16,6 +16,7 @@ from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
+from dem_cli.structures.registry import loose_ends
 
 if TYPE_CHECKING:
     from dem_cli.assembly.applied_loads import AppliedLoad
@@ -31,7 +32,7 @@ STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # ot
 INSTEAD = {  # of a dead load that presses and does not push: what would
     "load": "what is a mass, such as a roof or a floor, is drawn as a block",
     "pressure": "what water or earth adds when it shakes is a pressure with kind = 'live'",
-    "fill": "with pattern = 'mass', inertia = true gives a fill its share",
+    "fill": "inertia = true gives a fill its share",
 }
 
 
@@ -47,6 +48,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_loose_ends(case),
         *_slivers(case, model, blocks),
     ]
 
@@ -68,6 +70,13 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
 
 def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads on blocks that cannot move, and at points outside of their block."""
+    surface_loads = [("pressure", *one) for one in enumerate(case.pressure)] + [
+        ("fill", *one) for one in enumerate(case.fill)
+    ]
+    for key, i, table in surface_loads:
+        if model.fixed[model.chosen(table.selected, False)].all():
+            path = (key, i, "block" if table.structure is None else "structure")
+            yield CaseProblem(path, f"all of {table.said} is fixed: a load on it changes nothing")
     for i, load in enumerate(case.load):
         chosen = model.chosen(load.selected, False)
         if len(chosen) and model.fixed[chosen].all():
@@ -89,7 +98,8 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
     if (pattern == "mass" or case.analysis.kind in SHAKES) and dead_force > HEAVY * weight:
         pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
         message = f"dead loads of {dead_force:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
-        yield CaseProblem(pressing[0].path, message + INSTEAD[str(pressing[0].path[0])])
+        of_fill = pressing[0].path[0] == "fill" and pattern != "mass"
+        yield CaseProblem(pressing[0].path, message + INSTEAD["load" if of_fill else str(pressing[0].path[0])])
     likely, forces = 1e3 * live_force > HEAVY * weight, [_size(load) for load in live if _size(load) > 0.0]
     if pattern == "live" and 0.0 < live_force < LIGHT * weight and likely and not all(map(_is_unit, forces)):
         message = f"live loads of {live_force:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
@@ -138,6 +148,17 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
     for k, name in enumerate(names):
         if not (by_material == k).any():
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _loose_ends(case: Case) -> Iterator[CaseProblem]:
+    """Stones that lie aslant at free ends: whether they stand is the first question."""
+    if case.analysis.kind == "gravity":
+        return
+    for i, table in enumerate(case.structure):
+        if key := loose_ends(table):
+            message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
+            message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
+            yield CaseProblem(("structure", i, key), message)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:

@@ -27,14 +27,12 @@ def command(case: str, overrides: tuple[str, ...], output: str) -> None:
     or another format that meshio writes.
     """
     from dem_cli import api
-    from dem_cli.assembly.assemble import assembly
     from dem_cli.exports.contents import ExportedCase
     from dem_cli.exports.formats import write_case
 
     loaded = load(case, overrides)
-    model = api.build_model(loaded)
+    made = api.build_assembly(loaded)
     warn(loaded)
-    made = assembly(loaded.case)
     for note in write_case(Path(output), ExportedCase(loaded.case, made.model, made.blocks, loaded.name)):
         click.echo(f"warning: {output} does not carry: {note}", err=True)
-    click.echo(f"{model.n_blocks:,} blocks written to {output}")
+    click.echo(f"{made.model.n_blocks:,} blocks written to {output}")

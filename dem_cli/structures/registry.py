@@ -22,6 +22,7 @@ class Generator(NamedTuple):
     parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
     build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
     figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
+    loose_ends: Callable[[Any], str] = lambda table: ""  # key that lets stones slide out at free ends; "": none does
 
 
 GENERATORS: dict[str, Generator] = {
@@ -34,9 +35,16 @@ GENERATORS: dict[str, Generator] = {
         Generator("drums", drums.DrumColumn, drums.build),
         Generator("temple-front", temple_front.TempleFront, temple_front.build),
         Generator("vault", Vault, vaults.build),
-        Generator("voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures),
+        Generator(
+            "voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures, voronoi_wall.loose_ends
+        ),
         Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
-        Generator("herringbone-wall", herringbone_wall.HerringboneWall, herringbone_wall.build),
+        Generator(
+            "herringbone-wall",
+            herringbone_wall.HerringboneWall,
+            herringbone_wall.build,
+            loose_ends=herringbone_wall.loose_ends,
+        ),
         Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
         Generator("building", Building, build_building),
         Generator("import", imported.Import, imported.build),
@@ -52,3 +60,8 @@ def generated_blocks(table: StructureBase, seed: int) -> list[Block]:
 def generated_figures(table: StructureBase, seed: int) -> list[tuple[str, str]]:
     """What a structure drew at random: label and text of each line; seed: of the case."""
     return GENERATORS[table.kind].figures(table.drawn_from(seed))  # type: ignore[attr-defined]
+
+
+def loose_ends(table: StructureBase) -> str:
+    """The key by which stones of a structure may slide out at its free ends; "": none does."""
+    return GENERATORS[table.kind].loose_ends(table)  # type: ignore[attr-defined]

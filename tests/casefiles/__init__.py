@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
-from oracle.surface_loads import struck, surface_load
+from oracle.surface_loads import falling, surface_load
 
 from dem_cli.case.reference import Reference
 from dem_cli.structures.placement import place
@@ -144,12 +144,13 @@ def scene(path: Path) -> Scene:
     for load in tables.get("load", []):
         if "block" in load:
             i_block = ids.index(load["block"])
-            at = np.array(load.get("at", centroids[i_block]))
+            hits = [(i_block, np.array(load.get("at", centroids[i_block])), 1.0)]
         else:
-            part, at = struck(polygons, np.array(load["at"]))
-            i_block = bodies[part]
-        force, arm = np.array(load["force"]), at - centroids[i_block]
-        loads[load.get("kind", "dead")][i_block] += [*force, arm[0] * force[1] - arm[1] * force[0]]
+            hits = falling(polygons, np.array(load["at"]), load.get("spread", 0.0))
+        for part, at, share in hits:
+            i_block = part if "block" in load else bodies[part]
+            force, arm = share * np.array(load["force"]), at - centroids[i_block]
+            loads[load.get("kind", "dead")][i_block] += [*force, arm[0] * force[1] - arm[1] * force[0]]
     for table in [*tables.get("pressure", []), *tables.get("fill", [])]:
         for part, i_block in enumerate(bodies):
             if _selected(table, ids[i_block], blocks[i_block]):

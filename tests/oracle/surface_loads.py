@@ -86,13 +86,31 @@ def surface_load(polygons: list[np.ndarray], own: int, about: np.ndarray, table:
     return total
 
 
-def struck(polygons: list[np.ndarray], at: np.ndarray) -> tuple[int, np.ndarray]:
-    """The polygon whose upper side lies highest under a point, and where; never two: not above a joint."""
-    hits = []
-    for own, corners in enumerate(polygons):
-        for start, end in zip(corners, np.roll(corners, -1, axis=0)):
-            if end[0] < start[0] and end[0] < at[0] < start[0]:  # counter-clockwise: an upper side runs to the left
-                y = start[1] + (at[0] - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
-                hits.append((y, own))
-    y, own = max(hit for hit in hits if hit[0] <= at[1] + sqrt(CLOSE))
-    return own, np.array([at[0], y])
+def upper_sides(polygons: list[np.ndarray]) -> list[tuple[int, np.ndarray, np.ndarray]]:
+    """Polygon, right and left end of every side that looks up: counter-clockwise, it runs to the left."""
+    sides = [(k, a, b) for k, corners in enumerate(polygons) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
+    return [(k, a, b) for k, a, b in sides if b[0] < a[0]]
+
+
+def height(x: float, start: np.ndarray, end: np.ndarray) -> float:
+    return start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
+
+
+def falling(polygons: list[np.ndarray], at: np.ndarray, spread: float = 0.0) -> list[tuple[int, np.ndarray, float]]:
+    """Polygons, points and shares of a load that falls on the sides that lie highest under a point; not above a joint.
+
+    With a spread, evenly on so much of the depth to either side, where one side alone lies over each place.
+    """
+    sides = upper_sides(polygons)
+    hits = [(height(at[0], a, b), k) for k, a, b in sides if b[0] < at[0] < a[0]]
+    top, own = max(hit for hit in hits if hit[0] <= at[1] + sqrt(CLOSE))
+    if not spread:
+        return [(own, np.array([at[0], top]), 1.0)]
+    reach, found = spread * (at[1] - top), []
+    highest = {k: max(height((a[0] + b[0]) / 2, a, b) for n, a, b in sides if n == k) for k, _, _ in sides}
+    for k, a, b in sides:
+        low, high = max(b[0], at[0] - reach), min(a[0], at[0] + reach)
+        if high > low and height((a[0] + b[0]) / 2, a, b) == highest[k]:
+            middle = (low + high) / 2
+            found.append((k, np.array([middle, height(middle, a, b)]), (high - low) / (2.0 * reach)))
+    return found

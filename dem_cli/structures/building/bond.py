@@ -8,6 +8,8 @@ faces of walls that pass, jambs. A shortest path over a few hundred places.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -38,8 +40,16 @@ class Laid(NamedTuple):
     cost: float
 
 
-def laid(ends: Ends, length: float, first: float, avoid: np.ndarray) -> Laid:
-    """A run in blocks of a length [m]; heads belong to `first` + k `length`, away from `avoid` [m], (n,)."""
+def laid(ends: Ends, length: float, first: float, avoid: Iterable[float]) -> Laid:
+    """A run in blocks of a length [m]; heads belong to `first` + k `length`, away from `avoid` [m]."""
+    near = {x for x in avoid if ends.start - length < x < ends.stop + length}
+    return _laid(ends, length, first % length, tuple(sorted(near)))
+
+
+@lru_cache(maxsize=4096)
+def _laid(ends: Ends, length: float, first: float, near: tuple[float, ...]) -> Laid:
+    """The same; courses repeat each other."""
+    avoid = np.array(near)
     if ends.length <= length * (1.0 + SAME):
         return Laid(np.zeros(0), CUT * (1.0 - ends.length / length) ** 2)
     low = ends.start + ends.start_askew + SHORTEST * length

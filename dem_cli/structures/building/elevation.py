@@ -93,19 +93,28 @@ class Elevation:
 
     def holes(self, course: int) -> list[Hole]:
         """What openings take of a course."""
-        low, high = (float(level) for level in self.levels[course : course + 2])
-        small, found = SMALL * self.length, []
+        return self._holes[course]
+
+    @cached_property
+    def _holes(self) -> list[list[Hole]]:
+        found: list[list[Hole]] = [[] for _ in self.runs]
+        small = SMALL * self.length
         for i, void in enumerate(self.voids):
-            if void.reach[1] > high - small or void.reach[3] < low + small:
-                continue
-            if len(void.joints):
-                stops = interruption(void, low, high, small)
-                found += [] if stops is None else [Hole(*stops.ends, low, high, i, stops)]
-                continue
-            for x0, y0, x1, y1 in void.boxes:
-                if y0 < high - small and y1 > low + small:
-                    found.append(Hole(x0, x1, y0, y1, i))
+            for course in self._beside(void.reach[1], void.reach[3]):
+                low, high = (float(level) for level in self.levels[course : course + 2])
+                if len(void.joints):
+                    stops = interruption(void, low, high, small)
+                    found[course] += [] if stops is None else [Hole(*stops.ends, low, high, i, stops)]
+                    continue
+                boxes = [box for box in void.boxes if box[1] < high - small and box[3] > low + small]
+                found[course] += [Hole(x0, x1, y0, y1, i) for x0, y0, x1, y1 in boxes]
         return found
+
+    def _beside(self, low: float, high: float) -> range:
+        """Courses between two heights."""
+        small = SMALL * self.length
+        first = int(np.searchsorted(self.levels, low + small, side="right")) - 1
+        return range(max(first, 0), min(int(np.searchsorted(self.levels, high - small)), len(self.runs)))
 
     @cached_property
     def outline(self) -> tops.Profile | None:
@@ -196,8 +205,7 @@ class Elevation:
         near = [x for k in (course - 1, course + 1) if 0 <= k < len(self.runs) for run in self.runs[k]
                 for line in run for x in set(line.tolist())]  # fmt: skip
         return sum(
-            laid(self.ends(run, course), self.length, self.place(course, first), np.array(near)).cost
-            for run in self.runs[course]
+            laid(self.ends(run, course), self.length, self.place(course, first), near).cost for run in self.runs[course]
         )
 
     def place(self, course: int, first: float) -> float:
@@ -250,7 +258,7 @@ class Elevation:
         """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         full, small = self.length * (high - low), SMALL * self.length
-        arches = [void for void in self.voids if len(void.joints) and void.reach[1] < high and void.reach[3] > low]
+        arches = [void for void, beside in self._arches if course in beside]
         for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
             x0, y0, x1, y1 = box
             shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
@@ -263,10 +271,15 @@ class Elevation:
             for group in groups:
                 yield Stone(course + 1, tuple(Part(shapes[i], across) for i in group), full)
 
+    @cached_property
+    def _arches(self) -> list[tuple[Void, range]]:
+        """Openings under arches, and the courses that they interrupt."""
+        return [(void, self._beside(void.reach[1], void.reach[3])) for void in self.voids if len(void.joints)]
+
     def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
         """Blocks of a run [left, low, right, top], and from where to where they go across."""
         ends, holes = self.ends(run, course), self.holes(course)
-        avoid = np.array(self.joints(course - 1) + self.joints(course + 1))
+        avoid = self.joints(course - 1) + self.joints(course + 1)
         first = self.place(course, self.first)
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
         askew = {outer[0]: ends.start_askew, outer[1]: ends.stop_askew}
@@ -284,7 +297,7 @@ class Elevation:
         yield from self._tips(run, holes, course, avoid)
 
     def _tips(
-        self, run: Run, holes: Sequence[Hole], course: int, avoid: np.ndarray
+        self, run: Run, holes: Sequence[Hole], course: int, avoid: Sequence[float]
     ) -> Iterator[tuple[Box, tuple[float, float]]]:
         """Thin leftovers over and under arches, which become parts of other stones."""
         low, high = (float(level) for level in self.levels[course : course + 2])

@@ -101,3 +101,8 @@ def _rows(wall: HerringboneWall, length: float, height: float) -> Tiling:
             low, high = k * (count + 2) + i, (k + 1) * (count + 2) + i
             stones.append((low, low + 1, high + 1, high))
     return Tiling(np.array(corners), stones, [k + 1 for k in range(rows) for _ in range(count + 1)])
+
+
+def loose_ends(wall: HerringboneWall) -> str:
+    """The key by which stones may slide out at free ends; "": none."""
+    return "angle_deg" if wall.has_free_ends else ""

@@ -93,6 +93,11 @@ class PatternWall(StructureBase):
         return self
 
     @property
+    def has_free_ends(self) -> bool:
+        """Whether neither quoins nor fixed sides hold its stones at one end or the other."""
+        return not self.quoins and not {"-x", "+x"} <= {side.face for side in self.sides}
+
+    @property
     def base_depth(self) -> float:
         """Height of the base [m]."""
         return self.base_height or self.size[1] / 10.0

@@ -181,3 +181,15 @@ def test_check_and_run_show_it(tmp_path):
     warnings = " ".join(json.loads(done.stdout)["warnings"])
     assert "23000 N/m3" in warnings
     assert "200 mm" in warnings
+
+
+def test_slivers_of_a_wall(tmp_path):
+    """A window 20 mm off the grid of blocks; with a length in place of blocks_per_course none is left."""
+    window = "openings = [{ x = 0.42, y = 0.4, width = 0.4, height = 0.4 }]\n"
+    off = WALL.replace("thickness = 0.3\n", "thickness = 0.3\n" + window)
+    assert said(tmp_path, WALL) == []
+    assert said(tmp_path, off) == [
+        "structure.0: block 'wall-4-2' is 0.05 of a full one: ends and openings are off the grid of blocks; length in "
+        "place of blocks_per_course lays none"
+    ]
+    assert said(tmp_path, off.replace("blocks_per_course = 3", "length = 1.2")) == []
