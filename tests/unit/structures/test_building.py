@@ -319,6 +319,11 @@ def test_mirrored_and_turned_plans_have_the_same_blocks():
 
 
 REFUSED = {
+    "gables that meet": (
+        [wall("a", (0, 0), (3, 0), gable={"height": 1.0}), wall("b", (0, 0), (0, 3), gable={"height": 0.5})],
+        {},
+        r"structure\.0\.walls\.1\.gable: wall 'a' has one too, and they meet: of two walls that meet one has a gable",
+    ),
     "angle": (
         [wall("a", (0, 0), (3, 0)), wall("b", (0, 0), (3, 0.5))],
         {},
