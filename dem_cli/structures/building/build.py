@@ -123,9 +123,12 @@ def _planes(elevation: Elevation, course: int, part: Part) -> Planes:
     """Planes that a part is cut along: ends of its run that are askew and that it reaches into."""
     if not course:
         return []
-    low, high = float(part.shape[:, 0].min()), float(part.shape[:, 0].max())
+    (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
     middle, reach = 0.5 * (low + high), ASKEW * elevation.length
-    run = next(run for run in elevation.runs[course - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    laid = int(
+        np.searchsorted(elevation.levels, 0.5 * (foot + head))
+    )  # a stone may have got a piece of the next course
+    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
     found = []
     for line, sign, inside in (
         (run.start, -1.0, low >= run.start.max() - reach),
