@@ -217,6 +217,25 @@ def test_openings_and_gables():
     assert {"b-front-lintel-1", "b-right-lintel-1"} <= set(built.model.block_ids)
 
 
+@pytest.mark.parametrize("height", [0.1, 0.3, 1.5])
+def test_a_low_gable_on_a_wall_that_is_askew(height):
+    """Its lowest pieces belong to stones of the course below. Volume: Simpson across the wall, exact for a slope."""
+    askew = wall("c", (2.8, 0), (2.2, 4.7))
+    ends = [wall("a", (0, 0), (2.8, 0)), wall("b", (-0.6, 4.7), (2.2, 4.7))]
+    level, gabled = (Built([*ends, askew | more]).volume for more in ({}, {"gable": {"height": height}}))
+    length = math.hypot(0.6, 4.7)
+    slope, middle = 0.6 / 4.7, length / 2.0
+    half = middle + T / 2.0 * (length / 4.7 + slope)  # of the gable: to the outermost corners
+    over = [middle + T / 2.0 * (length / 4.7 + side * slope) for side in (-1.0, 0.0, 1.0)]  # to either end, across
+
+    def area(one, other):  # under the slopes, to so far on either side of the tip
+        return sum(height * (x - x * x / (2.0 * half)) for x in (one, other))
+
+    shares = zip((1.0, 4.0, 1.0), over, over[::-1], strict=True)
+    volume = T * sum(share * area(one, other) for share, one, other in shares) / 6.0
+    assert gabled - level == pytest.approx(volume, rel=1e-9)
+
+
 def test_arches_and_steps():
     n, radius = 7, 0.4
     arched = {"x": 1.0, "y": 0.5, "width": 2 * radius, "height": 0.75, "arch": {"voussoirs": n, "ring": 0.25}}
@@ -319,6 +338,11 @@ def test_mirrored_and_turned_plans_have_the_same_blocks():
 
 
 REFUSED = {
+    "gables that meet": (
+        [wall("a", (0, 0), (3, 0), gable={"height": 1.0}), wall("b", (0, 0), (0, 3), gable={"height": 0.5})],
+        {},
+        r"structure\.0\.walls\.1\.gable: wall 'a' has one too, and they meet: of two walls that meet one has a gable",
+    ),
     "angle": (
         [wall("a", (0, 0), (3, 0)), wall("b", (0, 0), (3, 0.5))],
         {},
