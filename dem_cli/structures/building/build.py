@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
@@ -28,6 +29,7 @@ Planes = list[tuple[np.ndarray, float]]
 def build(building: Building) -> list[Block]:
     """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
     plan = plan_of(building)
+    _check_gables(building, plan)
     floors = floors_of(building, plan)
     passes = _passes(plan, floors.pockets)
     elevations = [
@@ -36,6 +38,15 @@ def build(building: Building) -> list[Block]:
     walls = [block for each in elevations for block in _set_up(each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
+
+
+def _check_gables(building: Building, plan: Plan) -> None:
+    """Raises KeyProblem where two gables would stand in each other's way, over the place where their walls meet."""
+    for junction in plan.junctions:
+        one, other = (building.walls[wall] for wall in junction.walls)
+        if one.gable is not None and other.gable is not None:
+            message = f"wall '{one.id}' has one too, and they meet: of two walls that meet one has a gable"
+            raise KeyProblem(message, "walls", max(junction.walls), "gable")
 
 
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
@@ -112,9 +123,12 @@ def _planes(elevation: Elevation, course: int, part: Part) -> Planes:
     """Planes that a part is cut along: ends of its run that are askew and that it reaches into."""
     if not course:
         return []
-    low, high = float(part.shape[:, 0].min()), float(part.shape[:, 0].max())
+    (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
     middle, reach = 0.5 * (low + high), ASKEW * elevation.length
-    run = next(run for run in elevation.runs[course - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    laid = int(
+        np.searchsorted(elevation.levels, 0.5 * (foot + head))
+    )  # a stone may have got a piece of the next course
+    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
     found = []
     for line, sign, inside in (
         (run.start, -1.0, low >= run.start.max() - reach),

@@ -223,7 +223,9 @@ def _moved(bed: Bed, sides: tuple[Side, Side], middle: float, spacing: float) ->
         beam = _beam(bed, *sides, place)
         if all(_fits(bed, side, beam[at]) for side, at in zip(sides, BEAM_ENDS, strict=True)):
             return place
-    message = f"no place is left for a beam near {middle:.4g} m along '{bed.floor.on[0]}', between openings and walls"
+    first = sides[0]
+    place = bed.plan.axes[bed.wall(first)].local((first.start + middle * first.along)[None])[0, 0]
+    message = f"no place is left for a beam near {place:.4g} m along '{bed.floor.on[0]}', between openings and walls"
     raise KeyProblem(message, "floors", bed.number, "spacing")
 
 
