@@ -118,22 +118,14 @@ def _falling(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load
     blocks = model.chosen(table.selected) if table.selected is not None else np.arange(model.n_blocks)
     edge = smallest_edge(model)
     small, top = POINT * edge, float(ends[:, -1].max()) + ON_IT * edge
-    looking_up = surfaces.normals[:, -1] > LOOKS_UP
-    up = np.eye(model.dimension)[-1]
-    pieces = [
-        piece._replace(corners=below)
-        for piece in surfaces.exposed(blocks, looking_up)
-        if len(below := surface_pieces.kept(piece.corners, up, top))
-    ]
-    pieces = surfaces.open_above(pieces, top, blocks)
-    under = _within(pieces, *_strip(ends, small))
+    under = _under(surfaces, blocks, top, _strip(ends, small))
     if not under:
-        where = "block" if table.selected is None else show(table.selected)
+        where = "block" if table.selected is None else table.said
         raise _nothing(path, key, f"there is no {where} under {show(table.at or table.line)}")
     if table.spread:
         points, areas, _ = _quadrature(under)
         depth = float((ends.mean(axis=0)[-1] - points[:, -1]) @ areas / areas.sum())
-        under = _within(pieces, *_strip(ends, small, table.spread * max(depth, 0.0)))
+        under = _under(surfaces, blocks, top, _strip(ends, small, table.spread * max(depth, 0.0)))
     points, areas, numbers = _quadrature(under)
     length = float(np.hypot.reduce((ends[1] - ends[0])[:-1]))
     force = np.array(table.force if table.line is None else table.force_per_length)
@@ -164,10 +156,18 @@ def _strip(ends: np.ndarray, small: float, wider: float = 0.0) -> tuple[np.ndarr
     return np.array(normals), np.array(offsets)
 
 
-def _within(pieces: Sequence[SurfacePiece], normals: np.ndarray, offsets: np.ndarray) -> list[SurfacePiece]:
-    """What of some pieces lies in half-spaces."""
-    cut = [piece._replace(corners=surface_pieces.inside(piece.corners, normals, offsets)) for piece in pieces]
-    return [piece for piece in cut if surface_pieces.measure(piece.corners) > 0.0]
+def _under(
+    surfaces: Surfaces, blocks: np.ndarray, top: float, strip: tuple[np.ndarray, np.ndarray]
+) -> list[SurfacePiece]:
+    """What of the faces of some blocks lies highest below a height [m], within upright half-spaces."""
+    normals = np.vstack([strip[0], np.eye(strip[0].shape[1])[-1]])
+    offsets = np.append(strip[1], top)
+    looking_up = (surfaces.normals[:, -1] > LOOKS_UP) & surfaces.near(normals, offsets)
+    cut = [
+        piece._replace(corners=surface_pieces.inside(piece.corners, normals, offsets), least=0.0)
+        for piece in surfaces.exposed(blocks, looking_up)
+    ]
+    return surfaces.open_above([piece for piece in cut if surface_pieces.measure(piece.corners) > 0.0], top, blocks)
 
 
 def _quadrature(pieces: Sequence[SurfacePiece]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -184,14 +184,14 @@ def _pressure(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath
     looking, key = np.ones(len(surfaces.normals), bool), "face" if table.facing is None else "facing"
     if table.face != "all":
         wanted = table.direction(model.dimension)
-        towards = np.array(table.facing) - surfaces.centres() if wanted is None else np.array([wanted])
+        towards = np.array(table.facing) - surfaces.middles if wanted is None else np.array([wanted])
         lengths = np.linalg.norm(towards, axis=1)
         cosines = (surfaces.normals * towards).sum(axis=1) / np.where(lengths > 0.0, lengths, 1.0)
         looking = cosines >= np.cos(np.radians(table.within_deg)) - LOOKS_UP
     pieces = surfaces.exposed(model.chosen(table.selected, False), looking)
     if not pieces:
-        seen = "looks there" if table.facing is not None else f"looks {show(table.face)}"
-        raise _nothing(path, key, f"no face of {show(table.selected)} that nothing covers {seen}, within "
+        seen = "looks there" if table.facing is not None else f"looks towards {show(table.face)}"
+        raise _nothing(path, key, f"no face of {table.said} that nothing covers {seen}, within "
                        f"{table.within_deg:g}°")  # fmt: skip
     stress, of_level = _stress(case, table)
     low, high = table.levels or (-np.inf, np.inf)
@@ -226,7 +226,7 @@ def _fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     small = POINT * np.ptp(sides, axis=1).max()
     inner = np.concatenate([upright, -upright]), np.concatenate([sides[:, 1], -sides[:, 0]])
     pieces = []
-    for piece in surfaces.exposed(blocks, looking):
+    for piece in surfaces.exposed(blocks, looking & surfaces.near(inner[0], inner[1] - small)):
         steep = piece.normal[-1] <= LOOKS_UP
         step = small * piece.normal if steep else 0.0  # whether there is fill before an upright face
         cut = surface_pieces.inside(piece.corners + step, *inner)
@@ -236,7 +236,7 @@ def _fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     stress = SoilStress(0.0, table.density * case.gravity, table.level, table.sideways, False)
     found = _stressed(model, path, pieces, stress, (-np.inf, table.level))
     if found is None:
-        message = f"{show(table.level)} is not allowed: below it no face of {show(table.selected)} looks up"
+        message = f"{show(table.level)} is not allowed: below it no face of {table.said} looks up"
         raise _nothing(path, "level", message)
     weights = np.where(table.inertia, -found.forces[:, -1], 0.0)
     return found._replace(weights=weights)

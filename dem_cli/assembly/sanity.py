@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
+from dem_cli.structures.registry import loose_ends
 
 if TYPE_CHECKING:
     from dem_cli.assembly.applied_loads import AppliedLoad
@@ -24,13 +25,14 @@ if TYPE_CHECKING:
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
 SINKS = 0.5  # of the smallest edge: a block that is so far in another one is about to come out on its other side
 HEAVY = 0.05  # dead loads over the weight: so much matters to what pushes
+SLIVER = 0.25 * (1.0 - 1e-6)  # of a full block of a wall: smaller pieces are most often not meant
 LIGHT = 1e-3  # live loads over the weight that are most likely in another unit
 STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
 
 INSTEAD = {  # of a dead load that presses and does not push: what would
     "load": "what is a mass, such as a roof or a floor, is drawn as a block",
     "pressure": "what water or earth adds when it shakes is a pressure with kind = 'live'",
-    "fill": "with pattern = 'mass', inertia = true gives a fill its share",
+    "fill": "inertia = true gives a fill its share",
 }
 
 
@@ -46,6 +48,8 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_loose_ends(case),
+        *_slivers(case, model, blocks),
     ]
 
 
@@ -66,14 +70,21 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
 
 def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads on blocks that cannot move, and at points outside of their block."""
+    surface_loads = [("pressure", *one) for one in enumerate(case.pressure)] + [
+        ("fill", *one) for one in enumerate(case.fill)
+    ]
+    for key, i, table in surface_loads:
+        if model.fixed[model.chosen(table.selected, False)].all():
+            path = (key, i, "block" if table.structure is None else "structure")
+            yield CaseProblem(path, f"all of {table.said} is fixed: a load on it changes nothing")
     for i, load in enumerate(case.load):
         chosen = model.chosen(load.selected, False)
         if len(chosen) and model.fixed[chosen].all():
-            what = f"block {show(load.selected)}" if load.block in model.numbers else f"all of {show(load.selected)}"
+            what = f"block {load.said}" if load.block in model.numbers else f"all of {load.said}"
             message = f"{what} is fixed: a load on it changes nothing"
             yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
         elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}: an arm that turns it"
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
 
@@ -87,7 +98,8 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
     if (pattern == "mass" or case.analysis.kind in SHAKES) and dead_force > HEAVY * weight:
         pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
         message = f"dead loads of {dead_force:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
-        yield CaseProblem(pressing[0].path, message + INSTEAD[str(pressing[0].path[0])])
+        of_fill = pressing[0].path[0] == "fill" and pattern != "mass"
+        yield CaseProblem(pressing[0].path, message + INSTEAD["load" if of_fill else str(pressing[0].path[0])])
     likely, forces = 1e3 * live_force > HEAVY * weight, [_size(load) for load in live if _size(load) > 0.0]
     if pattern == "live" and 0.0 < live_force < LIGHT * weight and likely and not all(map(_is_unit, forces)):
         message = f"live loads of {live_force:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
@@ -98,6 +110,31 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
 def _size(load: AppliedLoad) -> float:
     """Resultant of a load [N]."""
     return math.hypot(*load.resultant.tolist())
+
+
+def _slivers(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
+    """Walls of which ends or openings leave pieces below a quarter of a block: one warning each, with the smallest."""
+    for i, wall in enumerate(case.structure):
+        if wall.kind != "wall":
+            continue
+        masonry = [k for k, block in enumerate(blocks) if block.course and block.path[:2] == ("structure", i)]
+        own = [k for k in masonry if not (wall.core and blocks[k].id.endswith("b"))]  # not of its rubble
+        shares = {k: float(model.shapes.volumes[k]) / _full_block(case, wall, blocks[k]) for k in own}
+        small = [k for k in own if shares[k] < SLIVER]
+        if small:
+            least = min(small, key=lambda k: shares[k])
+            more = f", and {len(small) - 1} more are below a quarter" if len(small) > 1 else ""
+            message = f"block '{blocks[least].id}' is {shares[least]:.2g} of a full one{more}: ends and openings are "
+            way = "; length in place of blocks_per_course lays none" if wall.is_plain else ""
+            yield CaseProblem(("structure", i), f"{message}off the grid of blocks{way}")
+
+
+def _full_block(case: Case, wall: Any, block: Block) -> float:
+    """Volume of a full block in the course of a block of a wall, in the plane its area [m^d]."""
+    k = block.course - 1
+    length = wall.course_lengths[k] if k < len(wall.course_lengths) else wall.block[0]
+    height = wall.course_heights[k] if k < len(wall.course_heights) else wall.block[1]
+    return float(length * height * (1.0 if case.dimension == 2 else wall.thickness / wall.leaves))
 
 
 def _is_unit(force: float) -> bool:
@@ -113,13 +150,24 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
 
 
+def _loose_ends(case: Case) -> Iterator[CaseProblem]:
+    """Stones that lie aslant at free ends: whether they stand is the first question."""
+    if case.analysis.kind == "gravity":
+        return
+    for i, table in enumerate(case.structure):
+        if key := loose_ends(table):
+            message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
+            message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
+            yield CaseProblem(("structure", i, key), message)
+
+
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads at points further from their block than the structure is large."""
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
     for i in range(len(case.load)):
         load, away = case.load[i], _away(case, model, i)
         if away > np.hypot.reduce(high - low):
-            message = f"{show(load.at)} is {away:.3g} m off block {show(load.selected)}; "
+            message = f"{show(load.at)} is {away:.3g} m off block {load.said}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 

@@ -114,8 +114,8 @@ class BlockNames:
             return tuple(block.id for block in blocks)
         low, high = course if isinstance(course, tuple) else (course, course)
         found = tuple(block.id for block in blocks if low <= block.course <= high)
-        if not found:
-            top = max((block.course for block in blocks), default=0)
+        top = max((block.course for block in blocks), default=0)
+        if high > top or not found:
             has = f"has courses 1 to {top}" if top else "has no courses"
             raise NoSuchBlocks(f"{show(course)} is not allowed; structure {show(structure)} {has}", "course")
         return found

@@ -20,16 +20,19 @@ NOT_FREE = "only blocks that can move have a start"
 def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
     """What is wrong with the blocks that tables are about."""
     for i, settlement in enumerate(case.settlement):
-        yield from _of_kind(model, _key(("settlement", i), settlement), settlement.selected, True, NOT_FIXED)
+        yield from _of_kind(
+            model, _key(("settlement", i), settlement), (settlement.selected, settlement.said), True, NOT_FIXED
+        )
     for i, table in enumerate(case.initial):
         for k, name in enumerate(table.names):
             path = _key(("initial", i), table) if table.blocks is None else ("initial", i, "blocks", k)
-            yield from _of_kind(model, path, name, False, NOT_FREE)
+            said = table.said if table.blocks is None else show(name)
+            yield from _of_kind(model, path, (name, said), False, NOT_FREE)
     for i, motion in enumerate(case.motion):
         supports = [name for name, number in model.numbers.items() if model.fixed[number]]
         for k, name in enumerate(motion.blocks):
             why = f"{NOT_FIXED} (fixed: {listing(supports)})"
-            yield from _of_kind(model, ("motion", i, "blocks", k), name, True, why)
+            yield from _of_kind(model, ("motion", i, "blocks", k), (name, show(name)), True, why)
     for i, monitor in enumerate(case.monitor):
         for k, name in enumerate(monitor.between or ()):
             yield from _only_one(model, ("monitor", i, "between", k), name)
@@ -42,15 +45,19 @@ def _key(path: KeyPath, table: Selection) -> KeyPath:
     return (*path, "block" if table.block is not None else "structure")
 
 
-def _of_kind(model: Model, path: KeyPath, name: str | None, fixed: bool, why: str) -> Iterator[CaseProblem]:
-    """Blocks that can move where supports are meant, or the other way round."""
+def _of_kind(
+    model: Model, path: KeyPath, named: tuple[str | None, str], fixed: bool, why: str
+) -> Iterator[CaseProblem]:
+    """Blocks that can move where supports are meant, or the other way round; named: to the model, and in messages."""
+    name, said = named
     chosen = model.chosen(name, fixed)
     if (model.fixed[chosen] == fixed).all():
         return
-    what = f"block {show(name)} is" if name in model.numbers else f"none of the {len(chosen)} blocks of {show(name)} is"
-    if not fixed and name not in model.numbers:
-        what = f"every block of {show(name)} is"
-    yield CaseProblem(path, f"{what} {'not ' if fixed and name in model.numbers else ''}fixed; {why}")
+    if name in model.numbers:
+        what = f"block {said} is {'not ' if fixed else ''}fixed"
+    else:
+        what = f"none of the {len(chosen)} blocks of {said} is fixed" if fixed else f"every block of {said} is fixed"
+    yield CaseProblem(path, f"{what}; {why}")
 
 
 def _only_one(model: Model, path: KeyPath, name: str) -> Iterator[CaseProblem]:

@@ -94,6 +94,11 @@ class StructureBase(CaseModel):
         """Turn about the origin [rad], counter-clockwise."""
         return math.radians(self.rotation_deg)
 
+    @property
+    def on_ground(self) -> bool:
+        """Whether a [ground] takes the place of its base."""
+        return True
+
     def drawn_from(self, seed: int) -> StructureBase:
         """Itself with what it lacks to draw at random, from the seed of the case."""
         return self

@@ -56,7 +56,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
     analysis = data["analysis"] if isinstance(data.get("analysis"), dict) else {}
     loads = [table for key in WITH_LIVE_LOADS for _, table in entries(data, key)]
     if analysis.get("pattern") == "live" and not any(table.get("kind") == "live" for table in loads):
-        found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] with kind = 'live'"))
+        found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
     if not data.get("structure") and not data.get("block"):

@@ -59,6 +59,7 @@ SCOPES = (
     Scope("structure.leaves", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.through_stones", 3, "a wall has leaves across its thickness in 3D: give dimension = 3"),
     Scope("structure.core", 3, "a wall has a core across its thickness in 3D: give dimension = 3"),
+    Scope("pressure.face", 3, "must be '+x', '-x', '+y' (up), '-y', 'top', 'bottom' or 'all' in 2D", ("+z", "-z")),
     Scope("structure.sides", 3, "a structure has sides in 3D: give dimension = 3"),
     Scope("structure.rows", 3, "a bridge has stones across it in 3D: give dimension = 3", beside=("kind", "bridge")),
     Scope("structure.spandrels.thickness", 3, "a bridge has two spandrel walls in 3D: give dimension = 3"),

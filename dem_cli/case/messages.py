@@ -58,7 +58,12 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     for path, members in unions.items():
         inside = [(spot, item) for spot, item in members if len(spot.path) > len(path)]
         deepest = max((len(spot.path) for spot, _ in inside), default=0)
-        if inside:
+        of_table = [
+            (spot, item) for spot, item in members if item["type"] == "value_error" and not spot.path[len(path) :]
+        ]
+        if not inside and of_table and isinstance(value_at(data, path), dict):  # a table that says something impossible
+            found += [describe(spot, item, data) for spot, item in of_table]
+        elif inside:
             found += [describe(spot, item, data) for spot, item in inside if len(spot.path) == deepest]
         else:
             kinds = members[0][0].choices

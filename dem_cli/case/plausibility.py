@@ -110,14 +110,15 @@ def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
 def _live_doubts(case: Case) -> Iterator[CaseProblem]:
     """Live loads and directions that the analysis does not use, and those that push nothing sideways."""
     pattern = getattr(case.analysis, "pattern", None)
-    live = [i for i, load in enumerate(case.load) if load.kind == "live"]
+    live: list[KeyPath] = [("load", i) for i, load in enumerate(case.load) if load.kind == "live"]
+    live += [("pressure", i) for i, pressure in enumerate(case.pressure) if pressure.kind == "live"]
     if live and pattern != "live":
         more = f" (and {len(live) - 1} more)" if len(live) > 1 else ""
         why = f"kind = {show(case.analysis.kind)} has no live load"
         if pattern is not None:
             why = f"the live load of pattern = {show(pattern)} is the weight of the blocks; "
-            why += "point loads take part with pattern = 'live'"
-        yield CaseProblem(("load", live[0], "kind"), f"not used{more}: {why}")
+            why += "point loads and pressures take part with pattern = 'live'"
+        yield CaseProblem((*live[0], "kind"), f"not used{more}: {why}")
     if pattern == "live" and "direction" in case.analysis.model_fields_set:
         yield CaseProblem(("analysis", "direction"), "not used: pattern = 'live' has its own directions", at_key=True)
     elif pattern == "mass":

@@ -219,9 +219,15 @@ class Case(CaseModel):
         """With a [ground], structures have no bases but those that they ask for."""
         if self.ground is None:
             return self
+        for i, table in enumerate(self.structure):
+            for key in ("base_height", "base_extension"):
+                if table.on_ground and key in table.model_fields_set and "base" not in table.model_fields_set:
+                    raise KeyProblem(
+                        "not used with [ground], which is its base; or give base = true", "structure", i, key
+                    )
         standing = tuple(
             table.model_copy(update={"base": False})
-            if getattr(table, "base", False) is True and "base" not in table.model_fields_set
+            if getattr(table, "base", False) is True and "base" not in table.model_fields_set and table.on_ground
             else table
             for table in self.structure
         )

@@ -45,9 +45,19 @@ class Selection(CaseModel):
         """What the blocks are called in messages and by models; None: nothing is selected."""
         return self.block if self.block is not None else structure_words(self.structure, self.course)
 
+    @property
+    def said(self) -> str:
+        """The same as messages have it."""
+        if self.structure is None:
+            return show(self.block)
+        return (self.selected or "").replace(self.structure, show(self.structure), 1)
+
 
 class GroupMember(CaseModel):
-    """groups.NAME: blocks of one structure, of some of its courses, or with centroids within a box."""
+    """groups.NAME: a list under [groups], such as front = ["left-13-*", "crest", { structure = "right", course = 13 }].
+
+    Ids, patterns, other groups and tables: of blocks of one structure, of some of its courses, with centroids in a box.
+    """
 
     structure: str | None = Field(default=None, description="id of a structure; default: all blocks", examples=["left"])
     course: Courses = Field(default=None, description=ONE_COURSE_OR_MORE, examples=[13])

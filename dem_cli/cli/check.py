@@ -4,24 +4,40 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.cli.options import case_argument, load, overrides_option, warn
+from dem_cli.cli.options import STDIN, azimuth_option, case_argument, elevation_option, load, overrides_option, warn
+from dem_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
+
     from dem_cli.assembly.applied_loads import AppliedLoad
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
+    from dem_cli.post.scene.axonometry import Standpoint
 
 
 @click.command("check", short_help="Validate a case and print its model; solve nothing.")
 @case_argument
 @overrides_option
-def command(case: str, overrides: tuple[str, ...]) -> None:
+@click.option("--plot", is_flag=True, help="A picture of the model as well: blocks, supports, loads; CASE.png.")
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="The picture: .png, .svg, .pdf.")
+@azimuth_option
+@elevation_option
+def command(
+    case: str,
+    overrides: tuple[str, ...],
+    plot: bool,
+    output: Path | None,
+    azimuth: float | None,
+    elevation: float | None,
+) -> None:
     """Validate CASE and print its model: blocks, joints, mass, time step and estimated cost."""
     from dem_cli import api
     from dem_cli.pipeline.monitor_names import check_quantities, monitor_names
@@ -44,6 +60,58 @@ def command(case: str, overrides: tuple[str, ...]) -> None:
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))
+    if plot or output is not None:
+        from dem_cli.post.scene.axonometry import Standpoint
+
+        name = Path("model.toml") if case == STDIN else Path(case)
+        path = output or name.with_suffix(".png")
+        draw(loaded.case, model, dict(found), path, Standpoint(None, azimuth, elevation))
+        click.echo(str(path))
+    elif azimuth is not None or elevation is not None:
+        raise UsageError("--azimuth and --elevation are for --plot")
+
+
+def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Standpoint) -> None:
+    """The picture of a model before a run."""
+    from dem_cli.output.folder import write_error
+    from dem_cli.post.chart import check_format
+    from dem_cli.post.scene.model_picture import ModelFacts, draw_model
+
+    check_format(path)
+    lines = [f"blocks {found['blocks']}", f"size {found['size']}, mass {found['mass']}"]
+    lines += [f"joints {found['joints']}"] if "joints" in found else []
+    pattern = getattr(case.analysis, "pattern", None)
+    pushed = unit(case.analysis.direction) if pattern in ("mass", "tilt") else None
+    shaken = unit(case.motion[0].direction) if case.motion else None
+    facts = ModelFacts(case.title, lines, case.gravity, pushed, shaken, marks(case, model))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draw_model(model, facts, path, asked)
+    except OSError as error:
+        raise write_error(error, path) from None
+
+
+def marks(case: Case, model: Model) -> list[tuple[str, np.ndarray]]:
+    """Monitors of blocks and points: name and place."""
+    import numpy as np
+
+    from dem_cli.pipeline.monitor_names import monitor_names
+
+    found = []
+    for name, monitor in zip(monitor_names(case.monitor), case.monitor):
+        if monitor.point is not None:
+            found.append((name, np.array(monitor.point)))
+        elif monitor.between is None:
+            blocks = model.chosen(monitor.selected, False)
+            found.append((name, np.average(model.centroids[blocks], axis=0, weights=model.masses[blocks])))
+    return found
+
+
+def unit(direction: Sequence[float]) -> np.ndarray:
+    """A direction of length one, (d,)."""
+    import numpy as np
+
+    return np.array(direction, float) / np.hypot.reduce(np.array(direction, float))
 
 
 def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[tuple[str, str]]:

@@ -25,7 +25,7 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "calibrate": "Find the joint profile that comes closest to a test.",
     "limit": "Failure load by rigid-block limit analysis.",
     "motion": "Measure, write and draw the ground motions of a case.",
-    "build": "Write the geometry of a case to a file.",
+    "build": "Write the blocks of a case to a file for another program.",
     "new": "Print a commented case file to start from.",
     "schema": "Print the JSON Schema of the case file.",
     "explain": "Say what a key of the case file means.",

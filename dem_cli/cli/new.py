@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 TEMPLATES = Path(__file__).parent / "templates"
+COMPANIONS = {"import": "blocks.obj"}  # a file that a template names, written beside it
 TEMPLATE_KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 
 
@@ -16,10 +17,12 @@ TEMPLATE_KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 def command(kind: str, output: str | None) -> None:
     """Print a commented case file to start from.
 
-    KIND: arch, block, bridge, column, facade or wall, to be pushed; out-of-plane: a wall in 3D, pushed out of its
-    plane; drums, temple-front, vault: round columns, what they carry, groin vaults and domes, in 3D; retaining: a
-    wall under earth pressure; colonnade or shaken (an arch): in an earthquake; safety: how far an arch is from
-    failure; sweep: walls of several kinds, for `dem sweep`. Such as: dem new wall > wall.toml
+    KIND: arch, arched-wall, block, bridge, column, facade or wall, to be pushed; out-of-plane, bonded-wall: walls
+    in 3D of one leaf and of two; building: a house; import: blocks of another program; voronoi-wall, coursed-wall,
+    herringbone-wall, wall-section: rubble, irregular courses, stones aslant, three leaves; drums, temple-front,
+    vault: round columns, what they carry, groin vaults and domes; retaining: a wall under earth pressure; colonnade
+    or shaken (an arch): in an earthquake; safety: how far an arch is from failure; sweep: walls of several kinds,
+    for `dem sweep`. Such as: dem new wall > wall.toml
     """
     text = (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
     if output is None:
@@ -30,6 +33,10 @@ def command(kind: str, output: str | None) -> None:
     try:
         with Path(output).open("x", encoding="utf-8") as file:
             file.write(text)
+        if kind in COMPANIONS:
+            companion = Path(output).with_name(COMPANIONS[kind])
+            if not companion.exists():
+                companion.write_bytes((TEMPLATES / COMPANIONS[kind]).read_bytes())
     except FileExistsError:
         raise UsageError(f"{output}: exists already; nothing is overwritten") from None
     except OSError as error:

@@ -29,7 +29,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
     said += _reweighted(case, sims)
     said += (
         _leaning_automatically(case, sims[0])
-        + _weightless(sims[0])
+        + weightless(sims[0])
         + _shear(sims[0])
         + _cracking(case, sims[0])
         + _leaning(case, sims[0], found.get("displacement_at_failure"))
@@ -59,7 +59,8 @@ def max_of(shares: tuple[float, float]) -> float:
     return max(abs(shares[0]), shares[1])
 
 
-def _weightless(sim: Simulation) -> list[str]:
+def weightless(sim: Simulation) -> list[str]:
+    """The first block whose own loads are lost beside those of the others, by which equilibrium is judged."""
     dead, live = sim.loads.dead[sim.free], sim.loads.live[sim.free]
     d = sim.model.dimension
     light = np.flatnonzero(np.sqrt((dead[:, :d] ** 2).sum(axis=1)) < own_weights(dead, live, d))
@@ -68,6 +69,12 @@ def _weightless(sim: Simulation) -> list[str]:
     more = f" (and {len(light) - 1} more)" if len(light) > 1 else ""
     name = sim.model.block_ids[sim.free[light[0]]]
     return [f"the weight of block '{name}'{more} is below {WEIGHTLESS:g} of the mean: its equilibrium is not proven"]
+
+
+def unproven(case: Case, sim: Simulation) -> bool:
+    """Whether some block of a static analysis weighs too little beside others for anything to be proven of it."""
+    weighs = bool(sim.loads.dead[sim.free, : sim.model.dimension].any())
+    return weighs and not hasattr(case.analysis, "margin") and bool(weightless(sim))
 
 
 def _shear(sim: Simulation) -> list[str]:

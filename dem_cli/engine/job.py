@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine import measures
+from dem_cli.engine.audit import unproven
 from dem_cli.engine.audit import warnings as doubts
 from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure, static_ratio
 from dem_cli.engine.budget import Budget
@@ -112,6 +113,8 @@ class Job:
         worst = max((closure(sim) for sim in sims), key=abs)
         overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
         self.warnings += doubts(self.case, sims, found)
+        if found.get("status") == "ok" and unproven(self.case, sims[0]):
+            found = found | {"status": "not converged"}
         summary = {
             "joints": sims[0].first_joints,
             "contacts": sims[0].first_points,

@@ -17,7 +17,7 @@ class Halves(NamedTuple):
     beyond: Polyhedron | None  # where it points to
 
 
-def halves(solid: Polyhedron, normal: Sequence[float], height: float) -> Halves:
+def halves(solid: Polyhedron, normal: Sequence[float] | np.ndarray, height: float) -> Halves:
     """A polyhedron cut by the plane {x: normal · x = height} [m]; normal: of length one, (3,).
 
     Corners that lie on the plane but for round-off stay where they are, and belong to both.
@@ -34,7 +34,7 @@ def halves(solid: Polyhedron, normal: Sequence[float], height: float) -> Halves:
     return Halves(_half(vertices, loops, full), _half(vertices, loops, -full))
 
 
-def behind_all(solid: Polyhedron, planes: Sequence[tuple[Sequence[float], float]]) -> Polyhedron | None:
+def behind_all(solid: Polyhedron, planes: Sequence[tuple[np.ndarray, float]]) -> Polyhedron | None:
     """What of a polyhedron lies behind every plane (normal, height); None: nothing."""
     left: Polyhedron | None = solid
     for normal, height in planes:

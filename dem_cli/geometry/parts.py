@@ -33,6 +33,9 @@ class PartShapes(Protocol):
     def normals(self, vertices: np.ndarray, topology: Topology) -> np.ndarray:
         """Outward unit normals of the faces, (n_faces, d)."""
 
+    def face_sizes(self, vertices: np.ndarray, topology: Topology) -> np.ndarray:
+        """Areas, in the plane lengths, of the faces [m^(d-1)], (n_faces,)."""
+
     def inner_faces(
         self, vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray
     ) -> np.ndarray:

@@ -40,3 +40,9 @@ def normals(vertices: np.ndarray, topology: Topology) -> np.ndarray:
 def inner_faces(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     """Edges inside a block of several parts."""
     return inner_edges(vertices, topology, part_blocks, sizes)
+
+
+def face_sizes(vertices: np.ndarray, topology: Topology) -> np.ndarray:
+    """Lengths of the edges [m], (n_faces,)."""
+    start, end = vertices[topology.ends].swapaxes(0, 1)
+    return np.hypot(*(end - start).T)

@@ -53,3 +53,8 @@ def inner_faces(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarra
     """Faces inside a block of several parts."""
     areas = solids.face_areas(vertices, topology)
     return covered_faces(vertices, topology, areas, part_blocks, sizes)
+
+
+def face_sizes(vertices: np.ndarray, topology: Topology) -> np.ndarray:
+    """Areas of the faces [m²], (n_faces,)."""
+    return np.linalg.norm(solids.face_areas(vertices, topology), axis=1)

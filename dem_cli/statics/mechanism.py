@@ -30,15 +30,17 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     released = max(external, 0.0) + max(-lifted, 0.0)
     same = np.array_equal(held.geometry.keys, sim.geometry.keys)
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
+    slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
     if sim.law.bonded:  # the ledger holds what bonds lost as well
-        slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
         friction = float((slipped * np.sqrt((sim.contacts.shear**2).sum(axis=1))).sum())
     share = min(max(friction / released, 0.0), 1.0) if released > 0.0 else 0.0
     # Whether anything turns over, about a horizontal axis, not the share: friction takes nearly all that hinges and one
     # slipping joint release, and little of what lifts blocks up a slope. What turns about the vertical slides.
     turned = float(np.sqrt((rotation[:, : d - 1] ** 2).sum(axis=1)).max(initial=0.0)) * _size(sim)
     translates = turned < settings.turns * motion.max(initial=0.0)
-    mode = "sliding" if translates else "rocking" if share < settings.rocking else "mixed"
+    slides = float(slipped.max(initial=0.0)) > settings.parts * motion.max(initial=0.0)
+    moved = "sliding" if slides else "lifting"
+    mode = moved if translates else "rocking" if share < settings.rocking else "mixed"
     moving = np.flatnonzero(motion > settings.takes_part * motion.max(initial=0.0))
     parts: dict[str, Any] = {"moving_blocks": named(sim, moving)}
     if same and len(joints.blocks):

@@ -96,6 +96,11 @@ class Arch(StructureBase):
         """What the arch stands on; None for fixed springings."""
         return self.columns or self.buttresses
 
+    @property
+    def on_ground(self) -> bool:
+        """Whether a [ground] takes the place of its base: of its piers; springings without any stay fixed."""
+        return self.piers is not None
+
     @model_validator(mode="after")
     def _consistent(self) -> Arch:
         keys = SHAPE_KEYS[self.shape]

@@ -73,8 +73,8 @@ def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequ
     """
     pieces = _as_repeated(pattern, span, length, anchor)
     if len({unit.length for unit in pattern.units}) > 1 or pattern.units[0].header:
-        pieces = _closers(pieces, length)
-        pieces = _mirrored(_closers(_mirrored(pieces), length))
+        pieces = _closers(pieces, length, below)
+        pieces = _mirrored(_closers(_mirrored(pieces), length, [-x for x in below]))
     pieces = _closed(pieces, length, below)
     return _mirrored(_closed(_mirrored(pieces), length, [-x for x in below]))
 
@@ -102,7 +102,7 @@ def _mirrored(pieces: Sequence[Piece]) -> list[Piece]:
     return [Piece(-piece.end, -piece.start, piece.header) for piece in reversed(pieces)]
 
 
-def _closers(pieces: list[Piece], length: float) -> list[Piece]:
+def _closers(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
     """With a quarter block at the left end: after the header beside it, as queen closers are, not at the very end."""
     if len(pieces) < 3:
         return pieces
@@ -112,6 +112,8 @@ def _closers(pieces: list[Piece], length: float) -> list[Piece]:
     if not fits or not header.header or abs(header.end - header.start - 0.5 * length) > small:
         return pieces
     joint = quarter.start + 0.5 * length
+    if below and _clearance(joint, below) < 0.1 * length:
+        return pieces
     return [Piece(quarter.start, joint, True), Piece(joint, header.end, True), *pieces[2:]]
 
 

@@ -231,10 +231,11 @@ def _fixed(table: Import, solids: Sequence[Any], names: Sequence[str]) -> list[b
         solid.fixed or table.layers.get(solid.layer, PLAIN).fixed or _below(table, solid.parts) for solid in solids
     ]
     for i, pattern in enumerate(table.fixed):
+        plain = pattern.replace("[", "[[]")  # * and ? alone stand for letters
         hit = [
             k
             for k, (solid, name) in enumerate(zip(solids, names, strict=True))
-            if any(fnmatchcase(one, pattern) or one == pattern for one in (solid.name, name, f"{table.id}-{name}"))
+            if any(fnmatchcase(one, plain) for one in (solid.name, name, f"{table.id}-{name}"))
         ]
         if not hit:
             close = get_close_matches(pattern, names, 1)

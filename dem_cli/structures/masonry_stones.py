@@ -26,8 +26,10 @@ def uncut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
         quoins = [span for (_, course), span in taken.items() if course == k]
         found = [interruption(void, low, high, masonry.small) for void in voids]
         gaps.append([one for one in found if one is not None])
-        below = joints[-1] if joints and masonry.bond != "stack" else []
-        runs.append(laid_around(masonry.plan(k, quoins, voids, below), gaps[k], masonry.small))
+        plan = masonry.plan(k, quoins, voids, joints[-1] if joints and masonry.bond != "stack" else [])
+        tips_below = [x for one in (gaps[k - 1] if k else []) for tip in one.tips for x in tip]
+        plan = plan._replace(stops=[*plan.stops, *tips_below])
+        runs.append(laid_around(plan, gaps[k], masonry.small))
         joints.append([x for run in runs[k] for piece in run for x in (piece.start, piece.end)])
     plans = []
     for k, own in enumerate(runs):

@@ -7,8 +7,10 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, bridge, building, column, drums, imported, temple_front, wall
-from dem_cli.structures.patterns import coursed_wall, voronoi_wall
+from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall
+from dem_cli.structures.building.build import build as build_building
+from dem_cli.structures.building.table import Building
+from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
 from dem_cli.structures.vaults import shapes as vaults
 from dem_cli.structures.vaults.table import Vault
 
@@ -20,6 +22,7 @@ class Generator(NamedTuple):
     parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
     build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
     figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
+    loose_ends: Callable[[Any], str] = lambda table: ""  # key that lets stones slide out at free ends; "": none does
 
 
 GENERATORS: dict[str, Generator] = {
@@ -32,9 +35,18 @@ GENERATORS: dict[str, Generator] = {
         Generator("drums", drums.DrumColumn, drums.build),
         Generator("temple-front", temple_front.TempleFront, temple_front.build),
         Generator("vault", Vault, vaults.build),
-        Generator("voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures),
+        Generator(
+            "voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures, voronoi_wall.loose_ends
+        ),
         Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
-        Generator("building", building.Building, building.build),
+        Generator(
+            "herringbone-wall",
+            herringbone_wall.HerringboneWall,
+            herringbone_wall.build,
+            loose_ends=herringbone_wall.loose_ends,
+        ),
+        Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
+        Generator("building", Building, build_building),
         Generator("import", imported.Import, imported.build),
     )
 }
@@ -48,3 +60,8 @@ def generated_blocks(table: StructureBase, seed: int) -> list[Block]:
 def generated_figures(table: StructureBase, seed: int) -> list[tuple[str, str]]:
     """What a structure drew at random: label and text of each line; seed: of the case."""
     return GENERATORS[table.kind].figures(table.drawn_from(seed))  # type: ignore[attr-defined]
+
+
+def loose_ends(table: StructureBase) -> str:
+    """The key by which stones of a structure may slide out at its free ends; "": none does."""
+    return GENERATORS[table.kind].loose_ends(table)  # type: ignore[attr-defined]

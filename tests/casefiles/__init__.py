@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_heads, limit_load
+from oracle.surface_loads import falling, surface_load
 
 from dem_cli.case.reference import Reference
 from dem_cli.structures.placement import place
@@ -122,6 +123,11 @@ def lower(block: tuple, by: float) -> tuple:
     return (block[0], (corners,), *block[2:])
 
 
+def _selected(table: dict, name: str, block: tuple) -> bool:
+    """Whether a pressure or a fill acts on a block: it is named, or can move and is part of the structure that is."""
+    return name == table.get("block") or (not block[4] and name.startswith(table.get("structure", " ") + "-"))
+
+
 @cache
 def scene(path: Path) -> Scene:
     """The structure of a case file with its loads; its limit load needs one joint law for all (Coulomb)."""
@@ -136,10 +142,20 @@ def scene(path: Path) -> Scene:
     ids = [block[0] for block in blocks]
     loads = {"live": np.zeros((len(blocks), 3)), "dead": np.zeros((len(blocks), 3))}
     for load in tables.get("load", []):
-        i_block = ids.index(load["block"])
-        force = np.array(load["force"])
-        arm = np.array(load.get("at", centroids[i_block])) - centroids[i_block]
-        loads[load.get("kind", "dead")][i_block] += [*force, arm[0] * force[1] - arm[1] * force[0]]
+        if "block" in load:
+            i_block = ids.index(load["block"])
+            hits = [(i_block, np.array(load.get("at", centroids[i_block])), 1.0)]
+        else:
+            hits = falling(polygons, np.array(load["at"]), load.get("spread", 0.0))
+        for part, at, share in hits:
+            i_block = part if "block" in load else bodies[part]
+            force, arm = share * np.array(load["force"]), at - centroids[i_block]
+            loads[load.get("kind", "dead")][i_block] += [*force, arm[0] * force[1] - arm[1] * force[0]]
+    for table in [*tables.get("pressure", []), *tables.get("fill", [])]:
+        for part, i_block in enumerate(bodies):
+            if _selected(table, ids[i_block], blocks[i_block]):
+                found = surface_load(polygons, part, centroids[i_block], table, tables.get("gravity", 9.81))
+                loads[table.get("kind", "dead")][i_block] += found * blocks[i_block][3]
     analysis = tables.get("analysis", {})
     if analysis.get("pattern", "mass") != "live":
         direction = np.array(analysis.get("direction", [1.0, 0.0]))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from dem_cli.cli.main import main
-from dem_cli.cli.new import TEMPLATE_KINDS, TEMPLATES
+from dem_cli.cli.new import COMPANIONS, TEMPLATE_KINDS, TEMPLATES
 from dem_cli.structures.registry import GENERATORS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,6 +27,8 @@ def test_what_new_prints_passes_check_as_it_is(kind, tmp_path):
     printed = dem("new", kind)
     path = tmp_path / "case.toml"
     path.write_text(printed.stdout, encoding="utf-8")
+    if kind in COMPANIONS:
+        shutil.copy(TEMPLATES / COMPANIONS[kind], tmp_path)
     checked = dem("check", str(path))
     assert (printed.exit_code, printed.stderr) == (0, "")
     assert (checked.exit_code, checked.stderr) == (0, "")
@@ -65,6 +68,13 @@ def test_a_template_that_is_uncommented_is_valid_too(kind, first, tmp_path):
     path.write_text(opened, encoding="utf-8")
     checked = dem("check", str(path))
     assert (checked.exit_code, checked.stderr) == (0, "")
+
+
+def test_new_writes_what_its_template_names(tmp_path):
+    assert dem("new", "import", "-o", str(tmp_path / "mine.toml")).exit_code == 0
+    checked = dem("check", str(tmp_path / "mine.toml"))
+    assert (checked.exit_code, checked.stderr) == (0, "")
+    assert "4 blocks from 4 objects (4 on stone), lengths in m" in checked.stdout
 
 
 def test_new_writes_a_file_once(tmp_path):

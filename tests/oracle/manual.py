@@ -38,9 +38,20 @@ def statics() -> dict[str, Answers]:
         "crushing_block": (1e6 - weight) / 1000.0,
         "crushing_toe": crushed_toe(0.6, 1.0, 4e4, 2000.0 * G),
         "barton_block": barton * flat / 1000.0,
+        "dam_overturns": 2400.0 * 1.2 * 3.0 * 0.6 / (1000.0 * 3.0**3 / 6),  # moments about the toe over g
+        "retaining_earth": 2200.0
+        * (0.9 * 3 * 0.45 + 0.6 * (0.9 + 0.4 / 3))
+        / (1800.0 * (27 / 18 - 0.6 * (1.3 - 0.4 / 3))),
     }
     found: dict[str, Answers] = {name: {"failure_load": load} for name, load in loads.items()}
     found["spring_penetration"] = {"monitors.block displacement y.value": -weight / 1e9}
+    found["dam_level"] = {"critical_value": 21.6 ** (1 / 3)}
+    turn = radians(1.0)
+    found["settlement_group"] = {
+        "monitors.pair displacement y.value": -0.02,
+        "monitors.second displacement y.value": sin(turn) - 0.02,
+        "monitors.beam rotation.value": turn,
+    }
     found["settlement_two_blocks"] = leaning_blocks(0.1)
     return found
 

@@ -149,6 +149,28 @@ def test_live_force_with_a_lever():
     assert summary["failure_mode"] == "rocking"
 
 
+@pytest.mark.parametrize(("force", "mode", "load"), [
+    ((0.0, 1.0), "lifting", WEIGHT),
+    ((0.5, 1.0), "sliding", 0.6 * WEIGHT / 1.1),
+])  # fmt: skip
+def test_what_comes_off_does_not_slide(force, mode, load):
+    """Pulled straight up a block leaves its joint without a slip; obliquely it slides before that."""
+    pull = [{"block": "b", "force": list(force), "at": [0.5, 0.1], "kind": "live"}]
+    summary, _ = solve(crate(load=pull, analysis={"pattern": "live", "max_load": 1e9}))
+    assert summary["failure_load"] == pytest.approx(load, rel=2e-3)  # the bracket
+    assert summary["failure_mode"] == mode
+
+
+@pytest.mark.parametrize(("size", "status"), [(1e-2, "ok"), (1e-5, "not converged")])
+def test_a_block_too_light_to_prove_anything_of(size, status):
+    """Beside one that is 1e10 times as heavy a pebble may fly away unseen: no run that says so is in order."""
+    pebble = block("pebble", rectangle(2.0, 0.0, 2.0 + size, size))
+    summary, _ = solve(tables(BASE, block("b", rectangle(0, 0, 1, 1)), pebble, analysis={"kind": "gravity"}))
+    assert summary["status"] == status
+    said = [text for text in summary["warnings"] if "its equilibrium is not proven" in text]
+    assert bool(said) == (status != "ok")
+
+
 def test_largest_live_force_by_default():
     """A force of 1 N that must grow to 12 kN is no self-locking."""
     # The default largest load counts in dead loads, not in newtons.
@@ -326,3 +348,15 @@ def test_far_from_the_origin(kinematics):
     frame = records.frames[0]
     assert frame.positions[1] == pytest.approx([away + 0.5, -away + 0.5], abs=1e-3)
     assert frame.contacts.points[:, 1] == pytest.approx(-away, abs=1e-3)
+
+
+def test_a_collapse_is_known_whatever_follows():
+    """A slender block falls on a face 14 times as wide as the one it stood on, for which its step is too long."""
+    pulse = {"kind": "harmonic", "amplitude": 4.0, "frequency": 1.5, "duration": 2.0}
+    slender = tables(BASE, block("b", rectangle(0, 0, 0.07, 1)), motion=pulse, damping={"none": True})
+    summary, _ = solve(slender | {"analysis": {"kind": "time-history"}})
+    assert (summary["status"], summary["ending"], summary["collapse_block"]) == ("ok", "collapsed", "b")
+    assert summary["collapse_time"] == pytest.approx(0.71, abs=0.02)
+    assert abs(summary["energy_closure"]) > 0.2
+    assert any("the collapse is known, not what follows: blew up at" in text for text in summary["warnings"])
+    assert any("up to the collapse the energy closes within" in text for text in summary["warnings"])

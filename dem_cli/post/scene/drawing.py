@@ -30,6 +30,9 @@ class Drawing(Protocol):
     def draw_blocks(self, axis: Any, low: np.ndarray, high: np.ndarray) -> Callable[[np.ndarray], None]:
         """The blocks in a window; returns what puts their corners (n_vertices, d) in place."""
 
+    def draw_supports(self, axis: Any, colour: str) -> None:
+        """Hatches over blocks that cannot move, where they stood at the start."""
+
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
         """Outlines of the start."""
 

@@ -42,6 +42,16 @@ class PlaneDrawing:
         axis.add_collection(blocks)
         return lambda corners: blocks.set_verts(self._polygons(corners))
 
+    def draw_supports(self, axis: Any, colour: str) -> None:
+        """Hatches over the blocks that cannot move."""
+        from matplotlib.collections import PolyCollection
+
+        fixed = self.model.fixed[self.model.part_blocks]
+        parts = [part for part, held in zip(self._polygons(rest_vertices(self.model)), fixed) if held]
+        axis.add_collection(
+            PolyCollection(parts, facecolors="none", edgecolors=colour, hatch="////", linewidths=0.0, zorder=1.5)
+        )
+
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
         """Outlines of the blocks where they stood at the start."""
         from matplotlib.collections import PolyCollection

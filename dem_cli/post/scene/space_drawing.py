@@ -94,6 +94,16 @@ class SpaceDrawing:
         keys = np.rint(np.column_stack([self.owners * _SAME_PLANE, normals, offsets]) / _SAME_PLANE).astype(np.int64)
         return normals, np.unique(keys, axis=0, return_inverse=True)[1].ravel()
 
+    def draw_supports(self, axis: Any, colour: str) -> None:
+        """Hatches over what is seen of the blocks that cannot move."""
+        if self.seen is None or not self.model.fixed.any():
+            return
+        fixed = np.append(self.model.fixed[self.owners], False)
+        mask = (self.seen.faces != NOTHING) & fixed[self.seen.faces]
+        x, y = _middles(self.seen.window)
+        with _hatched(colour):
+            axis.contourf(x, y, mask, levels=[0.5, 1.5], colors="none", hatches=["////"], zorder=1.5)
+
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
         """Outline of the structure where it stood at the start."""
         free = ~self.model.fixed[self.owners]
@@ -103,8 +113,7 @@ class SpaceDrawing:
         places = self.view.placed(rest_vertices(self.model))
         seen = seen_surface(places, self.starts, self.corners, window).faces
         shown = (seen != NOTHING) & np.append(free, False)[seen]
-        rows, columns = window.shape
-        x, y = (window.low[k] + window.pixel * (np.arange(n) + 0.5) for k, n in enumerate((columns, rows)))
+        x, y = _middles(window)
         axis.contour(x, y, shown, levels=[0.5], colors=style.REST, linewidths=0.9, linestyles=[(0, (3, 2))], zorder=2)
 
     def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
@@ -140,6 +149,19 @@ class SpaceDrawing:
             arrow = {"arrowstyle": "-|>", "color": style.GREY, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
             axis.annotate("", tip, at, arrowprops=arrow, zorder=5, annotation_clip=False)
             axis.text(*(at + 1.35 * (tip - at)), name, color=style.GREY, fontsize=8, ha="center", va="center", zorder=5)
+
+
+def _middles(window: Window) -> list[np.ndarray]:
+    """Middles of the pixels of a window, along and upwards [m]."""
+    rows, columns = window.shape
+    return [window.low[k] + window.pixel * (np.arange(n) + 0.5) for k, n in enumerate((columns, rows))]
+
+
+def _hatched(colour: str) -> Any:
+    """Hatches of contours have the colour that is set, and no other."""
+    import matplotlib
+
+    return matplotlib.rc_context({"hatch.color": colour, "hatch.linewidth": 0.6})
 
 
 def _edges(sheets: np.ndarray) -> np.ndarray:

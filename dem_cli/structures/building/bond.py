@@ -8,13 +8,15 @@ faces of walls that pass, jambs. A shortest path over a few hundred places.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 SHORTEST = 0.25  # of the length of a block: no piece is shorter, and no head nearer to a joint above or below it
 SAME = 1e-6  # of the length of a block: the same place
-CUT, OFF, OVER = 1.0, 8.0, 40.0  # cost of cut blocks, of heads off their place, of heads near joints above and below
+CUT, OFF, OVER = 1.0, 2.0, 40.0  # cost of cut blocks, of heads off their place, of heads near joints above and below
 
 
 class Ends(NamedTuple):
@@ -38,8 +40,16 @@ class Laid(NamedTuple):
     cost: float
 
 
-def laid(ends: Ends, length: float, first: float, avoid: np.ndarray) -> Laid:
-    """A run in blocks of a length [m]; heads belong to `first` + k `length`, away from `avoid` [m], (n,)."""
+def laid(ends: Ends, length: float, first: float, avoid: Iterable[float]) -> Laid:
+    """A run in blocks of a length [m]; heads belong to `first` + k `length`, away from `avoid` [m]."""
+    near = {x for x in avoid if ends.start - length < x < ends.stop + length}
+    return _laid(ends, length, first % length, tuple(sorted(near)))
+
+
+@lru_cache(maxsize=4096)
+def _laid(ends: Ends, length: float, first: float, near: tuple[float, ...]) -> Laid:
+    """The same; courses repeat each other."""
+    avoid = np.array(near)
     if ends.length <= length * (1.0 + SAME):
         return Laid(np.zeros(0), CUT * (1.0 - ends.length / length) ** 2)
     low = ends.start + ends.start_askew + SHORTEST * length
@@ -71,7 +81,7 @@ def _places(ends: Ends, length: float, first: float, avoid: np.ndarray) -> np.nd
 def _costs(places: np.ndarray, length: float, first: float, avoid: np.ndarray) -> np.ndarray:
     """Of a head at each place."""
     off = (places - first) / length
-    cost = OFF * (off - np.rint(off)) ** 2
+    cost = OFF * np.abs(off - np.rint(off))
     if len(avoid):
         away = np.abs(places[:, None] - avoid[None, :]).min(axis=1) / length
         cost += OVER * np.maximum(SHORTEST - away, 0.0) ** 2

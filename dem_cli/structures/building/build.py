@@ -7,18 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
 from dem_cli.model.blocks import Block
-from dem_cli.structures.building.elevation import Elevation, Pocket, Stone
+from dem_cli.structures.building.elevation import Elevation, Pocket
 from dem_cli.structures.building.floors import Slab, floors_of
 from dem_cli.structures.building.plan import Axis, Junction, Plan, plan_of
 from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
 from dem_cli.structures.building.table import Building
+from dem_cli.structures.stones import Part
+from dem_cli.structures.tops import Gable, with_gable
 
 WELD = 1e-12  # of the size of a building: coordinates that close are the same, but for round-off
-ASKEW = 1e-9  # of the thickness: an end that is cut askew
+ASKEW = 1e-9  # of a block: an end that is cut askew
 
 Planes = list[tuple[np.ndarray, float]]
 
@@ -26,6 +29,7 @@ Planes = list[tuple[np.ndarray, float]]
 def build(building: Building) -> list[Block]:
     """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
     plan = plan_of(building)
+    _check_gables(building, plan)
     floors = floors_of(building, plan)
     passes = _passes(plan, floors.pockets)
     elevations = [
@@ -34,6 +38,15 @@ def build(building: Building) -> list[Block]:
     walls = [block for each in elevations for block in _set_up(each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
+
+
+def _check_gables(building: Building, plan: Plan) -> None:
+    """Raises KeyProblem where two gables would stand in each other's way, over the place where their walls meet."""
+    for junction in plan.junctions:
+        one, other = (building.walls[wall] for wall in junction.walls)
+        if one.gable is not None and other.gable is not None:
+            message = f"wall '{one.id}' has one too, and they meet: of two walls that meet one has a gable"
+            raise KeyProblem(message, "walls", max(junction.walls), "gable")
 
 
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
@@ -73,8 +86,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
     levels = building.levels[: courses[wall] + 1]
     eaves = float(levels[-1])
     if table.gable is not None:
-        count = max(1, round(table.gable.height / building.block[1]))
-        levels = np.concatenate([levels, eaves + table.gable.height * np.arange(1, count + 1) / count])
+        levels = _with_gable(levels, table.gable, building.block[1])
 
     def present(other: int, course: int) -> bool:
         return course < courses[other]
@@ -83,36 +95,50 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
     return Elevation(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
 
 
+def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
+    """Bed joints with those of a gable: about as high as other courses, the last one at the tip; stepped: below it."""
+    if gable.edges == "stepped":
+        return with_gable(levels, gable, course)
+    count = max(1, round(gable.height / course))
+    return np.concatenate([levels, levels[-1] + gable.height * np.arange(1, count + 1) / count])
+
+
 def _set_up(elevation: Elevation) -> list[Block]:
     """Blocks of a wall in the places of the plan."""
-    stones = elevation.stones()
-    boxes = np.array([box for stone in stones for box in stone.boxes])
-    x0, z0, x1, z1 = boxes[:, :4].T
-    corners = np.stack([x0, z0, x1, z0, x1, z1, x0, z1], axis=1).reshape(-1, 4, 2)
-    solids = iter(polyhedron.prisms(list(corners), boxes[:, 4], boxes[:, 5]))
+    named = elevation.stones()
+    parts = [part for _, stone in named for part in stone.parts]
+    low, high = np.array([part.across for part in parts]).T
+    solids = iter(polyhedron.prisms([part.shape for part in parts], low, high))
     to_plan = _turn(elevation.axis)
     blocks = []
-    for stone in stones:
-        parts = [next(solids) for _ in stone.boxes]
-        planes = _planes(elevation, stone)
-        if planes:
-            parts = [part for part in (behind_all(part, planes) for part in parts) if part is not None]
+    for name, stone in named:
+        cut = [behind_all(next(solids), _planes(elevation, stone.course, part)) for part in stone.parts]
         material = stone.material or elevation.table.material
-        blocks.append(Block(stone.name, tuple(map(to_plan, parts)), material, course=stone.course))
+        shapes = tuple(to_plan(solid) for solid in cut if solid is not None)
+        blocks.append(Block(name, shapes, material, course=stone.course))
     return blocks
 
 
-def _planes(elevation: Elevation, stone: Stone) -> Planes:
-    """Planes that a stone is cut along: ends of its run that are askew, slopes of a gable."""
-    axis, found = elevation.axis, []
-    for line, sign in ((stone.start, -1.0), (stone.stop, 1.0)):
-        if line is not None and abs(line[1] - line[0]) > ASKEW * axis.thickness:
-            right, left = axis.faces
+def _planes(elevation: Elevation, course: int, part: Part) -> Planes:
+    """Planes that a part is cut along: ends of its run that are askew and that it reaches into."""
+    if not course:
+        return []
+    (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
+    middle, reach = 0.5 * (low + high), ASKEW * elevation.length
+    laid = int(
+        np.searchsorted(elevation.levels, 0.5 * (foot + head))
+    )  # a stone may have got a piece of the next course
+    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    found = []
+    for line, sign, inside in (
+        (run.start, -1.0, low >= run.start.max() - reach),
+        (run.stop, 1.0, high <= run.stop.min() + reach),
+    ):
+        if not inside:
+            right, left = elevation.across
             normal = sign * np.array([left - right, line[0] - line[1], 0.0])
             normal /= np.linalg.norm(normal)
             found.append((normal, float(normal @ [line[0], right, 0.0])))
-    if max(box[3] for box in stone.boxes) > elevation.eaves and stone.course:
-        found += elevation.roof_planes()
     return found
 
 

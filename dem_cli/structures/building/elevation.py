@@ -1,9 +1,9 @@
-"""Elevation of one wall of a building: courses in blocks around openings and pockets, under a gable."""
+"""Elevation of one wall of a building: courses in stones around openings and pockets, under a gable."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,22 +12,33 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.case.base import KeyProblem
+from dem_cli.geometry import cuts
+from dem_cli.geometry.polygon import rectangle
+from dem_cli.structures import tops
 from dem_cli.structures.building.bond import SHORTEST, Ends, laid
 from dem_cli.structures.building.plan import Axis
 from dem_cli.structures.building.runs import Run
 from dem_cli.structures.building.table import PlanWall
+from dem_cli.structures.course_layout import Interruption, interruption
+from dem_cli.structures.stones import Part, Stone, put_together
+from dem_cli.structures.voids import Void
 
 SMALL = 1e-6  # of a block: shorter is nothing
+WELD = 1e-10  # of the same: round-off of corners that are the same
+
+
+Box = tuple[float, float, float, float]  # left, low, right, high [m]
 
 
 class Hole(NamedTuple):
-    """A rectangle of the elevation without blocks of the wall: an opening or its lintel [m]."""
+    """A rectangle of the elevation without whole blocks of the wall: an opening, its lintel, its arch [m]."""
 
     left: float
     right: float
     low: float
     high: float
     opening: int
+    arch: Interruption | None = None  # as it narrows upwards
 
 
 class Pocket(NamedTuple):
@@ -39,17 +50,6 @@ class Pocket(NamedTuple):
     across: tuple[float, float]  # what is left of the wall, from its right to its left; empty: nothing
 
 
-class Stone(NamedTuple):
-    """One block as laid: a box along the wall, or several, and where it is cut askew."""
-
-    name: str
-    course: int  # from 1
-    boxes: tuple[tuple[float, ...], ...]  # each [left, low, right, high, from, to across] [m]
-    start: np.ndarray | None = None  # end of its run that it is cut along
-    stop: np.ndarray | None = None
-    material: str = ""
-
-
 class Stretch(NamedTuple):
     """A part of a run with the same heights free all along."""
 
@@ -57,6 +57,11 @@ class Stretch(NamedTuple):
     right: float
     free: tuple[tuple[float, float], ...]  # from where to where up [m]
     across: tuple[float, float]
+
+    def ends(self, askew: dict[float, float]) -> Ends:
+        """Its ends; askew: how far stones go on beyond the middle of an end, by its place."""
+        start, stop = askew.get(self.left, 0.0), askew.get(self.right, 0.0)
+        return Ends(self.left + start, self.right - stop, start, stop)
 
 
 @dataclass(frozen=True)
@@ -79,52 +84,77 @@ class Elevation:
         return low, max(float(run.stop.max()) for runs in self.runs for run in runs)
 
     @cached_property
-    def holes(self) -> list[Hole]:
-        """Openings and lintels. Raises KeyProblem where one does not lie within the wall."""
-        found = []
-        for i, opening in enumerate(self.table.openings):
-            left, right = opening.x, opening.x + opening.width
-            low, high = opening.y, opening.y + opening.height
-            found.append(Hole(left, right, low, high, i))
-            if opening.lintel is not None:
-                bearing = opening.lintel.bearing
-                found.append(Hole(left - bearing, right + bearing, high, high + opening.lintel.height, i))
-        for hole in found:
-            self._check(hole)
+    def voids(self) -> list[Void]:
+        """Openings with what is built over them. Raises KeyProblem where one does not lie within the wall."""
+        found = [opening.void.fitted(self.levels) for opening in self.table.openings]
+        for i, void in enumerate(found):
+            self._check(void.reach, i)
         return found
 
-    def roof(self, height: float) -> tuple[float, float]:
-        """From where to where the wall goes at a height: under the gable it narrows."""
-        low, high = self.span
+    def holes(self, course: int) -> list[Hole]:
+        """What openings take of a course."""
+        return self._holes[course]
+
+    @cached_property
+    def _holes(self) -> list[list[Hole]]:
+        found: list[list[Hole]] = [[] for _ in self.runs]
+        small = SMALL * self.length
+        for i, void in enumerate(self.voids):
+            for course in self._beside(void.reach[1], void.reach[3]):
+                low, high = (float(level) for level in self.levels[course : course + 2])
+                if len(void.joints):
+                    stops = interruption(void, low, high, small)
+                    found[course] += [] if stops is None else [Hole(*stops.ends, low, high, i, stops)]
+                    continue
+                boxes = [box for box in void.boxes if box[1] < high - small and box[3] > low + small]
+                found[course] += [Hole(x0, x1, y0, y1, i) for x0, y0, x1, y1 in boxes]
+        return found
+
+    def _beside(self, low: float, high: float) -> range:
+        """Courses between two heights."""
+        small = SMALL * self.length
+        first = int(np.searchsorted(self.levels, low + small, side="right")) - 1
+        return range(max(first, 0), min(int(np.searchsorted(self.levels, high - small)), len(self.runs)))
+
+    @cached_property
+    def outline(self) -> tops.Profile | None:
+        """The slopes of a gable; None: there is none."""
         gable = self.table.gable
-        if gable is None or height <= self.eaves:
-            return low, high
-        inwards = 0.5 * (high - low) * (height - self.eaves) / gable.height
-        return low + inwards, high - inwards
+        return None if gable is None else tops.gable_profile(gable, *self.span, self.eaves)
 
-    def roof_planes(self) -> list[tuple[np.ndarray, float]]:
-        """Normals (3,) and heights of both slopes of the gable, in coordinates of the wall."""
-        if self.table.gable is None:
-            return []
-        (low, high), rise = self.span, self.table.gable.height
-        half = 0.5 * (high - low)
-        slope = math.hypot(half, rise)
-        normals = [np.array([sign * rise, 0.0, half]) / slope for sign in (-1.0, 1.0)]
-        feet = (np.array([low, 0.0, self.eaves]), np.array([high, 0.0, self.eaves]))
-        return [(normal, float(normal @ foot)) for normal, foot in zip(normals, feet, strict=True)]
+    @property
+    def top(self) -> tops.Profile | None:
+        """Along which courses are cut; None: the top is level, or stepped."""
+        return None if self.is_stepped else self.outline
 
-    def _check(self, hole: Hole) -> None:
-        top = float(self.levels[-1])
-        if hole.high > top + SMALL * self.length:
-            message = f"it reaches up to {hole.high:g}; wall '{self.axis.name}' is {top:g} high"
-            raise KeyProblem(message, *self._key(hole))
-        low, high = self.roof(hole.high)
-        if hole.left < low - SMALL * self.length or hole.right > high + SMALL * self.length:
-            message = f"it goes from {hole.left:g} to {hole.right:g} along wall '{self.axis.name}', "
-            raise KeyProblem(f"{message}which goes from {low:g} to {high:g} there", *self._key(hole))
+    @property
+    def is_stepped(self) -> bool:
+        """Whether it has a gable in steps."""
+        return self.table.gable is not None and self.table.gable.edges == "stepped"
 
-    def _key(self, hole: Hole) -> tuple[str | int, ...]:
-        return ("walls", self.number, "openings", hole.opening)
+    def roof(self, height: float) -> tuple[float, float]:
+        """From where to where the wall goes at a height: under a gable it narrows."""
+        return self.span if self.outline is None else tops.level_span(self.outline, height)
+
+    def roof_of(self, course: int) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The same at the foot and at the head of a course; of a step in its middle."""
+        low, high = (float(level) for level in self.levels[course : course + 2])
+        if self.is_stepped and low >= self.eaves:
+            low = high = 0.5 * (low + high)
+        return self.roof(low), self.roof(high)
+
+    def _check(self, reach: Box, i: int) -> None:
+        left, _, right, height = reach
+        top, small = float(self.levels[-1]), SMALL * self.length
+        if height > top + small:
+            raise KeyProblem(f"it reaches up to {height:g}; wall '{self.axis.name}' is {top:g} high", *self._key(i))
+        low, high = self.roof(height)
+        if left < low - small or right > high + small:
+            message = f"it goes from {left:g} to {right:g} along wall '{self.axis.name}', which goes from {low:g} to "
+            raise KeyProblem(f"{message}{high:g} there", *self._key(i))
+
+    def _key(self, opening: int) -> tuple[str | int, ...]:
+        return ("walls", self.number, "openings", opening)
 
     # -- joints that are given before any block is laid ---------------------------------------------------------
 
@@ -133,28 +163,23 @@ class Elevation:
         if not 0 <= course < len(self.runs):
             return []
         found = [float(x) for run in self.runs[course] for line in run for x in set(line.tolist())]
-        for hole in self._beside(course):
+        for hole in self.holes(course):
             found += [hole.left, hole.right]
         for pocket in self._pockets(course):
             found += [pocket.left, pocket.right]
         return found
-
-    def _beside(self, course: int) -> list[Hole]:
-        low, high = self.levels[course : course + 2]
-        small = SMALL * self.length
-        return [hole for hole in self.holes if hole.low < high - small and hole.high > low + small]
 
     def _pockets(self, course: int) -> list[Pocket]:
         return [pocket for pocket in self.pockets if pocket.course == course]
 
     def ends(self, run: Run, course: int) -> Ends:
         """Ends of a run, with what they are askew in plan and along the slopes of a gable."""
-        foot, head = (self.roof(float(level)) for level in self.levels[course : course + 2])
+        foot, head = self.roof_of(course)
         start, stop = np.maximum(run.start, foot[0]), np.minimum(run.stop, foot[1])
         inner = max(float(start.max()), head[0]), min(float(stop.min()), head[1])
         outer = float(start.min()), float(stop.max())
-        middles = [0.5 * (a + b) for a, b in zip(inner, outer, strict=True)]
-        return Ends(*middles, inner[0] - middles[0], middles[1] - inner[1])
+        first, last = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])
+        return Ends(first, last, inner[0] - first, last - inner[1])
 
     @cached_property
     def first(self) -> float:
@@ -180,8 +205,7 @@ class Elevation:
         near = [x for k in (course - 1, course + 1) if 0 <= k < len(self.runs) for run in self.runs[k]
                 for line in run for x in set(line.tolist())]  # fmt: skip
         return sum(
-            laid(self.ends(run, course), self.length, self.place(course, first), np.array(near)).cost
-            for run in self.runs[course]
+            laid(self.ends(run, course), self.length, self.place(course, first), near).cost for run in self.runs[course]
         )
 
     def place(self, course: int, first: float) -> float:
@@ -190,67 +214,122 @@ class Elevation:
 
     # -- courses ---------------------------------------------------------------------------------------------------
 
-    def stones(self) -> list[Stone]:
-        """All blocks, course by course from below, lintels last. Raises KeyProblem where a piece would be too small."""
-        found = []
-        for course in range(len(self.runs)):
-            row = [stone for run in self.runs[course] for stone in self._of_run(run, course)]
-            row.sort(key=lambda stone: stone.boxes[0][:2])
-            found += [stone._replace(name=f"{self.axis.name}-{course + 1}-{n}") for n, stone in enumerate(row, start=1)]
-        return found + self._lintels()
+    def stones(self) -> list[tuple[str, Stone]]:
+        """All stones by name, course by course from below, what is over openings last.
 
-    def _lintels(self) -> list[Stone]:
-        right, left = self.axis.faces
-        found = []
-        for i, opening in enumerate(self.table.openings):
-            if opening.lintel is None:
-                continue
-            lintel = self.holes[[hole.opening for hole in self.holes].index(i) + 1]
-            box = (lintel.left, lintel.low, lintel.right, lintel.high, right, left)
-            found.append(Stone(f"{self.axis.name}-lintel-{i + 1}", 0, (box,), material=opening.lintel.material))
-        return found
+        Raises KeyProblem for a piece too small.
+        """
+        laid_ones = [stone for course in range(len(self.runs)) for stone in self._course(course)]
+        names, over = zip(*over) if (over := list(self._over_openings())) else ((), ())
+        exact = self._welded([*laid_ones, *over])
+        found: list[tuple[str, Stone]] = []
+        count = dict.fromkeys(range(1, len(self.runs) + 1), 0)
+        together = put_together(exact[: len(laid_ones)], SMALL * self.length)
+        for stone in sorted(together, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
+            count[stone.course] += 1
+            found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
+        return found + list(zip(names, exact[len(laid_ones) :]))
 
-    def _of_run(self, run: Run, course: int) -> list[Stone]:
-        ends = self.ends(run, course)
-        avoid = np.array(self.joints(course - 1) + self.joints(course + 1))
-        first, found, row = self.place(course, self.first), [], self._stretches(run, ends, course)
+    def _welded(self, stones: Sequence[Stone]) -> list[Stone]:
+        """With the same corners where they share them, exactly."""
+        if not any(len(void.joints) for void in self.voids):
+            return list(stones)
+        shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], WELD * self.length))
+        return [one._replace(parts=tuple(Part(next(shapes), part.across) for part in one.parts)) for one in stones]
+
+    def _over_openings(self) -> Iterator[tuple[str, Stone]]:
+        """Lintels and voussoirs."""
+        for i, (opening, void) in enumerate(zip(self.table.openings, self.voids, strict=True)):
+            if opening.lintel is not None and opening.lintel_box is not None:
+                x0, y0, x1, y1 = opening.lintel_box
+                part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), self.across)
+                yield f"{self.axis.name}-lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
+            for n, shape in enumerate(void.voussoirs):
+                stone = Stone(0, (Part(shape, self.across),), 0.0, material=opening.arch.material)
+                yield f"{self.axis.name}-arch-{i + 1}-{n + 1}", stone
+
+    @property
+    def across(self) -> tuple[float, float]:
+        """Its two faces across, right and left of the axis [m]."""
+        right, left = self.axis.faces.tolist()
+        return right, left
+
+    def _course(self, course: int) -> Iterator[Stone]:
+        """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
+        low, high = (float(level) for level in self.levels[course : course + 2])
+        full, small = self.length * (high - low), SMALL * self.length
+        arches = [void for void, beside in self._arches if course in beside]
+        for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
+            x0, y0, x1, y1 = box
+            shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
+            for void in arches:
+                if void.reach[0] < x1 and void.reach[2] > x0:
+                    shapes = [piece for shape in shapes for piece in void.left_of(shape, small)]
+            if self.top is not None and high > self.eaves:
+                shapes = [piece for shape in shapes for piece in tops.below(shape, self.top, small)]
+            groups = cuts.connected(shapes, small) if arches else [range(len(shapes))] if shapes else []
+            for group in groups:
+                yield Stone(course + 1, tuple(Part(shapes[i], across) for i in group), full)
+
+    @cached_property
+    def _arches(self) -> list[tuple[Void, range]]:
+        """Openings under arches, and the courses that they interrupt."""
+        return [(void, self._beside(void.reach[1], void.reach[3])) for void in self.voids if len(void.joints)]
+
+    def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
+        """Blocks of a run [left, low, right, top], and from where to where they go across."""
+        ends, holes = self.ends(run, course), self.holes(course)
+        avoid = self.joints(course - 1) + self.joints(course + 1)
+        first = self.place(course, self.first)
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
-        for stretch in row:
-            at_start, at_stop = stretch.left == ends.start, stretch.right == ends.stop
-            part = Ends(stretch.left, stretch.right, ends.start_askew * at_start, ends.stop_askew * at_stop)
-            heads = laid(part, self.length, first, avoid).heads if stretch.free else np.zeros(0)
-            if at_start and at_stop and self._is_tip(course):
+        askew = {outer[0]: ends.start_askew, outer[1]: ends.stop_askew}
+        for hole in holes:
+            if hole.arch is not None:
+                askew |= {hole.left: hole.left - hole.arch.middle[0], hole.right: hole.arch.middle[1] - hole.right}
+        for stretch in self._stretches(run, ends, course):
+            heads = laid(stretch.ends(askew), self.length, first, avoid).heads if stretch.free else np.zeros(0)
+            if (stretch.left, stretch.right) == outer and self._is_tip(course):
                 count = math.ceil((outer[1] - outer[0]) / self.length - SMALL)
                 heads = outer[0] + (outer[1] - outer[0]) * np.arange(1, count) / count
-            limits = [outer[0] if at_start else stretch.left, *heads.tolist(), outer[1] if at_stop else stretch.right]
-            for n, (a, b) in enumerate(pairwise(limits)):
-                start = run.start if at_start and n == 0 else None
-                stop = run.stop if at_stop and n == len(limits) - 2 else None
-                for low, high in stretch.free:
-                    found.append(Stone("", course + 1, ((a, low, b, high, *stretch.across),), start, stop))
-        return self._joined(found, course)
+            for low, high in stretch.free:
+                for a, b in pairwise([stretch.left, *heads.tolist(), stretch.right]):
+                    yield (a, low, b, high), stretch.across
+        yield from self._tips(run, holes, course, avoid)
+
+    def _tips(
+        self, run: Run, holes: Sequence[Hole], course: int, avoid: Sequence[float]
+    ) -> Iterator[tuple[Box, tuple[float, float]]]:
+        """Thin leftovers over and under arches, which become parts of other stones."""
+        low, high = (float(level) for level in self.levels[course : course + 2])
+        for hole in holes:
+            if hole.arch is not None and run.start.max() <= hole.left and hole.right <= run.stop.min():
+                for tip in hole.arch.tips:
+                    heads = laid(Ends(*tip), self.length, self.place(course, self.first), avoid).heads
+                    for a, b in pairwise([tip[0], *heads.tolist(), tip[1]]):
+                        yield (a, low, b, high), self.across
 
     def _is_tip(self, course: int) -> bool:
         """Whether it is the course under the tip of a gable."""
-        return self.table.gable is not None and course == len(self.runs) - 1
+        return self.top is not None and course == len(self.runs) - 1
 
     def _stretches(self, run: Run, ends: Ends, course: int) -> list[Stretch]:
         """A run, cut where what is free changes. Raises KeyProblem: an opening in another wall, slivers beside it."""
         small = SMALL * self.length
-        holes = [h for h in self._beside(course) if h.left < ends.stop - small and h.right > ends.start + small]
+        holes = [h for h in self.holes(course) if h.left < ends.stop - small and h.right > ends.start + small]
         inner = ends.start + ends.start_askew, ends.stop - ends.stop_askew
         for hole in holes:
             if hole.left < inner[0] - small or hole.right > inner[1] + small:
                 message = f"it goes from {hole.left:g} to {hole.right:g} along wall '{self.axis.name}', which is free "
                 message += f"of other walls from {inner[0]:.6g} to {inner[1]:.6g}"
-                raise KeyProblem(message, *self._key(hole))
+                raise KeyProblem(message, *self._key(hole.opening))
         pockets = self._pockets(course)
-        edges = {x for thing in (*holes, *pockets) for x in (thing.left, thing.right)}
+        edges = {x for hole in holes for x in hole[:2]} | {x for pocket in pockets for x in pocket[:2]}
         between = sorted(x for x in edges if inner[0] + small < x < inner[1] - small)
         between = [x for x, before in zip(between, [-math.inf, *between]) if x - before > small]
         low, high = (float(level) for level in self.levels[course : course + 2])
         found: list[Stretch] = []
-        for a, b in pairwise([ends.start, *between, ends.stop]):
+        outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
+        for a, b in pairwise([outer[0], *between, outer[1]]):
             middle = 0.5 * (a + b)
             over = [hole for hole in holes if hole.left < middle < hole.right]
             across = self._left_over([p.across for p in pockets if p.left < middle < p.right])
@@ -264,21 +343,15 @@ class Elevation:
 
     def _left_over(self, across: Sequence[tuple[float, float]]) -> tuple[float, float]:
         """What pockets leave of the thickness."""
-        right, left = self.axis.faces.tolist()
+        right, left = self.across
         return max([right, *(a for a, _ in across)]), min([left, *(b for _, b in across)])
 
     def _free(self, low: float, high: float, over: Sequence[Hole]) -> tuple[tuple[float, float], ...]:
-        """Heights of a course that holes leave. Raises KeyProblem where that is less than a quarter of a course."""
+        """Heights of a course that holes leave."""
         found, at = [], low
         for hole in (*sorted(over, key=lambda each: each.low), None):
             until = high if hole is None else hole.low
-            height = until - at
-            if height > SMALL * (high - low):
-                if height < SHORTEST * (high - low) * (1.0 - SMALL):
-                    near = hole or max(over, key=lambda each: each.high)
-                    message = f"a piece {height:.3g} m high is left of the course from {low:g} to {high:g}; "
-                    message += "let the opening and its lintel end at bed joints, or a quarter of a course from them"
-                    raise KeyProblem(message, *self._key(near))
+            if until - at > SMALL * (high - low):
                 found.append((at, until))
             at = max(at, high if hole is None else hole.high)
         return tuple(found)
@@ -288,21 +361,9 @@ class Elevation:
         least = SHORTEST * self.length * (1.0 - SMALL)
         for stretch in row:
             length = stretch.right - stretch.left
-            if not stretch.free or length >= least or stretch.across != tuple(self.axis.faces.tolist()):
+            if not stretch.free or length >= least or stretch.across != self.across:
                 continue
             where = f"{length:.3g} m long, at {stretch.left:.4g} m in course {course + 1} of wall '{self.axis.name}'"
             near = [h for h in holes if min(abs(h.left - stretch.right), abs(h.right - stretch.left)) < least]
-            key = self._key(near[0]) if near else ("walls", self.number, "axis")
+            key = self._key(near[0].opening) if near else ("walls", self.number, "axis")
             raise KeyProblem(f"a piece is left that is too short, {where}; at least a quarter of a block", *key)
-
-    def _joined(self, stones: list[Stone], course: int) -> list[Stone]:
-        """Pieces behind narrow pockets become part of the stone beside them."""
-        least, found = SHORTEST * self.length * (1.0 - SMALL), list[Stone]()
-        for stone in stones:
-            left, low, right, high = stone.boxes[0][:4]
-            narrow = right - left < least and stone.boxes[0][4:] != tuple(self.axis.faces.tolist())
-            if narrow and found and found[-1].boxes[0][1:4] == (low, left, high):
-                found[-1] = found[-1]._replace(boxes=(*found[-1].boxes, stone.boxes[0]), stop=stone.stop)
-            else:
-                found.append(stone)
-        return found

@@ -64,6 +64,11 @@ class Bed(NamedTuple):
     high: float
     courses: range  # that it interrupts
 
+    def wall(self, side: Side) -> int:
+        """The wall of a side on which it bears."""
+        assert side.wall is not None
+        return side.wall
+
     def name(self, *more: int) -> str:
         """Of a plate, or of a beam of some number."""
         return "-".join([self.floor.id, *map(str, more)])
@@ -160,7 +165,7 @@ def _plate(found: Floors, bed: Bed) -> None:
 
 def _pockets(found: Floors, bed: Bed, side: Side, outline: np.ndarray) -> None:
     """A pocket in the wall of a side, in all courses beside the floor."""
-    wall = side.wall
+    wall = bed.wall(side)
     axis = bed.plan.axes[wall]
     right, left = axis.faces.tolist()
     bearing = bed.bearing[wall]
@@ -218,13 +223,15 @@ def _moved(bed: Bed, sides: tuple[Side, Side], middle: float, spacing: float) ->
         beam = _beam(bed, *sides, place)
         if all(_fits(bed, side, beam[at]) for side, at in zip(sides, BEAM_ENDS, strict=True)):
             return place
-    message = f"no place is left for a beam near {middle:.4g} m along '{bed.floor.on[0]}', between openings and walls"
+    first = sides[0]
+    place = bed.plan.axes[bed.wall(first)].local((first.start + middle * first.along)[None])[0, 0]
+    message = f"no place is left for a beam near {place:.4g} m along '{bed.floor.on[0]}', between openings and walls"
     raise KeyProblem(message, "floors", bed.number, "spacing")
 
 
 def _fits(bed: Bed, side: Side, outline: np.ndarray) -> bool:
     """Whether a pocket keeps a quarter of a block from openings and walls beside it."""
-    wall, least = side.wall, SHORTEST * bed.building.block[0]
+    wall, least = bed.wall(side), SHORTEST * bed.building.block[0]
     axis = bed.plan.axes[wall]
     low, high = np.sort(axis.local(outline)[:, 0])[[0, -1]]
     zones = [bed.plan.zone(wall, junction) for junction in bed.plan.met(wall)]

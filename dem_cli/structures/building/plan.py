@@ -67,7 +67,7 @@ class Plan(NamedTuple):
     junctions: tuple[Junction, ...]
 
     def face(self, wall: int, other: int, side: int) -> np.ndarray:
-        """Where a face of another wall (side: -1 right, 1 left of it) cuts both faces of this one, along it [m], (2,)."""
+        """Where a face of another wall (side: -1 right of it, 1 left) cuts both faces of this one [m], (2,)."""
         here, there = self.axes[wall], self.axes[other]
         away = float((here.start - there.start) @ there.across)
         sine, cosine = float(here.along @ there.across), float(here.across @ there.across)

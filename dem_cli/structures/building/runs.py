@@ -1,4 +1,4 @@
-"""Runs of a course: from where to where a wall goes without interruption, given which wall passes where others meet it."""
+"""Runs of a course: from where to where a wall goes without interruption, given which wall passes at each junction."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Passes = Callable[[Junction, int], int]  # (junction, course from 0) -> 0 or 1: 
 
 
 class Run(NamedTuple):
-    """A stretch of one course; each end is where it cuts both faces of the wall, right and left of its axis [m], (2,)."""
+    """A stretch of one course; each end is where it cuts the right and the left face of the wall [m], (2,)."""
 
     start: np.ndarray
     stop: np.ndarray

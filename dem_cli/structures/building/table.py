@@ -8,16 +8,12 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, StructureBase
-from dem_cli.structures.wall import MOST_BLOCKS, Opening
+from dem_cli.structures.openings import Opening, check_apart
+from dem_cli.structures.tops import Gable
+from dem_cli.structures.wall import MOST_BLOCKS
 
 FRONT = {"id": "front", "axis": [[0.0, 0.0], [5.0, 0.0]]}
 FLOOR = {"id": "attic", "z": 2.5, "on": ["left", "right"], "kind": "beams", "mass": 900.0}
-
-
-class Gable(CaseModel):
-    """structure.walls.gable: a triangle on top of a wall, as long as the wall, in courses of its own."""
-
-    height: Positive = Field(description="height of its tip above the top of the wall [m]", examples=[1.5])
 
 
 class PlanWall(CaseModel):
@@ -49,6 +45,7 @@ class PlanWall(CaseModel):
     def _has_a_length(self) -> PlanWall:
         if self.axis[0] == self.axis[1]:
             raise KeyProblem("both ends are the same point; a wall has a length", "axis")
+        check_apart(self.openings)
         return self
 
 
@@ -69,8 +66,8 @@ class Floor(CaseModel):
     )
     bearing: Positive | None = Field(
         None,
-        description="how far it reaches into the walls that it bears on [m]; default: half their thickness for a plate, "
-        "all of it for beams",
+        description="how far it reaches into the walls that it bears on [m]; default: a plate half of their "
+        "thickness, beams all of it",
         examples=[0.2],
     )
     height: Positive | None = Field(
@@ -84,13 +81,22 @@ class Floor(CaseModel):
     width: Positive = Field(0.15, description="of beams [m]")
     gap: NonNegative = Field(0.02, description="of a plate, to walls of the room that it does not bear on [m]")
 
+    @model_validator(mode="after")
+    def _keys_of_its_kind(self) -> Floor:
+        foreign = ("gap",) if self.kind == "beams" else ("spacing", "width")
+        for key in foreign:
+            if key in self.model_fields_set:
+                whose = "a plate" if self.kind == "beams" else "beams"
+                raise KeyProblem(f"not allowed with kind = '{self.kind}': it is that of {whose}", key)
+        return self
+
 
 class Building(StructureBase):
-    """Walls that meet, from their axes in plan: bonded at corners, T-junctions and crossings of any angle, with openings,
-    gables and floors. Local origin: that of the plan, at the foot of the walls, on top of the base.
+    """Walls that meet, from their axes in plan: bonded at corners, T-junctions and crossings of any angle, with
+    openings, gables and floors. Local origin: that of the plan, at the foot of the walls, on top of the base.
 
-    Of two walls that meet, the one named first passes in odd courses, the other one in even ones. What is left over goes
-    to a cut block beside the last one; no block is shorter than a quarter of the given length.
+    Of two walls that meet, the one named first passes in odd courses, the other one in even ones. Where a length is no
+    whole number of blocks, some are cut, none to less than a quarter of the given length.
     Block names: "<id>-<wall>-<course>-<number>", both from 1, numbers along the axis; "<id>-<wall>-lintel-<number of
     the opening>"; "<id>-<floor>", beams "<id>-<floor>-<number>"; "<id>-base", strips "<id>-base-<wall>".
     """
@@ -178,11 +184,3 @@ def _check_floor(building: Building, floor: Floor, i: int) -> None:
     near = building.levels[np.abs(building.levels - floor.z).argmin()]
     if abs(near - floor.z) > 1e-6 * building.block[1]:
         raise KeyProblem(f"{floor.z:g} is no bed joint; the nearest one is at {near:g}", "floors", i, "z")
-    if floor.kind == "beams":
-        for key in ("gap",):
-            if key in floor.model_fields_set:
-                raise KeyProblem("not allowed with kind = 'beams': it is that of a plate", "floors", i, key)
-    else:
-        for key in ("spacing", "width"):
-            if key in floor.model_fields_set:
-                raise KeyProblem("not allowed with kind = 'rigid': it is that of beams", "floors", i, key)

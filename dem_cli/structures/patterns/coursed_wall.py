@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns import coursed
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, spread, stone_figures
@@ -14,7 +15,7 @@ from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, sprea
 UNITS = {"head_angle_deg": "deg"}
 
 
-class CoursedWall(PatternWall, coursed.CoursedPattern):
+class CoursedWall(RandomStructure, PatternWall, coursed.CoursedPattern):
     """Stones in irregular courses: beds kink, stones differ in height and length. Local origin: lower left corner of
     the wall, on top of its base; in 3D half of the thickness lies to either side.
 

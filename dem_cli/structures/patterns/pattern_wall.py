@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive, RandomStructure
-from dem_cli.geometry import polygon
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
@@ -17,7 +16,26 @@ from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
 
 
-class PatternWall(RandomStructure):
+class DressedEnds(CaseModel):
+    """Quoins: squared stones that close the ends of a wall of irregular stones, long and short in turn."""
+
+    length: Positive = Field(description="length of the long ones [m]; the short ones are half of it", examples=[0.6])
+    height: Positive = Field(description="height, stretched to fill the wall with a whole number [m]", examples=[0.3])
+    material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["ashlar"])
+
+    def boxes(self, length: float, height: float) -> dict[str, np.ndarray]:
+        """Local name -> shape of each, in a wall of that size [m]."""
+        count = max(round(height / self.height), 1)
+        levels, found = [height * k / count for k in range(count)] + [height], {}
+        for k, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
+            for end, share in (("left", 1.0 - 0.5 * (k % 2)), ("right", 0.5 + 0.5 * (k % 2))):
+                reach = self.length * share
+                x0, x1 = (0.0, reach) if end == "left" else (length - reach, length)
+                found[f"quoin-{end}-{k + 1}"] = np.array([[x0, low], [x1, low], [x1, high], [x0, high]])
+        return found
+
+
+class PatternWall(StructureBase):
     """What every wall of irregular masonry accepts."""
 
     size: tuple[Positive, Positive] = Field(
@@ -28,6 +46,9 @@ class PatternWall(RandomStructure):
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
     openings: tuple[Opening, ...] = Field(
         (), description="doors and windows", examples=[[{"x": 0.8, "y": 0.0, "width": 0.9, "height": 2.0}]]
+    )
+    quoins: DressedEnds | None = Field(
+        None, description="squared stones at both ends; default: none", examples=[{"length": 0.6, "height": 0.3}]
     )
     gable: tops.Gable | None = Field(
         None,
@@ -58,9 +79,11 @@ class PatternWall(RandomStructure):
         top = self.outline[2:] if not self.gable else self.outline[[4, 3, 2]]
         for i, opening in enumerate(self.openings):
             check_opening(opening, i, length, height)
-            if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.solids):
+            if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.void.solids):
                 raise KeyProblem("reaches above the top of the wall there", "openings", i)
         check_apart(self.openings)
+        if self.quoins:
+            _check_quoins(self, self.quoins)
         for i, side in enumerate(self.sides):
             widest = side.widest(length)
             if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
@@ -68,6 +91,11 @@ class PatternWall(RandomStructure):
                 message = f"{side.strip:g} is not allowed; must be at most {widest:g}, {of}"
                 raise KeyProblem(message, "sides", i, "strip")
         return self
+
+    @property
+    def has_free_ends(self) -> bool:
+        """Whether neither quoins nor fixed sides hold its stones at one end or the other."""
+        return not self.quoins and not {"-x", "+x"} <= {side.face for side in self.sides}
 
     @property
     def base_depth(self) -> float:
@@ -85,26 +113,36 @@ class PatternWall(RandomStructure):
 
     @property
     def panel(self) -> WallPanel:
-        """Its face without its openings, lintels and arches."""
-        return WallPanel(self.outline, tuple(hole for opening in self.openings for hole in holes(opening)))
+        """Its face without its openings, lintels, arches and quoins."""
+        found = [hole for opening in self.openings for hole in opening.void.outlines]
+        quoins = self.quoins.boxes(*self.size) if self.quoins else {}
+        return WallPanel(self.outline, (*quoins.values(), *found))
 
 
-def holes(opening: Opening) -> list[np.ndarray]:
-    """Convex shapes that an opening, its lintel or its arch take out of a pattern."""
-    round_one = opening.arch is not None and opening.arch.form == "circle"
-    boxes = [box for box in (() if round_one else (opening.box,)) + (opening.lintel_box,) if box]
-    found = [rectangle(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in boxes]
-    if opening.arch is not None:
-        outer = np.concatenate([opening.arch_joints[[0, -1], 0], opening.arch_joints[:, 1]])
-        found.append(polygon.in_order(np.unique(outer if not round_one else outer[2:-1], axis=0)))
-    return found
+def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
+    """Raises KeyProblem where quoins leave nothing between them, or openings cross them."""
+    length = wall.size[0]
+    if quoins.length > length / 3.0:
+        message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
+        raise KeyProblem(message, "quoins", "length")
+    for i, opening in enumerate(wall.openings):
+        left, _, right, _ = opening.void.reach
+        if left < quoins.length * (1.0 - 1e-9) or right > length - quoins.length * (1.0 - 1e-9):
+            raise KeyProblem("crosses the quoins", "openings", i)
 
 
 def masonry(wall: PatternWall, tiling: Tiling) -> list[Block]:
     """Base, sides, stones, lintels and arches of a wall, in local places. Raises ValueError: openings leave nothing."""
     if not tiling.stones:
         raise ValueError("the openings leave nothing of the wall")
-    return [*_supports(wall), *blocks_of(tiling, wall.thickness), *_over_openings(wall)]
+    return [*_supports(wall), *_quoins(wall), *blocks_of(tiling, wall.thickness), *_over_openings(wall)]
+
+
+def _quoins(wall: PatternWall) -> list[Block]:
+    if not wall.quoins:
+        return []
+    shapes = wall.quoins.boxes(*wall.size).items()
+    return [Block(name, (shape,), wall.quoins.material, wall.thickness) for name, shape in shapes]
 
 
 def _supports(wall: PatternWall) -> list[Block]:
@@ -124,7 +162,7 @@ def _over_openings(wall: PatternWall) -> list[Block]:
             x0, y0, x1, y1 = opening.lintel_box
             shape = rectangle(x0, y0, x1 - x0, y1 - y0)
             blocks.append(Block(f"lintel-{i + 1}", (shape,), opening.lintel.material, wall.thickness))
-        for n, shape in enumerate(opening.voussoirs):
+        for n, shape in enumerate(opening.void.voussoirs):
             material = opening.arch.material if opening.arch else ""
             blocks.append(Block(f"arch-{i + 1}-{n + 1}", (shape,), material, wall.thickness))
     return blocks

@@ -7,13 +7,16 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns import voronoi
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
 
+RELAXED = 3  # Lloyd steps from which most free-standing walls stand at 35°: 6 of 8; without any 2, with 10 all
 
-class VoronoiWall(PatternWall, voronoi.VoronoiPattern):
+
+class VoronoiWall(RandomStructure, PatternWall, voronoi.VoronoiPattern):
     """Stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal masonry.
     Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
 
@@ -43,3 +46,8 @@ def stones(wall: VoronoiWall) -> Tiling:
 def figures(wall: VoronoiWall) -> list[tuple[str, str]]:
     """What was drawn, for `dem check`."""
     return [("stones", stone_figures(stones(wall)))]
+
+
+def loose_ends(wall: VoronoiWall) -> str:
+    """The key by which stones may slide out at free ends; "": none."""
+    return "relax" if wall.relax < RELAXED and wall.has_free_ends else ""

@@ -110,7 +110,9 @@ class Vault(StructureBase):
         None, description="clear radius of its opening [m], instead of oculus_deg (dome)", examples=[0.6]
     )
     cap: bool | None = Field(
-        None, description="whether one stone closes it at the crown (dome); default: where no oculus is given"
+        None,
+        description="whether one stone closes it at the crown (dome); default: where no oculus is given",
+        examples=[False],
     )
     drum: Pier | None = Field(
         None, description="an upright wall below the dome", examples=[{"width": 0.8, "height": 2.0, "courses": 4}]

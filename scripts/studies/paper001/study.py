@@ -1,4 +1,4 @@
-"""Study of paper 001: walls of three kinds."""
+"""Study of paper 001: walls of three kinds, the statistics of coursed ones, the stone house."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from studies.paper001 import walls
+from studies.paper001 import house, statistics, walls
 from studies.study import StudyRunner
 
 
@@ -23,14 +23,15 @@ class PaperStudy(StudyRunner):
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
     """What page.md.j2 shows."""
-    return walls.values(found)
+    return walls.values(found) | statistics.values(found) | house.values(found)
 
 
 STUDY = PaperStudy(
     "paper001",
     "Paper 001: walls of many patterns, a stone house",
-    {kind: partial(walls.measure, kind) for kind in walls.FILES},
+    {kind: partial(walls.measure, kind) for kind in walls.FILES}
+    | {"statistics": statistics.measure, "house": house.measure},
     values,
-    pictures={"curves": ("", walls.draw_curves)},
+    pictures={"curves": ("", walls.draw_curves), "statistics": ("statistics", statistics.draw_statistics)},
     machine=True,
 )

@@ -23,6 +23,7 @@ FOLDER = CASES / "validation"
 FILES = {"regular": "lemos_wall", "voronoi": "lemos_voronoi", "coursed": "lemos_coursed"}  # every run of their sweeps
 SQUARE, LONG = "1 × 1 m", "2 × 1 m"  # how names of regular walls begin
 FIGURES = {"3": (SQUARE, "Voronoi"), "6": (LONG, "coursed")}  # of the paper: names of the curves begin so
+OFFSETS = ("0", "0.1 m", "0.5 m")
 EARLY = 0.02  # load at which stiffness is read off
 FARTHEST = 300.0  # of what is drawn [mm]
 COLOURS = {"offset 0": "#7c7c86", "offset 0.1 m": "#1f5fa8", "offset 0.5 m": "#2a8c5b"}
@@ -113,7 +114,7 @@ def verdicts(runs: dict[str, Any]) -> list[tuple[str, str, str]]:
     """What the text of the paper prints of the figures, and whether it is so here."""
     rows = []
     for shape in (SQUARE, LONG):
-        none, tenth, half = (runs[f"{shape}, offset {offset}"] for offset in ("0", "0.1 m", "0.5 m"))
+        none, tenth, half = (runs[f"{shape}, offset {offset}"] for offset in OFFSETS)
         loads = [load(one) for one in (none, tenth, half)]
         rows.append(
             (f"{shape}: offset 0.1 m carries more than none", ratio(loads[1], loads[0]), said(loads[1] > loads[0]))
@@ -122,7 +123,7 @@ def verdicts(runs: dict[str, Any]) -> list[tuple[str, str, str]]:
         rows.append((f"{shape}: it is stiffer at first as well", ratio(stiff[1], stiff[0]), said(stiff[1] > stiff[0])))
         rows.append((f"{shape}: 0.1 m only marginally below 0.5 m", ratio(loads[1], loads[2]),
                      said(near(loads[1], loads[2]), "within 5 %", "")))  # fmt: skip
-    for offset in ("0", "0.1 m", "0.5 m"):
+    for offset in OFFSETS:
         pair = [load(runs[f"{shape}, offset {offset}"]) for shape in (LONG, SQUARE)]
         rows.append(
             (f"offset {offset}: {LONG} carries more than {SQUARE}", ratio(*pair), said(pair[0] > 1.01 * pair[1]))
@@ -154,6 +155,29 @@ def irregular(runs: dict[str, Any]) -> list[tuple[str, str, str]]:
         else:
             rows.append(("Figure 6: close to offset 0.1 m", ratio(mean, tenth), said(near(mean, tenth, 0.15))))
     return rows
+
+
+def orderings(found: Mapping[str, Any]) -> dict[str, bool]:
+    """The four sentences of the data book (lemos_2019_wall) on these curves, by its ids."""
+    runs = {run["name"]: run for run in all_of(found)}
+    loads = {name: load(run) for name, run in runs.items() if stands(run)}
+    square, long = ([loads[f"{shape}, offset {offset}"] for offset in OFFSETS] for shape in (SQUARE, LONG))
+    voronoi, coursed = (
+        [value for name, value in loads.items() if name.startswith(kind)] for _, kind in FIGURES.values()
+    )
+    return {
+        "order_offset": square[1] > square[0] and near(square[1], square[2]),
+        "order_voronoi": together(voronoi) and max(voronoi) <= 1.01 * square[1],
+        "order_irregular": together(coursed)
+        and near(float(np.mean(coursed)), long[1], 0.15)
+        and min(coursed) > 1.5 * long[0],
+        "order_shape": all(a > b for a, b in zip(long[1:], square[1:], strict=True)),
+    }
+
+
+def together(loads: list[float]) -> bool:
+    """Whether all three walls of a kind stand, and carry about the same."""
+    return len(loads) == 3 and max(loads) < 1.15 * min(loads)
 
 
 def stands(run: dict[str, Any]) -> bool:

@@ -14,6 +14,7 @@ from studies.appendix_b.failure_loads import load_of
 from studies.chapter6.records import capacities
 from studies.chapter7 import block, heights, shapes, walls
 from studies.chapter7.load_path import middle, top
+from studies.paper001.walls import orderings
 
 Result = dict[str, Any]  # a [[result]] of the data book
 Pair = tuple[Any, Any]  # of dem, and printed as dem has it
@@ -136,6 +137,11 @@ def seven_bodies(row: Result) -> Pair:
     return data("church")["models"]["cases"]["statics"], row["value"]
 
 
+def wall_order(row: Result) -> Pair:
+    """An ordering of pushover curves of paper 001."""
+    return orderings(data("paper001"))[row["id"]], row["value"]
+
+
 PAGES: dict[str, tuple[Callable[[Result], Pair], ...]] = {  # of docs/, that show what these take
     "chapter7": (
         shape_load, shape_top, five_sides_top, column_load, turn, corner, turns_of_the_cycle, six_blocks, deep, softer,
@@ -144,5 +150,6 @@ PAGES: dict[str, tuple[Callable[[Result], Pair], ...]] = {  # of docs/, that sho
     "appendix_b": (top_load, top_load_mean, square),
     "chapter6": (table_test, mean_capacity, column_onset),
     "church": (seven_bodies,),
+    "paper001": (wall_order,),
 }  # fmt: skip
 COMPUTED = {one.__name__: (one, page) for page, those in PAGES.items() for one in those}

@@ -72,7 +72,7 @@ def _reasons(found: Sequence[SeedRow]) -> str:
     words = {
         "3D": "needs a third dimension", "deformable": "needs blocks that deform",
         "lost": "an input is lost, with a figure or by damage of the text", "words": "a description or a drawing",
-        "statement": "about the author's program or formulas", "not yet": "dem has no such quantity",
+        "statement": "about the author's program or formulas", "not yet": "dem has no such quantity, or no such case",
     }  # fmt: skip
     count = Counter(row.why.partition(":")[0] for row in found if row.verdict == NOT)
     return table(("why not computed", "results"), [(words[word], str(number)) for word, number in count.most_common()])

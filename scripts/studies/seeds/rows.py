@@ -110,7 +110,7 @@ def _of_case(result: Mapping[str, Any], value: Any, said: Mapping[str, Any]) -> 
     (answer, *_), why = found, ""
     verdict = MET if answer["passed"] else MISSED
     if answer["kind"] == "inference":
-        verdict, why = INPUT, "an input of the case was inferred from it"
+        verdict, why = INPUT, "" if "how" in said else "an input of the case was inferred from it"
     elif verdict == MISSED:
         why = answer.get("missed", "")
     return {"verdict": verdict, "found": answer["found"], "allowed": answer["tolerance"], "page": page,

@@ -296,7 +296,12 @@ def test_fill_has_its_share_in_the_load_where_asked(case_of):
 
 WRONG = [
     ("pressure", {"block": "dam", "face": "+x", "uniform": 1.0, "levels": [4.0, 5.0]}, "levels", "between 0 and 3 m"),
-    ("pressure", {"block": "dam", "face": "bottom", "uniform": 1.0}, "face", "that nothing covers looks 'bottom'"),
+    (
+        "pressure",
+        {"block": "dam", "face": "bottom", "uniform": 1.0},
+        "face",
+        "that nothing covers looks towards 'bottom'",
+    ),
     ("fill", {"block": "dam", "density": 1800.0, "level": 2.0}, "level", "no face of 'dam' looks up"),
     ("load", {"at": [30.0, 9.0], "force": [0.0, -1.0]}, "at", "there is no block under [30, 9]"),
     (

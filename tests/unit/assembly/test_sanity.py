@@ -70,7 +70,7 @@ UNITS = [
      "size of blocks, root of their area, did you mean 0.02646 (26.46 mm) or 0.2646 (26.46 cm)?"),
     ('kind = "gravity"', 'kind = "gravity"\n' + LIVE, "load.0.kind: not used: kind = 'gravity' has no live load"),
     ('"gravity"', '"pushover"\n' + LIVE + LIVE, "load.0.kind: not used (and 1 more): the live load of pattern = 'mass' "
-     "is the weight of the blocks; point loads take part with pattern = 'live'"),
+     "is the weight of the blocks; point loads and pressures take part with pattern = 'live'"),
     ('"gravity"', '"pushover"\ndirection = [0.0, -1.0]', "analysis.direction: along gravity: blocks become heavier, "
      "and nothing pushes them sideways"),
     ('"gravity"', '"pushover"\ndirection = [0.0, 2.0]', "analysis.direction: along gravity: blocks become lighter, and "
@@ -181,3 +181,15 @@ def test_check_and_run_show_it(tmp_path):
     warnings = " ".join(json.loads(done.stdout)["warnings"])
     assert "23000 N/m3" in warnings
     assert "200 mm" in warnings
+
+
+def test_slivers_of_a_wall(tmp_path):
+    """A window 20 mm off the grid of blocks; with a length in place of blocks_per_course none is left."""
+    window = "openings = [{ x = 0.42, y = 0.4, width = 0.4, height = 0.4 }]\n"
+    off = WALL.replace("thickness = 0.3\n", "thickness = 0.3\n" + window)
+    assert said(tmp_path, WALL) == []
+    assert said(tmp_path, off) == [
+        "structure.0: block 'wall-4-2' is 0.05 of a full one: ends and openings are off the grid of blocks; length in "
+        "place of blocks_per_course lays none"
+    ]
+    assert said(tmp_path, off.replace("blocks_per_course = 3", "length = 1.2")) == []

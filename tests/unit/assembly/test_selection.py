@@ -70,7 +70,7 @@ WRONG = [
     ("monitor.0.block", {"block": "lefd-4-*"}, "no block is called like 'lefd-4-*', did you mean 'left-4-"),
     ("monitor.0.course", {"structure": "left", "course": 9}, "structure 'left' has courses 1 to 4"),
     ("settlement.0.block", {"block": "left-4-*"}, "none of the 2 blocks of 'left-4-*' is fixed"),
-    ("settlement.0.structure", {"structure": "left", "course": 1}, "none of the 3 blocks of 'structure left course 1'"),
+    ("settlement.0.structure", {"structure": "left", "course": 1}, "none of the 3 blocks of structure 'left' course 1"),
     (
         "initial.0.block",
         {"block": "*-base", "tilt": 0.1},
