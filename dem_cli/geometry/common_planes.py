@@ -84,9 +84,9 @@ def _faces(blocks: Sequence[Facets]) -> _AllFaces:
 def _facing(faces: _AllFaces, pairs: np.ndarray, tolerance: float) -> np.ndarray:
     """Pairs of faces of neighbours that should be in one plane, (n, 2)."""
     counts = np.bincount(faces.owners)
-    a, b = pairs.T
+    a, b = np.concatenate([pairs, np.arange(len(counts))[:, None].repeat(2, axis=1)]).T  # steps of a concave one too
     repeats = counts[a] * counts[b]
-    which = np.repeat(np.arange(len(pairs)), repeats)
+    which = np.repeat(np.arange(len(a)), repeats)
     within = np.arange(len(which)) - np.repeat(np.cumsum(repeats) - repeats, repeats)
     i = faces.first[a[which]] + within // counts[b[which]]
     j = faces.first[b[which]] + within % counts[b[which]]

@@ -52,7 +52,7 @@ def facets_of_surface(points: np.ndarray, loops: Sequence[np.ndarray], gap: floa
     Faces that are not plane to that are cut into triangles first. The largest face says where a plane is.
     """
     loops = [piece for loop in loops for piece in _flat(points, loop, gap)]
-    areas = np.array([newell(points[loop]) for loop in loops])
+    areas = _areas(points, loops)
     sizes = np.linalg.norm(areas, axis=1)
     normals = areas / np.where(sizes > 0.0, sizes, 1.0)[:, None]
     starts = np.concatenate([[0], np.cumsum([len(loop) for loop in loops])])
@@ -71,6 +71,14 @@ def facets_of_surface(points: np.ndarray, loops: Sequence[np.ndarray], gap: floa
         found.append(normals[k])
         heights.append(height)
     return Facets(points, loops, sides, np.array(found), np.array(heights))
+
+
+def _areas(points: np.ndarray, loops: Sequence[np.ndarray]) -> np.ndarray:
+    """Areas of faces times their normals [m²], (n, 3)."""
+    if any(len(loop) != 3 for loop in loops):
+        return np.array([newell(points[loop]) for loop in loops])
+    a, b, c = np.moveaxis(points[np.array(loops)], 1, 0)
+    return 0.5 * np.cross(b - a, c - a)
 
 
 def _flat(points: np.ndarray, loop: np.ndarray, gap: float) -> list[np.ndarray]:

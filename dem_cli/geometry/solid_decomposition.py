@@ -32,7 +32,8 @@ class Sides(NamedTuple):
 def convex_pieces(sides: Sides) -> list[np.ndarray]:
     """Corners (n, 3) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
     size = float(np.linalg.norm(np.ptp(sides.points, axis=0)))
-    gap = ROUND_OFF * size
+    rough = roughness(sides)
+    gap = max(ROUND_OFF * size, 2.0 * rough)
     over = sides.points @ sides.normals.T - sides.heights
     cutting = np.flatnonzero((over > THIN * size).any(axis=0))
     faces = [(k, sides.points[corners]) for k, corners in zip(sides.planes, sides.triangles) if k in set(cutting)]
@@ -52,11 +53,18 @@ def convex_pieces(sides: Sides) -> list[np.ndarray]:
                 cuts = [(j, _clipped(piece, *below, gap)) for j, piece in inside]
                 waiting.append((part, [(j, cut) for j, cut in cuts if j != k and _width(cut) > THIN * size]))
     kept = [cell for cell in leaves if _winding(sides, cell.mean(axis=0)) > 0.5]
-    pieces = _joined(kept)
+    pieces = _joined(kept, rough)
     whole, found = solid_volume(sides), sum(map(volume, pieces))
-    if abs(found - whole) > SAME_VOLUME * whole:
-        raise ValueError(f"its convex pieces would have {found:.9g} of {whole:.9g} m3")
+    if abs(found - whole) > SAME_VOLUME * whole + rough * 12.0 * size**2:
+        raise ValueError(f"its faces cross each other: its convex parts would have {found:.9g} of {whole:.9g} m3")
     return pieces
+
+
+def roughness(sides: Sides) -> float:
+    """How far corners lie off the planes of the sides that they belong to [m]: nothing where a file is exact."""
+    own = np.repeat(sides.planes, 3)
+    places = sides.points[sides.triangles.ravel()]
+    return float(np.abs((places * sides.normals[own]).sum(axis=1) - sides.heights[own]).max())
 
 
 def solid_volume(sides: Sides) -> float:
@@ -66,17 +74,23 @@ def solid_volume(sides: Sides) -> float:
 
 
 def volume(corners: np.ndarray) -> float:
-    """Volume of the hull of corners (n, 3) [m3]."""
-    from scipy.spatial import ConvexHull
+    """Volume of the hull of corners (n, 3) [m3]; of corners in one plane 0."""
+    from scipy.spatial import ConvexHull, QhullError
 
-    return float(ConvexHull(corners - corners.mean(axis=0)).volume)
+    try:
+        return float(ConvexHull(corners - corners.mean(axis=0)).volume)
+    except QhullError:
+        return 0.0
 
 
 def hull_corners(points: np.ndarray) -> np.ndarray:
     """The corners of the hull of points (n, 3), those left out that lie on its faces or edges; in their order."""
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
-    found = ConvexHull(points - points.mean(axis=0))
+    try:
+        found = ConvexHull(points - points.mean(axis=0))
+    except QhullError:
+        raise ValueError("its faces are not plane enough to tell its convex parts") from None
     return points[np.sort(found.vertices)]
 
 
@@ -150,7 +164,7 @@ def _winding(sides: Sides, point: np.ndarray) -> float:
     return abs(float(2.0 * np.arctan2(np.linalg.det(arms), below).sum())) / (4.0 * np.pi)
 
 
-def _joined(pieces: list[np.ndarray]) -> list[np.ndarray]:
+def _joined(pieces: list[np.ndarray], rough: float) -> list[np.ndarray]:
     """Pieces with those joined, two at a time, that are convex together; the largest first."""
     left = sorted(pieces, key=volume, reverse=True)
     sizes = [volume(piece) for piece in left]
@@ -159,8 +173,9 @@ def _joined(pieces: list[np.ndarray]) -> list[np.ndarray]:
         for j in range(k + 1, len(left)):
             both = np.concatenate([left[k], left[j]])
             together = sizes[k] + sizes[j]
-            if volume(both) <= together * (1.0 + SAME_VOLUME):
-                gap = ROUND_OFF * float(np.linalg.norm(np.ptp(both, axis=0)))
+            span = float(np.linalg.norm(np.ptp(both, axis=0)))
+            if volume(both) <= together * (1.0 + SAME_VOLUME) + rough * span**2:
+                gap = max(ROUND_OFF * span, 2.0 * rough)
                 left[k], sizes[k] = hull_corners(_apart(both, gap)), together
                 del left[j], sizes[j]
                 k = -1

@@ -15,6 +15,7 @@ from dem_cli.geometry.polyhedron import newell, size
 from dem_cli.imports.contents import FileBody, FileProblem
 
 SAME_POINT = 1e-6  # of the size of a body: corners that close are one
+SAME_PLACE = 1e-3  # rad: faces of two solids that lie against each other, as files round them
 
 
 class Shell(NamedTuple):
@@ -145,7 +146,7 @@ def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: in
     found = []
     for k in np.flatnonzero(forward):  # what is inside lies clockwise about the edge of a face that runs along it
         away = (angles[k] - angles) % (2.0 * np.pi)
-        away = np.where(away < 1e-6, 2.0 * np.pi, away)
+        away = np.where(away < SAME_PLACE, 2.0 * np.pi, away)
         away[forward] = np.inf
         found.append((edges.faces[sides[k]], edges.faces[sides[int(away.argmin())]], 0))
     if len({second for _, second, _ in found}) < len(found):

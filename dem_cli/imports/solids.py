@@ -16,6 +16,7 @@ from dem_cli.imports.contents import FileBody, FileProblem
 from dem_cli.imports.shells import shells_of
 
 ROUNDED = 1e-6  # of the size of all: what files round off, put back by default
+SINGLE = 2.0**-22  # of the largest coordinate: twice what single precision rounds off
 
 
 class Reading(Protocol):
@@ -55,9 +56,7 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
             raise FileProblem(f"{called(body, number)}: {error}") from None
         owners += [number] * len(found)
         shapes += found
-    places = np.concatenate([_points(shape) for shape in shapes])
-    size = float(np.linalg.norm(np.ptp(places, axis=0)))
-    tolerance = ROUNDED * size if how.snap is None else how.snap
+    tolerance = rounding(bodies, factor) if how.snap is None else how.snap
     facets = [_facets(shape, tolerance) for shape in shapes]
     notes = []
     if tolerance > 0.0:
@@ -70,9 +69,18 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
         try:
             parts = _parts(each, how.concave == "decompose", tolerance)
         except ValueError as error:
-            raise FileProblem(f"{called(body, number)}: {error}") from None
+            hint = "; a larger snap puts corners back onto planes" if "plane" in str(error) else ""
+            raise FileProblem(f"{called(body, number)}: {error}{hint}") from None
         solids.append(Solid(body.name, body.layer, body.fixed, parts))
     return solids, notes
+
+
+def rounding(bodies: Sequence[FileBody], factor: float) -> float:
+    """What a file may have rounded off [m]: 1e-6 of the size of all, and the last digits of single precision."""
+    places = np.concatenate([body.points for body in bodies])
+    size = float(np.linalg.norm(np.ptp(places, axis=0)))
+    single = bool((places == places.astype(np.float32)).all())
+    return factor * max(ROUNDED * size, SINGLE * float(np.abs(places).max()) if single else 0.0)
 
 
 def called(body: FileBody, number: int) -> str:
@@ -102,10 +110,6 @@ def _outline(ring: np.ndarray) -> np.ndarray:
     if not is_simple(found):
         raise FileProblem("its outline crosses or touches itself")
     return found
-
-
-def _points(shape: Any) -> np.ndarray:
-    return shape if isinstance(shape, np.ndarray) else shape.points
 
 
 def _facets(shape: Any, tolerance: float) -> Facets:

@@ -72,6 +72,25 @@ def test_neighbours_of_a_rounded_file_lie_on_common_planes(tmp_path, boxes):
     assert far < 2e-4
 
 
+def test_a_soup_in_single_precision_far_from_the_origin_falls_into_its_stones(tmp_path, boxes):
+    """Tilted, in STL, all stones touching, coordinates rounded to 2e-6 m: each edge has four faces or more."""
+    tilt = trimesh.transformations.euler_matrix(0.2, 0.1, 0.6)
+    tilt[:2, 3] = 20.0, 10.0
+    meshes = [trimesh.creation.box(bounds=[low, high]).apply_transform(tilt) for _, low, high in boxes]
+    trimesh.util.concatenate(meshes).export(tmp_path / "tilted.stl")
+    found = read(tmp_path / "tilted.stl")
+    assert len(found.blocks) == len(boxes)
+    assert "corners moved onto common planes" in found.notes[1]
+    wanted = sorted(np.prod(np.subtract(high, low)) for _, low, high in boxes)
+    assert sorted(volumes(found.blocks).values()) == pytest.approx(wanted, rel=1e-4)
+    back = np.concatenate([block.parts[0].vertices for block in found.blocks]) - tilt[:3, 3]
+    heights = (back @ tilt[:3, :3])[:, 2]
+    for level in (0.0, 0.25, 0.5, 0.75):
+        bed = back[np.abs(heights - level) < 1e-3]
+        normal = np.linalg.svd(bed - bed.mean(axis=0))[2][-1]
+        assert np.abs((bed - bed.mean(axis=0)) @ normal).max() < 1e-13
+
+
 def test_what_is_exact_keeps_every_bit(tmp_path):
     x = np.array([0.1, 0.30000000000000004, 1 / 3, 2 / 3, 0.7])
     solids = {
@@ -82,6 +101,31 @@ def test_what_is_exact_keeps_every_bit(tmp_path):
     assert len(found.notes) == 1
     for block in found.blocks:
         assert np.array_equal(block.parts[0].vertices, solids[block.id][0])
+
+
+def test_a_drawing_by_hand_gets_common_lines(tmp_path):
+    """A course of four stones whose corners miss each other by up to 2 mm; joints are shared afterwards."""
+    rng = np.random.default_rng(2)
+    rings = [
+        np.array([(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 0.5), (x, 0.5)]) + rng.uniform(-1e-3, 1e-3, (4, 2))
+        for x in range(4)
+    ]
+    shapes = "".join(
+        f'<polygon id="s{k}" points="{" ".join(f"{x},{-y}" for x, y in ring)}"/>' for k, ring in enumerate(rings)
+    )
+    (tmp_path / "hand.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{shapes}</svg>')
+    found = read(tmp_path / "hand.svg", snap=5e-3)
+    assert "6 corners moved" in found.notes[1] or "12 corners moved" in found.notes[1]
+    for left, right in zip(found.blocks, found.blocks[1:]):
+        near = [corner for corner in left.parts[0] if np.abs(corner[0] - right.parts[0][:, 0]).min() < 0.1]
+        start, end = sorted((corner.tolist() for corner in near), key=lambda corner: corner[1])
+        along = np.subtract(end, start)
+        others = right.parts[0][np.abs(right.parts[0][:, 0] - start[0]) < 0.1]
+        assert np.abs(polygon.cross(along, others - start)).max() < 1e-12
+    before = read(tmp_path / "hand.svg", snap=0)
+    assert len(before.notes) == 1
+    for block, ring in zip(before.blocks, rings):
+        assert np.abs(np.sort(block.parts[0], axis=0) - np.sort(ring, axis=0)).max() < 1e-12
 
 
 @pytest.mark.parametrize("outline", [L, [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)]])
@@ -242,6 +286,39 @@ def test_compas_meshes_have_names_supports_and_materials(tmp_path):
     (block,) = read(tmp_path / "m.json", materials="file").blocks
     assert (block.id, block.fixed, block.material) == ("base", True, "tuff")
     assert np.array_equal(block.parts[0].vertices, prism(SQUARE, 0.0, 1 / 3)[0])
+
+
+def test_a_model_of_compas_dem_has_supports_materials_and_transformations(tmp_path):
+    """As compas_dem 0.3 writes a BlockModel: elements by guid, materials beside them, contacts in the graph."""
+    shift = [[1.0, 0.0, 0.0, 5.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+
+    def element(support: bool, transformation):
+        data = {"transformation": transformation, "features": [], "name": "Block", "material": "m1"}
+        return {"dtype": "compas_dem.elements/Block", "data": {**data, "geometry": PLAIN_MESH, "is_support": support}}
+
+    moved = {"dtype": "compas.geometry/Transformation", "data": {"matrix": shift}}
+    tuff = {"dtype": "compas_dem.material/Stone", "data": {"name": "tuff", "density": 1600.0}}
+    point = {"dtype": "compas.geometry/Point", "data": [0.0, 0.0, 0.0]}
+    model = {
+        "elements": {"e1": element(True, None), "e2": element(False, moved)},
+        "materials": {"m1": tuff},
+        "graph": {
+            "node": {"0": {"element": "e1"}},
+            "edge": {"0": {"1": {"contacts": [{"data": {"points": [point]}}]}}},
+        },
+    }
+    (tmp_path / "model.json").write_text(json.dumps({"dtype": "compas_dem.models/BlockModel", "data": model}))
+    found = read(tmp_path / "model.json", materials="file")
+    assert [(b.id, b.fixed, b.material) for b in found.blocks] == [
+        ("Block-1", True, "tuff"),
+        ("Block-2", False, "tuff"),
+    ]
+    assert found.notes[-1] == "the file says tuff: 1600 kg/m3"
+    here, there = (block.parts[0].vertices for block in found.blocks)
+    assert np.array_equal(there - here, np.tile([5.0, 0.0, 0.0], (8, 1)))
+
+
+PLAIN_MESH = {**MESH, "data": {**MESH["data"], "attributes": {}}}
 
 
 NO_NUMBER = [
