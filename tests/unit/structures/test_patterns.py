@@ -41,7 +41,7 @@ def courses(panel: WallPanel, seed: int, **keys) -> Tiling:
 PATTERNS = {
     "random": lambda panel, seed: rubble(panel, seed, relax=0),
     "relaxed": lambda panel, seed: rubble(panel, seed, relax=2, stretch=1.8),
-    "polygonal": lambda panel, seed: rubble(panel, seed, relax=20, shortest=0.25),
+    "polygonal": lambda panel, seed: rubble(panel, seed, relax=8, shortest=0.25),
     "coursed": courses,
     "leaning": lambda panel, seed: courses(panel, seed, **LEANING),
 }  # fmt: skip
