@@ -145,8 +145,10 @@ def imported(table: Import) -> ImportedStructure:
 
     A command asks for them several times: they are kept until the file or the table changes.
     """
-    path = Path(table.file)
-    held = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+    try:
+        held = hashlib.sha256(Path(table.file).read_bytes()).hexdigest()
+    except OSError:
+        held = ""  # what is wrong is said where it is read
     key = table.model_dump_json(), held
     if key not in _KEPT:
         if len(_KEPT) >= MOST_KEPT:
