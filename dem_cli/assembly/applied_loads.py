@@ -184,7 +184,7 @@ def _pressure(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath
     looking, key = np.ones(len(surfaces.normals), bool), "face" if table.facing is None else "facing"
     if table.face != "all":
         wanted = table.direction(model.dimension)
-        towards = np.array(table.facing) - surfaces.centres() if wanted is None else np.array([wanted])
+        towards = np.array(table.facing) - surfaces.middles if wanted is None else np.array([wanted])
         lengths = np.linalg.norm(towards, axis=1)
         cosines = (surfaces.normals * towards).sum(axis=1) / np.where(lengths > 0.0, lengths, 1.0)
         looking = cosines >= np.cos(np.radians(table.within_deg)) - LOOKS_UP

@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.gaps import STEEPEST, joined, joint_reach
 from dem_cli.contact.geometry import geometry_of
+from dem_cli.contact.joints import Faces
 from dem_cli.geometry import surface_pieces
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.model.model import Model
@@ -41,6 +42,7 @@ class Surfaces:
         self.low = np.minimum.reduceat(self.corners, starts, axis=0)
         self.high = np.maximum.reduceat(self.corners, starts, axis=0)
         self.sizes = shapes_of(self.corners).face_sizes(self.corners, self.topology)
+        self.middles = self._middles()
         self.covers, self.covered = self._covers()
         self._pieces: dict[int, list[SurfacePiece]] = {}
 
@@ -62,11 +64,6 @@ class Surfaces:
             found &= np.minimum.reduceat((self.corners @ normal)[self.topology.face_corners], first) <= offset
         return found
 
-    def centres(self) -> np.ndarray:
-        """Means of the corners of all faces [m], (n_faces, d)."""
-        starts = self.topology.face_starts
-        return np.add.reduceat(self.corners[self.topology.face_corners], starts[:-1]) / np.diff(starts)[:, np.newaxis]
-
     def open_above(self, pieces: Sequence[SurfacePiece], ceiling: float, roofs: np.ndarray) -> list[SurfacePiece]:
         """What of some pieces has no part of the blocks `roofs` (n,) above it that begins below a ceiling [m]."""
         open_, roofing = list[SurfacePiece](), np.isin(self.model.part_blocks, roofs)
@@ -78,6 +75,11 @@ class Surfaces:
                 left = [rest for one in left for rest in surface_pieces.outside(one, *self._shadow(part))]
             open_ += _pieces(piece, [one - step for one in left])
         return open_
+
+    def _middles(self) -> np.ndarray:
+        """Means of the corners of all faces [m], (n_faces, d)."""
+        starts = self.topology.face_starts
+        return np.add.reduceat(self.corners[self.topology.face_corners], starts[:-1]) / np.diff(starts)[:, np.newaxis]
 
     def _free(self, face: int) -> Iterator[SurfacePiece]:
         """The pieces of a face that are not covered."""
@@ -125,24 +127,37 @@ class Surfaces:
 
     def _covers(self) -> tuple[dict[int, list[int]], np.ndarray]:
         """Of each face those of other parts that lie on it, and how much of it they cover together [m^(d-1)]."""
-        model, ones = self.model, np.ones(self.model.n_parts)
-        alone = model.parts_alone()._replace(thickness=ones)
-        found = find_joints(alone, self.corners, joint_reach(model))
-        sizes = model.parts.sizes[found.parts].min(axis=1)
-        facing = (self.normals[found.faces[:, 0]] * self.normals[found.faces[:, 1]]).sum(axis=1)
-        found = found.where(joined(found.separation, sizes) & (facing < -np.sqrt(1.0 - STEEPEST**2)))
-        outlines = geometry_of(model.dimension).drawn(alone, found, self.corners, 0.0)
-        faces = {tuple(parts): pair for parts, pair in zip(found.parts.tolist(), found.faces.tolist(), strict=True)}
+        alone = self.model.parts_alone()._replace(thickness=np.ones(self.model.n_parts))
+        found = self._face_to_face(find_joints(alone, self.corners, joint_reach(self.model)))
+        outlines = geometry_of(self.model.dimension).drawn(alone, found, self.corners, -np.inf)
         covers: dict[int, list[int]] = {}
         covered = np.zeros(self.topology.n_faces)
-        for k, parts in enumerate(outlines.blocks.tolist()):
+        for k in np.flatnonzero(outlines.lengths > 0.0).tolist():
             common = surface_pieces.measure(outlines.on_first[outlines.starts[k] : outlines.starts[k + 1]])
-            a, b = faces[tuple(parts)]
+            a, b = found.faces[k].tolist()
             if common > SLIVER * min(self.sizes[a], self.sizes[b]):
                 covers.setdefault(a, []).append(b)
                 covers.setdefault(b, []).append(a)
                 covered[[a, b]] += common
         return covers, covered
+
+    def _face_to_face(self, near: Faces) -> Faces:
+        """Of parts that touch, all pairs of faces that lie on each other: several where a side has a corner on it."""
+        scale = self.model.parts.sizes[near.parts].min(axis=1)
+        touching = joined(near.separation, scale)
+        parts, scale, gaps = near.parts[touching], scale[touching], near.separation[touching]
+        first, counts = self.topology.part_faces[:-1], np.diff(self.topology.part_faces)
+        n = counts[parts]
+        pair = np.repeat(np.arange(len(parts)), n.prod(axis=1))
+        number = np.arange(len(pair)) - np.repeat(np.cumsum(n.prod(axis=1)) - n.prod(axis=1), n.prod(axis=1))
+        a = first[parts[pair, 0]] + number // n[pair, 1]
+        b = first[parts[pair, 1]] + number % n[pair, 1]
+        opposite = (self.normals[a] * self.normals[b]).sum(axis=1) < -np.sqrt(1.0 - STEEPEST**2)
+        pair, a, b = pair[opposite], a[opposite], b[opposite]
+        apart = (self.middles[b] * self.normals[a]).sum(axis=1) - self.offsets[a]
+        level = np.abs(apart) <= 2.0 * STEEPEST * scale[pair]
+        pair = pair[level]
+        return Faces(parts[pair], np.column_stack([a[level], b[level]]), gaps[pair], near.reach)
 
 
 def _pieces(whole: SurfacePiece, rest: Sequence[np.ndarray]) -> list[SurfacePiece]:

@@ -54,7 +54,10 @@ class Selection(CaseModel):
 
 
 class GroupMember(CaseModel):
-    """groups.NAME: blocks of one structure, of some of its courses, or with centroids within a box."""
+    """groups.NAME: a list under [groups], such as front = ["left-13-*", "crest", { structure = "right", course = 13 }].
+
+    Ids, patterns, other groups and tables: of blocks of one structure, of some of its courses, with centroids in a box.
+    """
 
     structure: str | None = Field(default=None, description="id of a structure; default: all blocks", examples=["left"])
     course: Courses = Field(default=None, description=ONE_COURSE_OR_MORE, examples=[13])

@@ -13,14 +13,15 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.geometry import geometry_of
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.joints import Faces, JointProperties
 from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
+from dem_cli.model.places import block_at, undeformed
 from dem_cli.model.scales import smallest_edge
 
 CLOSING_GAP = 1e-3  # of the size of the smaller part
 NOTICED_GAP = 0.05  # of the same: wider ones are no joints that anybody forgot to close
+SAMPLED = (0.0, 0.3, 0.6, 0.9)  # of the way from the middle of such a gap to its ends: are other blocks there?
 STEEPEST = 0.1  # sine of the angle between faces that look at each other
 
 
@@ -59,12 +60,24 @@ def gaps_of_start(model: Model) -> StartGaps:
     apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)
     close = joined(faces.separation, scale)
     facing = geometry_of(model.dimension).facing(model, faces, corners, STEEPEST, CLOSING_GAP * scale)
-    kept = apart & (close | facing & (faces.separation <= NOTICED_GAP * scale))
+    noticed = apart & ~close & facing & (faces.separation <= NOTICED_GAP * scale)
+    noticed[noticed] = [not _filled(model, faces, corners, k) for k in np.flatnonzero(noticed)]
+    kept = apart & close | noticed
     blocks, widths, close = model.part_blocks[faces.parts[kept]], faces.separation[kept], close[kept]
     order = np.argsort(widths, kind="stable")
     _, first = np.unique(np.sort(blocks[order], axis=1), axis=0, return_index=True)
     nearest = order[np.sort(first)]  # one for each two blocks
     return StartGaps(blocks[nearest], widths[nearest], close[nearest])
+
+
+def _filled(model: Model, faces: Faces, corners: np.ndarray, pair: np.integer) -> bool:
+    """Whether other blocks lie between two faces all over where they look at each other, a thin tip or a sliver."""
+    found = geometry_of(model.dimension).drawn(model, faces.where(np.array([pair])), corners, 0.0)
+    if not len(found.blocks):
+        return False
+    between = 0.5 * (found.on_first + found.on_second)
+    middle = between.mean(axis=0)
+    return all(block_at(model, middle + share * (place - middle)) is not None for share in SAMPLED for place in between)
 
 
 def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:

@@ -155,9 +155,10 @@ def _elevation(bridge: Bridge) -> Elevation:
         raise KeyProblem(message, "voussoirs") from None
     top = min(float(opening.void.joints[0, 1, 1]) for opening in openings)
     found = Elevation(openings, faces, lift, top)
-    for i, support in enumerate(_toes(found)):
-        needed = [float(abs(support[2, 0] - support[1, 0])), float(abs(support[4, 0] - support[5, 0]))]
-        least = sum(needed) if 0 < i < len(spans) else max(needed)
+    for i in range(len(found.faces)):
+        joints = [opening.void.joints[-1] for opening in openings[max(i - 1, 0) : i]]
+        joints += [opening.void.joints[0] for opening in openings[i : i + 1]]
+        least = sum(_reach(joint, top) for joint in joints)
         key, table = ("piers", bridge.piers) if 0 < i < len(spans) else ("abutments", bridge.abutments)
         if table and table.width < least * (1.0 - 1e-9):
             message = f"{table.width:g} is not allowed; must be at least {least:g}, as the springings"
@@ -188,6 +189,12 @@ def _toes(elevation: Elevation) -> list[np.ndarray]:
             corners.append([left, elevation.top])
         found.append(np.array([corners[0], corners[1], corners[2], corners[2], corners[3], corners[0]]))
     return found
+
+
+def _reach(joint: np.ndarray, level: float) -> float:
+    """How far a springing joint lies over its support, up to a level; a level joint with all of its length [m]."""
+    (x0, y0), (x1, y1) = joint.tolist()
+    return abs((x1 if y1 <= y0 else _at_level(joint, level)[0]) - x0)
 
 
 def _at_level(joint: np.ndarray, level: float) -> list[float]:

@@ -177,5 +177,5 @@ def check_apart(openings: Sequence[Opening]) -> None:
                 continue
             gap = NARROWEST_PIECE * min(opening.width, other.width)
             if overlap(opening.void.solids, other.void.solids) > gap * gap:
-                message = f"crosses openings[{j + 1}]: arches, lintels and openings lie beside each other"
+                message = f"crosses openings.{j}: arches, lintels and openings lie beside each other"
                 raise KeyProblem(message, "openings", i, "arch" if opening.arch else "x")

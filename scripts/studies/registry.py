@@ -5,6 +5,7 @@ from __future__ import annotations
 STUDIES = {  # module with STUDY, sentence of the list
     "appendix_b": ("studies.appendix_b.study", "thesis Appendix B: walls with loads on top"),
     "bounds": ("studies.bounds.study", "bounds of failure loads, from above and below, beside DEM"),
+    "buildings": ("studies.buildings.study", "buildings from their plan: CPU and memory of each stage"),
     "chapter6": ("studies.chapter6.study", "thesis chapter 6: shaken blocks, column and arch"),
     "chapter7": ("studies.chapter7.study", "thesis chapter 7: joints that are not plane"),
     "church": ("studies.church.study", "thesis Appendix A: the slice of a church"),

@@ -54,3 +54,24 @@ def test_an_arch_in_a_wall_stands_and_fails_as_limit_analysis_says():
     low, high = summary["failure_load_bracket"]
     non_associated = solved(tables, associated_only=False).non_associated.load
     assert low * 0.995 <= non_associated <= high * 1.005
+
+
+POINTED = {"shape": "pointed", "rise": 0.7, "voussoirs": 8, "ring": 0.25}
+RUIN = {
+    "courses": 10,
+    "length": 5.0,
+    "profile": [[0.0, 2.5], [2.0, 2.5], [3.4, 1.9], [5.0, 1.9]],
+    "openings": [
+        {"x": 0.8, "y": 0.5, "width": 0.9, "height": 0.6, "arch": POINTED},
+        {"x": 3.4, "y": 0.6, "width": 0.7, "height": 0.7, "arch": {"shape": "circle", "voussoirs": 10, "ring": 0.2}},
+    ],
+}
+CHAPEL = {"bond": "flemish", "leaves": 2, "courses": 7, "length": 2.2, "gable": {"height": 0.9}, "openings": [DOOR]}
+RUBBLE = {"leaves": 3, "core": {"thickness": 0.2}, "through_stones": 0.2, "quoins": {"length": 0.5, "height": 2}}
+
+
+@pytest.mark.parametrize(("dimension", "keys"), [(2, RUIN), (3, CHAPEL), (3, RUBBLE)], ids=["ruin", "chapel", "rubble"])
+def test_masonry_stands_under_its_own_weight(dimension, keys):
+    wall = WALL | keys if dimension == 3 else WALL | {"block": [0.5, 0.25]} | keys
+    summary, _ = solve(case(wall, [1.0, 0.0, 0.0][:dimension]) | {"analysis": {"kind": "gravity"}})
+    assert summary["status"] == "ok"

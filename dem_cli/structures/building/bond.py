@@ -19,7 +19,7 @@ SAME = 1e-6  # of the length of a block: the same place
 CUT, OFF, OVER = 1.0, 2.0, 40.0  # cost of cut blocks, of heads off their place, of heads near joints above and below
 
 
-class Ends(NamedTuple):
+class RunEnds(NamedTuple):
     """Ends of a run [m]: the middle of each, and half of what it is askew."""
 
     start: float
@@ -40,14 +40,14 @@ class Laid(NamedTuple):
     cost: float
 
 
-def laid(ends: Ends, length: float, first: float, avoid: Iterable[float]) -> Laid:
+def laid(ends: RunEnds, length: float, first: float, avoid: Iterable[float]) -> Laid:
     """A run in blocks of a length [m]; heads belong to `first` + k `length`, away from `avoid` [m]."""
     near = {x for x in avoid if ends.start - length < x < ends.stop + length}
     return _laid(ends, length, first % length, tuple(sorted(near)))
 
 
 @lru_cache(maxsize=4096)
-def _laid(ends: Ends, length: float, first: float, near: tuple[float, ...]) -> Laid:
+def _laid(ends: RunEnds, length: float, first: float, near: tuple[float, ...]) -> Laid:
     """The same; courses repeat each other."""
     avoid = np.array(near)
     if ends.length <= length * (1.0 + SAME):
@@ -63,7 +63,7 @@ def _laid(ends: Ends, length: float, first: float, near: tuple[float, ...]) -> L
     return found
 
 
-def _places(ends: Ends, length: float, first: float, avoid: np.ndarray) -> np.ndarray:
+def _places(ends: RunEnds, length: float, first: float, avoid: np.ndarray) -> np.ndarray:
     """Where heads may be [m], in order, each once."""
     count = math.ceil(ends.length / length) + 1
     steps = np.arange(-1, count + 1) * length
@@ -88,7 +88,7 @@ def _costs(places: np.ndarray, length: float, first: float, avoid: np.ndarray) -
     return cost
 
 
-def _shortest(ends: Ends, length: float, places: np.ndarray, costs: np.ndarray) -> Laid | None:
+def _shortest(ends: RunEnds, length: float, places: np.ndarray, costs: np.ndarray) -> Laid | None:
     """The cheapest sequence of heads, pieces between SHORTEST and the whole of a block; None: there is none."""
     nodes = np.concatenate([[ends.start], places, [ends.stop]])
     costs = np.concatenate([[0.0], costs, [0.0]])

@@ -7,13 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
 from dem_cli.model.blocks import Block
-from dem_cli.structures.building.elevation import Elevation, Pocket
+from dem_cli.structures.building.elevation import Pocket, WallElevation
 from dem_cli.structures.building.floors import Slab, floors_of
-from dem_cli.structures.building.plan import Axis, Junction, Plan, plan_of
+from dem_cli.structures.building.plan import Junction, Plan, PlanAxis, plan_of
 from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
 from dem_cli.structures.building.table import Building
 from dem_cli.structures.stones import Part
@@ -28,6 +29,7 @@ Planes = list[tuple[np.ndarray, float]]
 def build(building: Building) -> list[Block]:
     """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
     plan = plan_of(building)
+    _check_gables(building, plan)
     floors = floors_of(building, plan)
     passes = _passes(plan, floors.pockets)
     elevations = [
@@ -36,6 +38,15 @@ def build(building: Building) -> list[Block]:
     walls = [block for each in elevations for block in _set_up(each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
+
+
+def _check_gables(building: Building, plan: Plan) -> None:
+    """Raises KeyProblem where two gables would stand in each other's way, over the place where their walls meet."""
+    for junction in plan.junctions:
+        one, other = (building.walls[wall] for wall in junction.walls)
+        if one.gable is not None and other.gable is not None:
+            message = f"wall '{one.id}' has one too, and they meet: of two walls that meet one has a gable"
+            raise KeyProblem(message, "walls", max(junction.walls), "gable")
 
 
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
@@ -68,7 +79,7 @@ def _behind(plan: Plan, wall: int, junction: Junction, pocket: Pocket) -> bool:
     return pocket.across[0] > right if side > 0 else pocket.across[1] < left
 
 
-def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> Elevation:
+def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> WallElevation:
     """What a wall is laid from, courses of a gable above the others."""
     table = building.walls[wall]
     courses = [each.courses or building.courses for each in building.walls]
@@ -81,7 +92,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
         return course < courses[other]
 
     runs = [runs_of(plan, wall, course, present, passes) for course in range(len(levels) - 1)]
-    return Elevation(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
+    return WallElevation(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
 
 
 def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
@@ -92,7 +103,7 @@ def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
     return np.concatenate([levels, levels[-1] + gable.height * np.arange(1, count + 1) / count])
 
 
-def _set_up(elevation: Elevation) -> list[Block]:
+def _set_up(elevation: WallElevation) -> list[Block]:
     """Blocks of a wall in the places of the plan."""
     named = elevation.stones()
     parts = [part for _, stone in named for part in stone.parts]
@@ -108,13 +119,16 @@ def _set_up(elevation: Elevation) -> list[Block]:
     return blocks
 
 
-def _planes(elevation: Elevation, course: int, part: Part) -> Planes:
+def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
     """Planes that a part is cut along: ends of its run that are askew and that it reaches into."""
     if not course:
         return []
-    low, high = float(part.shape[:, 0].min()), float(part.shape[:, 0].max())
+    (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
     middle, reach = 0.5 * (low + high), ASKEW * elevation.length
-    run = next(run for run in elevation.runs[course - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    laid = int(
+        np.searchsorted(elevation.levels, 0.5 * (foot + head))
+    )  # a stone may have got a piece of the next course
+    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
     found = []
     for line, sign, inside in (
         (run.start, -1.0, low >= run.start.max() - reach),
@@ -128,7 +142,7 @@ def _planes(elevation: Elevation, course: int, part: Part) -> Planes:
     return found
 
 
-def _turn(axis: Axis) -> Callable[[Polyhedron], Polyhedron]:
+def _turn(axis: PlanAxis) -> Callable[[Polyhedron], Polyhedron]:
     """From coordinates of a wall to those of the plan."""
 
     def turned(solid: Polyhedron) -> Polyhedron:
@@ -150,7 +164,7 @@ def upright(outline: np.ndarray, low: float, high: float) -> Polyhedron:
     return Polyhedron(np.column_stack([x, y, up]), tuple(face[::-1] for face in solid.faces))
 
 
-def _base(building: Building, elevations: Sequence[Elevation]) -> list[Block]:
+def _base(building: Building, elevations: Sequence[WallElevation]) -> list[Block]:
     """The fixed blocks below."""
     depth, beyond = building.base_depth, building.base_extension
     if building.base == "none":
@@ -166,7 +180,7 @@ def _base(building: Building, elevations: Sequence[Elevation]) -> list[Block]:
     ]
 
 
-def _footprint(elevation: Elevation, beyond: float) -> np.ndarray:
+def _footprint(elevation: WallElevation, beyond: float) -> np.ndarray:
     """Corners of the ground below a wall and so far beyond it [m], (4, 2)."""
     axis = elevation.axis
     (low, high), (right, left) = elevation.span, axis.faces

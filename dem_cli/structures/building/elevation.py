@@ -15,8 +15,8 @@ from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import cuts
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.structures import tops
-from dem_cli.structures.building.bond import SHORTEST, Ends, laid
-from dem_cli.structures.building.plan import Axis
+from dem_cli.structures.building.bond import SHORTEST, RunEnds, laid
+from dem_cli.structures.building.plan import PlanAxis
 from dem_cli.structures.building.runs import Run
 from dem_cli.structures.building.table import PlanWall
 from dem_cli.structures.course_layout import Interruption, interruption
@@ -58,18 +58,18 @@ class Stretch(NamedTuple):
     free: tuple[tuple[float, float], ...]  # from where to where up [m]
     across: tuple[float, float]
 
-    def ends(self, askew: dict[float, float]) -> Ends:
+    def ends(self, askew: dict[float, float]) -> RunEnds:
         """Its ends; askew: how far stones go on beyond the middle of an end, by its place."""
         start, stop = askew.get(self.left, 0.0), askew.get(self.right, 0.0)
-        return Ends(self.left + start, self.right - stop, start, stop)
+        return RunEnds(self.left + start, self.right - stop, start, stop)
 
 
 @dataclass(frozen=True)
-class Elevation:
+class WallElevation:
     """What a wall is laid from. Lengths along it from the start of its axis, heights from its foot [m]."""
 
     number: int  # of the wall, in the case
-    axis: Axis
+    axis: PlanAxis
     table: PlanWall
     length: float  # of a full block
     levels: np.ndarray  # bed joints, with those of the gable
@@ -172,14 +172,14 @@ class Elevation:
     def _pockets(self, course: int) -> list[Pocket]:
         return [pocket for pocket in self.pockets if pocket.course == course]
 
-    def ends(self, run: Run, course: int) -> Ends:
+    def ends(self, run: Run, course: int) -> RunEnds:
         """Ends of a run, with what they are askew in plan and along the slopes of a gable."""
         foot, head = self.roof_of(course)
         start, stop = np.maximum(run.start, foot[0]), np.minimum(run.stop, foot[1])
         inner = max(float(start.max()), head[0]), min(float(stop.min()), head[1])
         outer = float(start.min()), float(stop.max())
         first, last = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])
-        return Ends(first, last, inner[0] - first, last - inner[1])
+        return RunEnds(first, last, inner[0] - first, last - inner[1])
 
     @cached_property
     def first(self) -> float:
@@ -220,15 +220,15 @@ class Elevation:
         Raises KeyProblem for a piece too small.
         """
         laid_ones = [stone for course in range(len(self.runs)) for stone in self._course(course)]
-        names, over = zip(*over) if (over := list(self._over_openings())) else ((), ())
-        exact = self._welded([*laid_ones, *over])
+        over = list(self._over_openings())
+        exact = self._welded([*laid_ones, *(stone for _, stone in over)])
         found: list[tuple[str, Stone]] = []
         count = dict.fromkeys(range(1, len(self.runs) + 1), 0)
         together = put_together(exact[: len(laid_ones)], SMALL * self.length)
         for stone in sorted(together, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
             count[stone.course] += 1
             found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
-        return found + list(zip(names, exact[len(laid_ones) :]))
+        return found + [(name, stone) for (name, _), stone in zip(over, exact[len(laid_ones) :], strict=True)]
 
     def _welded(self, stones: Sequence[Stone]) -> list[Stone]:
         """With the same corners where they share them, exactly."""
@@ -245,7 +245,8 @@ class Elevation:
                 part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), self.across)
                 yield f"{self.axis.name}-lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
             for n, shape in enumerate(void.voussoirs):
-                stone = Stone(0, (Part(shape, self.across),), 0.0, material=opening.arch.material)
+                material = opening.arch.material if opening.arch else ""
+                stone = Stone(0, (Part(shape, self.across),), 0.0, material=material)
                 yield f"{self.axis.name}-arch-{i + 1}-{n + 1}", stone
 
     @property
@@ -304,7 +305,7 @@ class Elevation:
         for hole in holes:
             if hole.arch is not None and run.start.max() <= hole.left and hole.right <= run.stop.min():
                 for tip in hole.arch.tips:
-                    heads = laid(Ends(*tip), self.length, self.place(course, self.first), avoid).heads
+                    heads = laid(RunEnds(*tip), self.length, self.place(course, self.first), avoid).heads
                     for a, b in pairwise([tip[0], *heads.tolist(), tip[1]]):
                         yield (a, low, b, high), self.across
 
@@ -312,7 +313,7 @@ class Elevation:
         """Whether it is the course under the tip of a gable."""
         return self.top is not None and course == len(self.runs) - 1
 
-    def _stretches(self, run: Run, ends: Ends, course: int) -> list[Stretch]:
+    def _stretches(self, run: Run, ends: RunEnds, course: int) -> list[Stretch]:
         """A run, cut where what is free changes. Raises KeyProblem: an opening in another wall, slivers beside it."""
         small = SMALL * self.length
         holes = [h for h in self.holes(course) if h.left < ends.stop - small and h.right > ends.start + small]

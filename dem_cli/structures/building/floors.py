@@ -12,7 +12,7 @@ from dem_cli.geometry.rotation import cross
 from dem_cli.structures.building.bond import SHORTEST
 from dem_cli.structures.building.elevation import SMALL, Pocket
 from dem_cli.structures.building.plan import Plan
-from dem_cli.structures.building.rooms import Room, Side, between, rooms_of
+from dem_cli.structures.building.rooms import Room, RoomSide, between, rooms_of
 from dem_cli.structures.building.table import Building, Floor
 
 THINNEST = 0.25  # of a wall: what is left of it beside a floor
@@ -64,7 +64,7 @@ class Bed(NamedTuple):
     high: float
     courses: range  # that it interrupts
 
-    def wall(self, side: Side) -> int:
+    def wall(self, side: RoomSide) -> int:
         """The wall of a side on which it bears."""
         assert side.wall is not None
         return side.wall
@@ -130,7 +130,7 @@ def _corners(lines: Sequence[tuple[np.ndarray, float]]) -> np.ndarray:
     return np.array(found)
 
 
-def _line(bed: Bed, side: Side, gap: float) -> tuple[np.ndarray, float]:
+def _line(bed: Bed, side: RoomSide, gap: float) -> tuple[np.ndarray, float]:
     """The edge of a plate along a side of its room."""
     away = 0.0
     if side.wall is not None:
@@ -163,7 +163,7 @@ def _plate(found: Floors, bed: Bed) -> None:
             _pockets(found, bed, side, reach)
 
 
-def _pockets(found: Floors, bed: Bed, side: Side, outline: np.ndarray) -> None:
+def _pockets(found: Floors, bed: Bed, side: RoomSide, outline: np.ndarray) -> None:
     """A pocket in the wall of a side, in all courses beside the floor."""
     wall = bed.wall(side)
     axis = bed.plan.axes[wall]
@@ -208,7 +208,7 @@ def _beams(found: Floors, bed: Bed) -> None:
             _pockets(found, bed, side, beam[at])
 
 
-def _beam(bed: Bed, first: Side, last: Side, middle: float) -> np.ndarray:
+def _beam(bed: Bed, first: RoomSide, last: RoomSide, middle: float) -> np.ndarray:
     """Outline of a beam whose middle line leaves the first wall at a place along it [m], (4, 2)."""
     half = 0.5 * bed.floor.width
     at = float(first.along @ first.start) + middle
@@ -216,18 +216,20 @@ def _beam(bed: Bed, first: Side, last: Side, middle: float) -> np.ndarray:
     return _corners(sides)
 
 
-def _moved(bed: Bed, sides: tuple[Side, Side], middle: float, spacing: float) -> float:
+def _moved(bed: Bed, sides: tuple[RoomSide, RoomSide], middle: float, spacing: float) -> float:
     """The place nearest to where a beam belongs that leaves no sliver beside openings and other walls."""
     shifts = np.linspace(0.0, 0.45, 46) * (spacing - bed.floor.width)
     for place in (middle + sign * shift for shift in shifts for sign in (1.0, -1.0)):
         beam = _beam(bed, *sides, place)
         if all(_fits(bed, side, beam[at]) for side, at in zip(sides, BEAM_ENDS, strict=True)):
             return place
-    message = f"no place is left for a beam near {middle:.4g} m along '{bed.floor.on[0]}', between openings and walls"
+    first = sides[0]
+    place = bed.plan.axes[bed.wall(first)].local((first.start + middle * first.along)[None])[0, 0]
+    message = f"no place is left for a beam near {place:.4g} m along '{bed.floor.on[0]}', between openings and walls"
     raise KeyProblem(message, "floors", bed.number, "spacing")
 
 
-def _fits(bed: Bed, side: Side, outline: np.ndarray) -> bool:
+def _fits(bed: Bed, side: RoomSide, outline: np.ndarray) -> bool:
     """Whether a pocket keeps a quarter of a block from openings and walls beside it."""
     wall, least = bed.wall(side), SHORTEST * bed.building.block[0]
     axis = bed.plan.axes[wall]

@@ -17,7 +17,7 @@ SAME = 1e-9  # of the size of the plan: round-off
 TWO_STEMS = ((0, 1, 0, 0), (0, 0, 0, 1))  # one from either side of a wall: each passes in every fourth course
 
 
-class Axis(NamedTuple):
+class PlanAxis(NamedTuple):
     """One wall in plan; its own x goes along, y across to the left, from the start of its axis."""
 
     name: str
@@ -63,7 +63,7 @@ class Junction(NamedTuple):
 class Plan(NamedTuple):
     """All axes and where they meet."""
 
-    axes: tuple[Axis, ...]
+    axes: tuple[PlanAxis, ...]
     junctions: tuple[Junction, ...]
 
     def face(self, wall: int, other: int, side: int) -> np.ndarray:
@@ -100,7 +100,7 @@ class Plan(NamedTuple):
 def plan_of(building: Building) -> Plan:
     """The plan of a building. Raises KeyProblem where walls meet in a way that cannot be bonded."""
     axes = tuple(
-        Axis(wall.id, np.array(wall.axis[0]), *_direction(wall.axis), wall.thickness or building.thickness)
+        PlanAxis(wall.id, np.array(wall.axis[0]), *_direction(wall.axis), wall.thickness or building.thickness)
         for wall in building.walls
     )
     reach = SAME * float(np.ptp(np.concatenate([axis.corners() for axis in axes]), axis=0).max())
@@ -120,7 +120,7 @@ def _direction(axis: Sequence[Sequence[float]]) -> tuple[np.ndarray, float]:
     return arm / length, length
 
 
-def _meeting(axes: Sequence[Axis], i: int, j: int, reach: float) -> Junction | None:
+def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction | None:
     """Where two axes cross, or one comes as near as the thickness of the other; None: they do not meet."""
     a, b = axes[i], axes[j]
     sine = float(a.along @ b.across)
@@ -153,7 +153,7 @@ def _apart(shape: np.ndarray, other: np.ndarray, reach: float) -> bool:
     return bool((heights >= -reach).any())
 
 
-def _beside(one: Axis, other: Axis) -> str:
+def _beside(one: PlanAxis, other: PlanAxis) -> str:
     sine = abs(float(one.along @ other.across))
     if sine < math.sin(math.radians(SHARPEST)):
         angle = math.degrees(math.asin(min(sine, 1.0)))

@@ -12,7 +12,7 @@ import numpy as np
 from dem_cli.structures.building.plan import Plan
 
 
-class Side(NamedTuple):
+class RoomSide(NamedTuple):
     """One side of a room or of what spans between two walls; the room lies to the left of it."""
 
     wall: int | None  # None: no wall there
@@ -25,7 +25,7 @@ class Side(NamedTuple):
         return np.array([-self.along[1], self.along[0]])
 
 
-Room = tuple[Side, ...]
+Room = tuple[RoomSide, ...]
 
 
 class Step(NamedTuple):
@@ -71,7 +71,7 @@ def between(plan: Plan, one: int, other: int) -> Room:
     corners = np.concatenate([first, second])
     arms = np.roll(corners, -1, axis=0) - corners
     along = arms / np.hypot(*arms.T)[:, None]
-    return tuple(Side(wall, corners[k], along[k]) for k, wall in enumerate((one, None, other, None)))
+    return tuple(RoomSide(wall, corners[k], along[k]) for k, wall in enumerate((one, None, other, None)))
 
 
 def _steps(plan: Plan) -> list[Step]:
@@ -106,4 +106,4 @@ def _sides(plan: Plan, walk: Sequence[Step]) -> Room:
     first = next(k for k in range(len(walk)) if walk[k - 1].wall != walk[k].wall)
     turned = [*walk[first:], *walk[:first]]
     kept = [step for before, step in pairwise([walk[first - 1], *turned]) if before.wall != step.wall]
-    return tuple(Side(s.wall, plan.axes[s.wall].start, s.way * plan.axes[s.wall].along) for s in kept)
+    return tuple(RoomSide(s.wall, plan.axes[s.wall].start, s.way * plan.axes[s.wall].along) for s in kept)

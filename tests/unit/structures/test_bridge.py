@@ -19,6 +19,7 @@ TWO = ONE | {
     "abutments": {"width": 2.0, "courses": 4},
     "spandrels": {"block": [1.2, 0.5], "cover": 0.25},
 }
+ROUND = {key: value for key, value in TWO.items() if key != "rise"}  # semicircles
 SPACE = TWO | {"width": 3.0, "rows": 3, "spandrels": TWO["spandrels"] | {"thickness": 0.5}, "fill": {}}
 UNEQUAL = {key: value for key, value in TWO.items() if key not in ("span", "count")} | {"spans": [4.0, 6.0, 4.0]}
 CASES = {"two spans": TWO, "one on fixed springings": ONE | {"spandrels": TWO["spandrels"]}, "unequal": UNEQUAL}
@@ -119,6 +120,10 @@ REFUSED = {
     "height: 0 is not allowed with piers or abutments; must be greater than 0": ONE | {"abutments": {"width": 1.0}},
     "height: not used without piers or abutments": ONE | {"height": 1.0},
     "piers width: 0.5 is not allowed; must be at least 0.794118, as the springings": TWO | {"piers": {"width": 0.5}},
+    "piers width: 0.8 is not allowed; must be at least 0.9, as the springings": ROUND | {"piers": {"width": 0.8}},
+    "abutments width: 0.4 is not allowed; must be at least 0.45, as the springings": (
+        ROUND | {"abutments": {"width": 0.4, "courses": 4}}
+    ),
     "fill: not used without spandrels.thickness, walls at either side": TWO | {"fill": {}},
     "spandrels thickness: 2 is not allowed; must be at most 1.5, half the width": (
         SPACE | {"spandrels": {"block": [1.0, 0.5], "thickness": 2.0}}

@@ -220,7 +220,7 @@ BAD = {
     "openings.0.arch: the arch would reach from [-0.2, 0] to [1.5, 1.83709]; the wall is 6 long and 3 high": {
         "openings": [DOOR | {"x": 0.1}]
     },
-    "openings.1.arch: crosses openings[1]: arches, lintels and openings lie beside each other": {
+    "openings.1.arch: crosses openings.0: arches, lintels and openings lie beside each other": {
         "openings": [DOOR, DOOR | {"x": 3.5}]
     },
     "openings.0.arch: an opening has a lintel or an arch, not both": {
