@@ -102,6 +102,6 @@ def test_a_piece_on_a_plane_is_not_outside_of_it(side):
     plane = side * TURN[:, 2]
     normals, offsets = np.vstack([plane, normals]), np.append(plane @ placed(corners)[0], offsets)
     assert list(surface_pieces.outside(placed(corners), normals, offsets)) == []
-    half = placed(corners + [1.0, 0.0])  # beyond x = 1.5
+    half = placed(corners + np.array([1.0, 0.0]))  # beyond x = 1.5
     (left,) = surface_pieces.outside(half, normals, offsets)
     assert surface_pieces.measure(left) == pytest.approx(0.5)
