@@ -9,8 +9,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.structures.patterns.cut import within
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, fitted
-from dem_cli.structures.patterns.tiling import Tiling, within
+from dem_cli.structures.patterns.tiling import Tiling
 
 MOST_STONES = 100_000
 SHORTEST = 0.05  # of the mean side: corners on a bed that would be closer become one
@@ -126,7 +127,6 @@ class _Courses:
     def __init__(self, length: float, height: float, pattern: CoursedPattern, draws: np.random.Generator):
         self.pattern, self.draws, self.length = pattern, draws, length
         self.reach = SHORTEST * (pattern.spacing[0] * pattern.head_spacing[0]) ** 0.5
-        self.corners: list[tuple[float, float]] = []
         self.levels = divided(height, pattern.spacing, draws)
         n = len(self.levels) - 1
         self.beds = [self._bed(k) if 0 < k < n else [(0.0, y), (length, y)] for k, y in enumerate(self.levels.tolist())]
@@ -137,14 +137,13 @@ class _Courses:
                 [np.empty(0), *([y - self.levels[k] for _, y in self.beds[k]] for k in range(1, n))]
             ),
         }
-        self.numbers: list[dict[float, int]] = [{} for _ in self.beds]  # of each bed: x -> corner
         self.heads: list[list[tuple[float, float]]] = []  # of each course: x of foot and head of each head joint
-        middles, slopes = [], []
+        lengths, slopes = [], []
         for k in range(n):
             places, leans = self._lay(k)
-            middles.append(np.diff(places))
+            lengths.append(np.diff(places))
             slopes.append(leans)
-        self.drawn["head_spacing"] = np.concatenate(middles)
+        self.drawn["head_spacing"] = np.concatenate(lengths)
         self.drawn["head_angle_deg"] = np.degrees(np.arctan(np.concatenate(slopes)))
 
     def _bed(self, k: int) -> list[tuple[float, float]]:

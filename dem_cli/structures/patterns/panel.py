@@ -9,8 +9,9 @@ import numpy as np
 
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
+from dem_cli.structures.patterns.cut import without_holes
 from dem_cli.structures.patterns.short_edges import collapsed, drawn_onto, sides_of
-from dem_cli.structures.patterns.tiling import SAME, Tiling, merged, without_holes
+from dem_cli.structures.patterns.tiling import SAME, Tiling, merged
 
 LEAST_SHARE = 0.25  # of the mean stone: what is smaller becomes part of a neighbour
 NEAR = 0.1  # of the mean side: corners so close to a hole are moved onto its sides
