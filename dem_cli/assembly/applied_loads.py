@@ -16,6 +16,7 @@ from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 from dem_cli.geometry import surface_pieces
 from dem_cli.model.model import Model
+from dem_cli.model.places import undeformed
 from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
@@ -221,10 +222,7 @@ def _fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     assert surfaces is not None  # _need_surfaces
     blocks = model.chosen(table.selected, False)
     looking = surfaces.normals[:, -1] > (-LOOKS_UP if table.sideways else LOOKS_UP)
-    sides = np.array(table.sides or _sides(surfaces, blocks))
-    upright = np.eye(model.dimension)[:-1]
-    small = POINT * np.ptp(sides, axis=1).max()
-    inner = np.concatenate([upright, -upright]), np.concatenate([sides[:, 1], -sides[:, 0]])
+    inner, small = _extent(model, blocks, table)
     pieces = []
     for piece in surfaces.exposed(blocks, looking & surfaces.near(inner[0], inner[1] - small)):
         steep = piece.normal[-1] <= LOOKS_UP
@@ -242,10 +240,22 @@ def _fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     return found._replace(weights=weights)
 
 
-def _sides(surfaces: Surfaces, blocks: np.ndarray) -> np.ndarray:
-    """From where to where some blocks reach sideways [m], (d - 1, 2)."""
-    own = np.isin(surfaces.model.part_blocks, blocks)
-    return np.stack([surfaces.low[own].min(axis=0), surfaces.high[own].max(axis=0)], axis=1)[:-1]
+def _extent(model: Model, blocks: np.ndarray, table: Fill) -> tuple[tuple[np.ndarray, np.ndarray], float]:
+    """Upright half-spaces that fill lies in, and what is small beside it [m].
+
+    Given, or the convex hull of the blocks as seen from above: it turns with them.
+    """
+    upright = np.eye(model.dimension)[:-1]
+    corners = undeformed(model)[np.isin(model.vertex_blocks, blocks)][:, :-1]
+    sides = np.array(table.sides or np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1))
+    if table.sides or model.dimension == 2:
+        normals, offsets = np.concatenate([upright, -upright]), np.concatenate([sides[:, 1], -sides[:, 0]])
+    else:
+        from scipy.spatial import ConvexHull
+
+        planes = ConvexHull(corners).equations
+        normals, offsets = planes[:, :-1] @ upright, -planes[:, -1]
+    return (normals, offsets), POINT * float(np.ptp(sides, axis=1).max())
 
 
 def _stressed(

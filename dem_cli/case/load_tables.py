@@ -222,7 +222,7 @@ class Fill(Selection):
     extent: Pair | tuple[Pair, Pair] | None = Field(
         default=None,
         description="where it lies, seen from above: [x, x], in 3D opposite corners [[x, y], [x, y]] [m]; default: "
-        "above the selected blocks",
+        "above the selected blocks, in 3D within their convex hull",
         examples=[[0.0, 4.0]],
     )
     inertia: bool = Field(

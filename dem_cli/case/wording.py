@@ -12,8 +12,6 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 MOST_NAMES = 27  # names beyond this are not listed
-# Kinds that are part of the format, but not of this version.
-FUTURE_KINDS = ("coursed-wall", "voronoi-wall")
 NUMBER_WORDS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
 TEXT_WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
 LIMIT_SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt", "<"), limits.Le: ("le", "≤")}
@@ -102,8 +100,6 @@ def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
 
 def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
     """`unknown law 'colomb', did you mean 'coulomb'? (allowed: 'coulomb')`"""
-    if value in FUTURE_KINDS:
-        return f"{show(value)} is not available yet in this version (allowed: {listing(names)})"
     hint = nearest(value, names)
     return f"unknown {what} {show(value)}{hint and ', ' + hint} (allowed: {listing(names)})"
 

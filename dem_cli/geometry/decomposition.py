@@ -14,7 +14,7 @@ def convex_parts(corners: np.ndarray) -> list[np.ndarray]:
     """Numbers of the corners of each convex part of a simple polygon (n, 2) [m], counter-clockwise.
 
     Each cut goes from a corner that points inwards to that other corner which leaves the fewest of them, and then the
-    largest smaller part. Corners on straight sides may end a cut. Raises ValueError: the sides cross each other.
+    widest narrower part. Corners on straight sides may end a cut. Raises ValueError: the sides cross each other.
     """
     return _parts(np.asarray(corners, float), np.arange(len(corners)), polygon.size(corners))
 
@@ -42,13 +42,17 @@ def _parts(corners: np.ndarray, loop: np.ndarray, size: float) -> list[np.ndarra
         for v in _seen_from(here, int(r), size):
             first, second = _halves(len(loop), int(r), v)
             left = int(_inwards(here[first], size).sum() + _inwards(here[second], size).sum())
-            smaller = min(polygon.signed_area(here[first]), polygon.signed_area(here[second]))
-            if smaller > ROUND_OFF * size**2 and (best is None or (left, -smaller) < best[0]):
+            smaller = min(_width(here[first]), _width(here[second]))
+            if smaller > ROUND_OFF * size and (best is None or (left, -smaller) < best[0]):
                 best = (left, -smaller), first, second
     if best is None:
         raise ValueError("the sides of the polygon cross each other")
     _, first, second = best
     return _parts(corners, loop[first], size) + _parts(corners, loop[second], size)
+
+
+def _width(corners: np.ndarray) -> float:
+    return polygon.signed_area(corners) / polygon.size(corners)
 
 
 def _inwards(corners: np.ndarray, size: float) -> np.ndarray:

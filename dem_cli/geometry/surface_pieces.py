@@ -44,10 +44,13 @@ def inside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> np.nd
 def outside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> Iterator[np.ndarray]:
     """What of a piece does not lie in all half-spaces together, in convex pieces."""
     for normal, offset in zip(normals, offsets, strict=True):
+        within = kept(piece, normal, offset)
+        if within is piece:  # all of it, also where it lies on the plane
+            continue
         beyond = kept(piece, -normal, -offset)
         if len(beyond):
             yield beyond
-        piece = kept(piece, normal, offset)
+        piece = within
         if not len(piece):
             return
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -20,6 +21,7 @@ from dem_cli.model.blocks import Block
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 SHOWN = 6  # names in a message
+MOST_KEPT = 4  # files that were read
 
 
 class Layer(CaseModel):
@@ -130,13 +132,32 @@ class ImportedStructure(NamedTuple):
     notes: list[str]
 
 
+_KEPT: dict[tuple[str, str], ImportedStructure] = {}  # by the table, and what its file holds
+
+
 def build(table: Import) -> list[Block]:
     """Blocks in local coordinates, in the order of the file."""
     return imported(table).blocks
 
 
 def imported(table: Import) -> ImportedStructure:
-    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem."""
+    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem.
+
+    A command asks for them several times: they are kept until the file or the table changes.
+    """
+    try:
+        held = hashlib.sha256(Path(table.file).read_bytes()).hexdigest()
+    except OSError:
+        held = ""  # what is wrong is said where it is read
+    key = table.model_dump_json(), held
+    if key not in _KEPT:
+        if len(_KEPT) >= MOST_KEPT:
+            _KEPT.clear()
+        _KEPT[key] = _read(table)
+    return _KEPT[key]
+
+
+def _read(table: Import) -> ImportedStructure:
     from dem_cli.imports.solids import solids_of
 
     try:

@@ -87,12 +87,11 @@ def _over_openings(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
 
 def _cut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
     """Stones of all courses, with what openings and the top of the wall leave of each."""
-    small = masonry.small
+    small, reaches = masonry.small, [(void, void.reach) for void in voids]
     for stone in uncut_stones(masonry, voids):
         x0, y0, x1, y1 = stone.box
         shapes = uncut = [part.shape for part in stone.parts]
-        for void in voids:
-            left, low, right, high = void.reach
+        for void, (left, low, right, high) in reaches:
             if left < x1 and x0 < right and low < y1 and y0 < high:
                 shapes = [piece for shape in shapes for piece in void.left_of(shape, small)]
         if masonry.top is not None:

@@ -152,5 +152,5 @@ def overlap(a: Sequence[np.ndarray], b: Sequence[np.ndarray]) -> float:
     """Largest area that a convex shape of one list shares with one of the other [m2]."""
     from dem_cli.geometry.compounds import clipped
 
-    shared = [clipped(p, q) for p in a for q in b]
+    shared = [clipped(p, q) for p in a for q in b if (p.min(0) < q.max(0)).all() and (q.min(0) < p.max(0)).all()]
     return max((polygon.area(common) for common in shared if len(common) > 2), default=0.0)

@@ -26,8 +26,10 @@ class Wall(StructureBase):
 
     In 3D half of the thickness lies to either side of the origin.
 
-    Block names: "<id>-<course>-<number>", both from 1, numbers from left to right; "<id>-base";
-    "<id>-lintel-<number of the opening>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on.
+    Block names: "<id>-<course>-<number>", both from 1, numbers from left to right, of one leaf with its letter after
+    them, "a" at the front (-y); "<id>-base"; "<id>-lintel-<number of the opening>"; "<id>-arch-<opening>-<voussoir>",
+    from the left; "<id>-quoin-left-<number>" and right, from below; "<id>-side-<number>", "<id>-side-<number>-left"
+    and so on.
     """
 
     kind: Literal["wall"] = "wall"

@@ -27,4 +27,5 @@ STUDIES = {  # module with STUDY, sentence of the list
     "space": ("studies.space.study", "failure loads in space: by hand, planar twins, walls that meet"),
     "stress": ("studies.stress.study", "the stability stress test: try to break the program"),
     "thesis_joint": ("studies.thesis_joint", "one structure on the thesis's own joint"),
+    "vaults": ("studies.vaults.study", "vaults, domes and bridges against closed forms and limit analysis"),
 }

@@ -44,7 +44,9 @@ def test_what_new_prints_explains_every_key(kind):
 def test_there_is_a_template_for_every_generator():
     assert set(TEMPLATE_KINDS) == {
         *GENERATORS,
+        "arched-wall",
         "block",
+        "bonded-wall",
         "colonnade",
         "facade",
         "out-of-plane",

@@ -85,7 +85,7 @@ class Floor(CaseModel):
     def _keys_of_its_kind(self) -> Floor:
         foreign = ("gap",) if self.kind == "beams" else ("spacing", "width")
         for key in foreign:
-            if key in self.model_fields_set:
+            if getattr(self, key) != type(self).model_fields[key].default:
                 whose = "a plate" if self.kind == "beams" else "beams"
                 raise KeyProblem(f"not allowed with kind = '{self.kind}': it is that of {whose}", key)
         return self

@@ -13,6 +13,8 @@ from dem_cli.structures.patterns.short_edges import collapsed, drawn_onto, sides
 from dem_cli.structures.patterns.tiling import SAME, Tiling, merged, without_holes
 
 LEAST_SHARE = 0.25  # of the mean stone: what is smaller becomes part of a neighbour
+NEAR = 0.1  # of the mean side: corners so close to a hole are moved onto its sides
+NARROWEST = 0.25  # of the mean side: narrower lips along a hole as well
 
 
 class WallPanel(NamedTuple):
@@ -49,12 +51,12 @@ def fitted(tiling: Tiling, panel: WallPanel, mean: float, shortest: float) -> Ti
     if not panel.holes:
         return merged(tiling, LEAST_SHARE * mean)
     side = mean**0.5
-    tiling = drawn_onto(tiling, panel.holes, shortest * side, sides_of([panel.outline]))
-    tiling = without_holes(tiling, panel.holes)
+    tiling = drawn_onto(tiling, panel.holes, max(shortest, NEAR) * side, sides_of([panel.outline]))
+    tiling = without_holes(tiling, panel.holes, NARROWEST * side)
     if not tiling.stones:
         return tiling
     tiling = collapsed(tiling, shortest * side, sides_of([panel.outline, *panel.holes]))
-    return merged(tiling, LEAST_SHARE * mean)
+    return merged(tiling, LEAST_SHARE * mean, NARROWEST * side)
 
 
 def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[Block]:

@@ -41,11 +41,11 @@ class Tiling:
         return polygon.properties_of_all(self.corners[[i for loop in self.stones for i in loop]], starts).area
 
     def parts(self, k: int) -> tuple[np.ndarray, ...]:
-        """Convex parts of a stone, corners on straight sides left out."""
+        """Convex parts of a stone, corners on straight sides left out: edges on one line are one face of a part."""
         outline = polygon.simplified(self.outline(k), ROUND_OFF)
         if polygon.is_convex(outline):
             return (outline,)
-        return tuple(outline[part] for part in convex_parts(outline))
+        return tuple(polygon.simplified(outline[part], ROUND_OFF) for part in convex_parts(outline))
 
     def edges(self) -> dict[tuple[int, int], int]:
         """The stone to the left of each edge, from corner to corner."""
@@ -101,11 +101,19 @@ def _outline(loops: Sequence[Loop]) -> Loop | None:
     return tuple(outline) if len(outline) == len(free) else None
 
 
-def without_holes(tiling: Tiling, holes: Sequence[np.ndarray]) -> Tiling:
-    """What convex holes (n, 2) leave of the stones; one around a single corner of a hole stays whole."""
+def without_holes(tiling: Tiling, holes: Sequence[np.ndarray], narrowest: float = 0.0) -> Tiling:
+    """What convex holes (n, 2) leave of the stones; one around a single corner of a hole stays whole.
+
+    Pieces narrower than that [m] are stones of their own: lips along a hole, for `merged` to give to a neighbour.
+    """
     for hole in holes:
-        tiling = _Cut(tiling, hole).outside()
+        tiling = _Cut(tiling, hole).outside(narrowest)
     return tiling
+
+
+def width(outline: np.ndarray) -> float:
+    """Twice the area over the size of a stone [m]: of a strip its width, twice."""
+    return 2.0 * polygon.area(outline) / polygon.size(outline)
 
 
 def within(tiling: Tiling, outline: np.ndarray) -> Tiling:
@@ -126,9 +134,9 @@ class _Cut:
         arms = tiling.corners[:, None] - shape
         self.left = _left_of(self.ends - shape, arms, self.gap)  # of each corner from each side [m], (n, n_sides)
 
-    def outside(self) -> Tiling:
+    def outside(self, narrowest: float) -> Tiling:
         """The stones without what lies in the polygon."""
-        return self._whole([self._without(k) for k in range(len(self.tiling.stones))])
+        return self._whole([self._without(k, narrowest) for k in range(len(self.tiling.stones))])
 
     def inside(self) -> Tiling:
         """What of the stones lies in the polygon."""
@@ -168,20 +176,28 @@ class _Cut:
             return [loop]
         return [tuple(loop[i] for i in part) for part in convex_parts(outline)]
 
-    def _without(self, k: int) -> list[Loop]:
+    def _without(self, k: int, narrowest: float) -> list[Loop]:
         loop = self.tiling.stones[k]
         if (self.left[list(loop)].max(axis=0) <= 0.0).any():
             return [loop]
         pieces = []
         for part in self._parts(k):
             rest = part
-            for side in range(len(self.shape)):
+            for side in self._upright_first():
                 pieces.append(self._half(rest, side, -1.0))
                 rest = self._half(rest, side, 1.0)
         pieces = [self._with_new_corners(piece) for piece in pieces if piece]
+        lips = [piece for piece in pieces if width(np.array([self.corners[i] for i in piece])) < narrowest]
+        pieces = [piece for piece in pieces if piece not in lips]
         outline = self.tiling.outline(k)
         inside = sum(_strictly_inside(outline, corner, self.gap) for corner in self._sharp_corners())
-        return pieces if inside > 1 else united(pieces)
+        return lips + (pieces if inside > 1 else united(pieces))
+
+    def _upright_first(self) -> list[int]:
+        """The sides, the steepest first: what is left beside a hole has its full height."""
+        along = np.abs(self.ends - self.shape)
+        slopes: list[int] = np.argsort(along[:, 0] / np.hypot(*along.T), kind="stable").tolist()
+        return slopes
 
     def _sharp_corners(self) -> np.ndarray:
         """Corners of the polygon where it turns by more than 60°."""
@@ -266,16 +282,20 @@ def _strictly_inside(outline: np.ndarray, point: np.ndarray, gap: float) -> bool
     return bool((places > point[0]).sum() % 2)
 
 
-def merged(tiling: Tiling, least: float) -> Tiling:
-    """Stones below an area `least` [m2] joined to the neighbour with which they share the longest face.
+def merged(tiling: Tiling, least: float, narrowest: float = 0.0) -> Tiling:
+    """Stones below an area `least` [m2] or a width [m] joined to the neighbour with which they share the longest face.
 
-    Neighbours of their own course come first. A stone that has no neighbour stays.
+    A stone that has no neighbour stays.
     """
     stones: dict[int, Loop] = dict(enumerate(tiling.stones))
     areas = dict(enumerate(tiling.areas().tolist()))
     courses = dict(enumerate(tiling.courses))
     owner = tiling.edges()
-    waiting = {k for k, area in areas.items() if area < least}
+
+    def is_sliver(k: int) -> bool:
+        return areas[k] < least or width(tiling.corners[list(stones[k])]) < narrowest
+
+    waiting = {k for k in stones if is_sliver(k)}
     while waiting:
         k = min(waiting, key=lambda i: (areas[i], i))
         waiting.discard(k)
@@ -283,7 +303,7 @@ def merged(tiling: Tiling, least: float) -> Tiling:
         for a, b in around(stones[k]):
             if (b, a) in owner:
                 shared[owner[b, a]] += float(np.hypot(*(tiling.corners[b] - tiling.corners[a])))
-        for other in sorted(shared, key=lambda i: (courses[i] != courses[k], -shared[i], i)):
+        for other in sorted(shared, key=lambda i: (-shared[i], i)):
             outline = _outline([stones[k], stones[other]])
             if outline is None:
                 continue
@@ -291,10 +311,7 @@ def merged(tiling: Tiling, least: float) -> Tiling:
             areas[other] += areas[k]
             del stones[k]
             owner |= dict.fromkeys(around(outline), other)
-            if areas[other] >= least:
-                waiting.discard(other)
-            else:
-                waiting.add(other)
+            waiting = waiting | {other} if is_sliver(other) else waiting - {other}
             break
     kept = sorted(stones)
     return Tiling(tiling.corners, [stones[k] for k in kept], [courses[k] for k in kept])

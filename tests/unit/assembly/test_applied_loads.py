@@ -177,6 +177,21 @@ def test_thrust_of_fill_on_half_an_arch(case_of):
     assert load.resultant[0] == pytest.approx(0.0, abs=1e-9 * wanted)
 
 
+@pytest.mark.parametrize("angle", [37.0, 90.0])
+def test_fill_turns_with_what_it_lies_on(case_of, angle):
+    """Rows of voussoirs across a bridge lie in the same planes: seen askew none of them is over another one."""
+    rows = {"kind": "bridge", "span": 4.0, "rise": 1.0, "ring": 0.4, "voussoirs": 7, "width": 2.0, "rows": 3}
+    fill = {"structure": "bridge", "density": 1700.0, "level": 2.0, "coefficient": 0.5}
+    (there,), model = loads_of(case_of, dimension=3, structure=[rows], fill=[fill])
+    (turned,), other = loads_of(case_of, dimension=3, structure=[rows | {"rotation_deg": angle}], fill=[fill])
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    back = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    for block, name in enumerate(model.block_ids):
+        wanted = there.forces[there.blocks == block].sum(axis=0)
+        found = turned.forces[turned.blocks == other.numbers[name]].sum(axis=0) @ back
+        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-6)
+
+
 def test_no_fill_under_a_roof_and_none_beside_it(case_of):
     """A slab over half of a step: fill on the other half of it, on the slab, and against the step within its extent."""
     blocks = [

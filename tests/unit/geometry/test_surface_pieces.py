@@ -92,3 +92,16 @@ def test_a_point_is_in_the_shadow_where_a_line_upwards_meets_the_body(corners, p
     high = min((rest[~level] / rates[~level])[rates[~level] > 0.0], default=np.inf)
     met = (rest[level] >= 0.0).all() and low <= high and high >= z
     assert (depths.max() <= 0.0) == met
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_piece_on_a_plane_is_not_outside_of_it(side):
+    """Of a square in one of the faces of a box, all lies in the box: none of it is left, and nothing twice."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    normals, offsets = sides(corners * 2.0 - 0.5)
+    plane = side * TURN[:, 2]
+    normals, offsets = np.vstack([plane, normals]), np.append(plane @ placed(corners)[0], offsets)
+    assert list(surface_pieces.outside(placed(corners), normals, offsets)) == []
+    half = placed(corners + np.array([1.0, 0.0]))  # beyond x = 1.5
+    (left,) = surface_pieces.outside(half, normals, offsets)
+    assert surface_pieces.measure(left) == pytest.approx(0.5)

@@ -251,6 +251,13 @@ def test_triangles_without_common_corners_close_all_the_same(tmp_path):
     assert len(block.parts[0].vertices) == 8
 
 
+def test_a_file_that_changed_is_read_again(tmp_path):
+    for height in (1.0, 2.0):
+        (tmp_path / "a.obj").write_text(obj_text({"a": prism(SQUARE, 0.0, height)}))
+        assert volumes(read(tmp_path / "a.obj").blocks)["a"] == pytest.approx(height)
+        assert read(tmp_path / "a.obj") is read(tmp_path / "a.obj")
+
+
 def test_y_up_and_units(tmp_path):
     (tmp_path / "y.obj").write_text(obj_text({"a": prism([(0, 0), (100, 0), (100, 300), (0, 300)], 0.0, 200.0)}))
     (block,) = read(tmp_path / "y.obj", up="y", unit="cm").blocks

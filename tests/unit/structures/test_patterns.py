@@ -41,7 +41,7 @@ def courses(panel: WallPanel, seed: int, **keys) -> Tiling:
 PATTERNS = {
     "random": lambda panel, seed: rubble(panel, seed, relax=0),
     "relaxed": lambda panel, seed: rubble(panel, seed, relax=2, stretch=1.8),
-    "polygonal": lambda panel, seed: rubble(panel, seed, relax=20, shortest=0.25),
+    "polygonal": lambda panel, seed: rubble(panel, seed, relax=8, shortest=0.25),
     "coursed": courses,
     "leaning": lambda panel, seed: courses(panel, seed, **LEANING),
 }  # fmt: skip
@@ -74,7 +74,7 @@ def check(tiling: Tiling, panel: WallPanel) -> None:
 
 @pytest.mark.parametrize("panel", [PLAIN, DOOR_AND_WINDOW, GABLE], ids=["plain", "openings", "gable"])
 @pytest.mark.parametrize("name", PATTERNS)
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_stones_fill_their_panel_exactly(name, panel, seed):
     tiling = PATTERNS[name](panel, seed)
     check(tiling, panel)
@@ -125,14 +125,14 @@ def _whole(panel, seed, stretch):
 def test_drawn_parameters_are_those_asked_for():
     """Uniform: mean within 3 sigma of the mean, spread d / sqrt(3); stretched to fill the panel by a few percent."""
     pattern = coursed.CoursedPattern(**(PAPER | {"head_angle_deg": (2.0, 4.0)}))
-    found = [coursed.stones_in(PLAIN, pattern, draws(seed)).drawn for seed in range(20)]
+    found = [coursed.stones_in(PLAIN, pattern, draws(seed)).drawn for seed in range(12)]
     values = {key: np.concatenate([drawn[key] for drawn in found]) for key in found[0]}
     for key, (mean, deviation) in (PAPER | {"head_angle_deg": (2.0, 4.0)}).items():
         sigma = deviation / 3**0.5
         slack = 0.03 * abs(mean)  # 20 m of stones of 1.5 m: 13 of 1.54 m
         assert values[key].mean() == pytest.approx(mean, abs=3.0 * sigma / len(values[key]) ** 0.5 + slack), key
         assert values[key].std() == pytest.approx(sigma, rel=0.12), key
-    assert sum(drawn["spacing"].sum() for drawn in found) == pytest.approx(200.0, rel=1e-12)
+    assert sum(drawn["spacing"].sum() for drawn in found) == pytest.approx(120.0, rel=1e-12)
     assert (np.abs(values["deviation"]) <= 0.2).all()
     assert (np.abs(values["head_angle_deg"] - 2.0) <= 4.0 + 1e-9).all()
 
@@ -176,11 +176,11 @@ def test_what_cannot_be_laid_names_its_key(keys, key, message):
         assert caught.value.keys[0] == key
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     spacing=st.tuples(st.floats(0.2, 2.0), st.floats(0.0, 0.6)),
     segment=st.tuples(st.floats(0.2, 3.0), st.floats(0.0, 1.0)),
-    deviation=st.tuples(st.floats(-0.2, 0.2), st.floats(0.0, 0.3)),
+    deviation=st.tuples(st.floats(-0.2, 0.2), st.floats(0.0, 0.3).map(lambda d: round(d, 3))),
     heads=st.tuples(st.floats(0.3, 3.0), st.floats(0.0, 1.0)),
     angle=st.tuples(st.floats(-20.0, 20.0), st.floats(0.0, 15.0)),
     seed=st.integers(0, 99),
@@ -199,7 +199,7 @@ def test_any_courses_are_laid_or_refused_by_key(spacing, segment, deviation, hea
     assert any(key in text for key in coursed.CoursedPattern.model_fields for text in named)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     cells=st.integers(2, 60),
     relax=st.integers(0, 6),

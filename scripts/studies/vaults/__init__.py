@@ -1,0 +1,1 @@
+"""Vaults in space against closed forms: least thickness, hoops, thrust, a moving axle."""
