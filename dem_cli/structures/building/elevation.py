@@ -259,7 +259,7 @@ class WallElevation:
         """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         full, small = self.length * (high - low), SMALL * self.length
-        arches = [void for void, beside in self._arches if course in beside]
+        arches = [self.voids[i] for i, beside in self._arches if course in beside and self._is_free(i, course)]
         for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
             x0, y0, x1, y1 = box
             shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
@@ -273,9 +273,21 @@ class WallElevation:
                 yield Stone(course + 1, tuple(Part(shapes[i], across) for i in group), full)
 
     @cached_property
-    def _arches(self) -> list[tuple[Void, range]]:
+    def _arches(self) -> list[tuple[int, range]]:
         """Openings under arches, and the courses that they interrupt."""
-        return [(void, self._beside(void.reach[1], void.reach[3])) for void in self.voids if len(void.joints)]
+        return [
+            (i, self._beside(void.reach[1], void.reach[3])) for i, void in enumerate(self.voids) if len(void.joints)
+        ]
+
+    def _is_free(self, opening: int, course: int) -> bool:
+        """Whether an arch lies within one run of a course. Raises KeyProblem where it does not."""
+        left, _, right, _ = self.voids[opening].reach
+        small = SMALL * self.length
+        for run in self.runs[course]:
+            if run.start.max() - small <= left and right <= run.stop.min() + small:
+                return True
+        message = f"its arch, from {left:.4g} to {right:.4g} along wall '{self.axis.name}', reaches into another wall"
+        raise KeyProblem(message, *self._key(opening))
 
     def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
         """Blocks of a run [left, low, right, top], and from where to where they go across."""

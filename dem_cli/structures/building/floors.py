@@ -16,7 +16,8 @@ from dem_cli.structures.building.rooms import Room, RoomSide, between, rooms_of
 from dem_cli.structures.building.table import Building, Floor
 
 THINNEST = 0.25  # of a wall: what is left of it beside a floor
-BEAM_ENDS = ([1, 2], [3, 0])  # corners of a beam in the first wall and in the last one
+# Corners of a beam in the first wall and in the last one, each with those at the other end of the same edges.
+BEAM_ENDS = (([1, 2], [0, 3]), ([3, 0], [2, 1]))
 
 
 class Slab(NamedTuple):
@@ -46,6 +47,7 @@ def floors_of(building: Building, plan: Plan) -> Floors:
         room = _room(plan, rooms, floor, on, i)
         bearing = _bearings(building, floor, on, i)
         layer = _layer(building, floor, i)
+        _check_walls(building, floor, i, layer)
         lay = _beams if floor.kind == "beams" else _plate
         lay(found, Bed(building, plan, floor, i, room, bearing, *layer))
     return found
@@ -122,6 +124,27 @@ def _layer(building: Building, floor: Floor, i: int) -> tuple[float, float, rang
     return float(levels[first]), high, range(first, first + len(beside))
 
 
+def _check_walls(building: Building, floor: Floor, i: int, layer: tuple[float, float, range]) -> None:
+    """Raises KeyProblem where a wall does not reach up to a floor, has a gable there, or a plate meets a lintel."""
+    low, high, courses = layer
+    small = SMALL * building.block[1]
+    for k, name in enumerate(floor.on):
+        wall = building.walls[building.number(name)]
+        top = float(building.levels[wall.courses or building.courses])
+        if low > top + small:
+            raise KeyProblem(f"wall '{name}' is {top:g} high, the floor lies at {low:g}", "floors", i, "on", k)
+        if wall.gable is not None and high > top + small:
+            message = f"wall '{name}' goes on as a gable from {top:g}: a floor at {low:g} bears on other walls"
+            raise KeyProblem(message, "floors", i, "on", k)
+        if floor.kind == "beams" or not courses:
+            continue
+        for n, opening in enumerate(wall.openings):
+            over = opening.box[3]
+            if opening.void.reach[3] > max(over, low) + small and over < high - small:
+                message = f"at {low:g} it would cut what is over openings[{n + 1}] of wall '{name}'"
+                raise KeyProblem(message, "floors", i, "z")
+
+
 def _corners(lines: Sequence[tuple[np.ndarray, float]]) -> np.ndarray:
     """Where lines (unit normal, distance from the origin), one after the other around, cross [m], (n, 2)."""
     found = []
@@ -157,10 +180,15 @@ def _plate(found: Floors, bed: Bed) -> None:
     for k, side in enumerate(bed.room):
         if side.wall in bed.bearing:
             edge = np.stack([corners[k], corners[(k + 1) % len(corners)]])
-            ways = np.stack([corners[k - 1], corners[(k + 2) % len(corners)]]) - edge
-            depths = bed.bearing[side.wall] / (ways @ side.inwards)
-            reach = np.concatenate([edge, edge + ways * np.minimum(depths, 1.0)[:, None]])
-            _pockets(found, bed, side, reach)
+            others = np.stack([corners[k - 1], corners[(k + 2) % len(corners)]])
+            _pockets(found, bed, side, _in_wall(bed, side, edge, others))
+
+
+def _in_wall(bed: Bed, side: RoomSide, ends: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Corners of what lies in a wall, (4, 2): ends there, and where edges to the others leave it."""
+    ways = others - ends
+    depths = bed.bearing[bed.wall(side)] / (ways @ side.inwards)
+    return np.concatenate([ends, ends + ways * np.minimum(depths, 1.0)[:, None]])
 
 
 def _pockets(found: Floors, bed: Bed, side: RoomSide, outline: np.ndarray) -> None:
@@ -204,8 +232,8 @@ def _beams(found: Floors, bed: Bed) -> None:
         beam = _beam(bed, first, last, middle)
         mass = None if floor.mass is None else floor.mass / count
         found.slabs.append(Slab(bed.name(n + 1), beam, bed.low, bed.high, floor.material, mass))
-        for side, at in zip((first, last), BEAM_ENDS, strict=True):
-            _pockets(found, bed, side, beam[at])
+        for side, (at, others) in zip((first, last), BEAM_ENDS, strict=True):
+            _pockets(found, bed, side, _in_wall(bed, side, beam[at], beam[others]))
 
 
 def _beam(bed: Bed, first: RoomSide, last: RoomSide, middle: float) -> np.ndarray:
@@ -221,7 +249,10 @@ def _moved(bed: Bed, sides: tuple[RoomSide, RoomSide], middle: float, spacing: f
     shifts = np.linspace(0.0, 0.45, 46) * (spacing - bed.floor.width)
     for place in (middle + sign * shift for shift in shifts for sign in (1.0, -1.0)):
         beam = _beam(bed, *sides, place)
-        if all(_fits(bed, side, beam[at]) for side, at in zip(sides, BEAM_ENDS, strict=True)):
+        if all(
+            _fits(bed, side, _in_wall(bed, side, beam[at], beam[others]))
+            for side, (at, others) in zip(sides, BEAM_ENDS, strict=True)
+        ):
             return place
     first = sides[0]
     place = bed.plan.axes[bed.wall(first)].local((first.start + middle * first.along)[None])[0, 0]
@@ -236,11 +267,7 @@ def _fits(bed: Bed, side: RoomSide, outline: np.ndarray) -> bool:
     low, high = np.sort(axis.local(outline)[:, 0])[[0, -1]]
     zones = [bed.plan.zone(wall, junction) for junction in bed.plan.met(wall)]
     for opening in bed.building.walls[wall].openings:
-        lintel = opening.lintel
-        over = opening.y + opening.height
-        boxes = [(opening.x, opening.x + opening.width, opening.y, over)]
-        if lintel is not None:
-            right = opening.x + opening.width + lintel.bearing
-            boxes.append((opening.x - lintel.bearing, right, over, over + lintel.height))
-        zones += [box[:2] for box in boxes if box[2] < bed.high - SMALL and box[3] > bed.low + SMALL]
+        void = opening.void
+        boxes = [void.reach] if len(void.joints) else void.boxes
+        zones += [(x0, x1) for x0, y0, x1, y1 in boxes if y0 < bed.high - SMALL and y1 > bed.low + SMALL]
     return all(low >= stop + least or high <= start - least for start, stop in zones)

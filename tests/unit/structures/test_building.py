@@ -306,6 +306,16 @@ def test_beams_have_pockets(bearing):
     assert shares.min() > 0.25 * 0.25 / 0.5  # half of the height of a quarter: the tips of the gables
 
 
+def test_beams_into_a_wall_askew():
+    walls = [
+        wall("a", (0, 0), (3, 0)),
+        wall("b", (3, 0), (3.4, 3)),
+        wall("c", (3.4, 3), (0, 3)),
+        wall("d", (0, 3), (0, 0)),
+    ]
+    Built(walls, floors=[{"id": "f", "z": 1.0, "on": ["d", "b"], "kind": "beams"}])  # no overlap
+
+
 def test_a_floor_between_two_walls_that_do_not_meet():
     built = Built(
         [wall("a", (0, 0), (0, 2)), wall("b", (3, 2), (3, 0))], floors=[{"id": "f", "z": 1.5, "on": ["b", "a"]}]
@@ -412,6 +422,34 @@ REFUSED = {
         HOUSE,
         {"floors": [{"id": "f", "z": 1.0, "on": ["left"], "bearing": 0.28}]},
         "leaves 0.02 m of 'left'",
+    ),
+    "arch in a wall that passes": (
+        [
+            wall(
+                "a",
+                (0, 0),
+                (4, 0),
+                openings=[{**DOOR, "x": 0.8, "lintel": None, "arch": {"voussoirs": 9, "ring": 0.3}}],
+            ),
+            wall("s", (2, 0), (2, 2)),
+        ],
+        {"courses": 12},
+        "walls.0.openings.0: its arch, from 0.5 to 2.1 along wall 'a', reaches into another wall",
+    ),
+    "floor at the foot of a gable": (
+        HOUSE,
+        {"courses": 10, "floors": [{"id": "f", "z": 2.5, "on": ["left", "right"]}]},
+        "floors.0.on.0: wall 'left' goes on as a gable from 2.5",
+    ),
+    "floor above a wall": (
+        [*HOUSE[:3], wall("right", (5, 0), (5, 4), courses=4)],
+        {"courses": 10, "floors": [{"id": "f", "z": 2.0, "on": ["left", "right"]}]},
+        "floors.0.on.1: wall 'right' is 1 high, the floor lies at 2",
+    ),
+    "plate in a lintel": (
+        HOUSE,
+        {"courses": 10, "floors": [{"id": "f", "z": 1.75, "on": ["front", "back"]}]},
+        "floors.0.z: at 1.75 it would cut what is over openings\\[1\\] of wall 'front'",
     ),
     "two rooms": (
         [*HOUSE, wall("spine", (2.5, 0), (2.5, 4))],
