@@ -103,11 +103,16 @@ def all_of(found: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def cells(run: dict[str, Any]) -> tuple[str, ...]:
     """One line of the table."""
-    stiff, stands = stiffness(run), run["bracket"] and None not in run["bracket"]
+    stiff, ends = stiffness(run), bracket(run["bracket"]) if stands(run) else run["status"]
     peak = max(run["curve"], key=lambda point: point[1])[0] if run["curve"] else None
-    return (run["name"], str(run["blocks"]), f"{run['points']:,}", bracket(run["bracket"]) if stands else run["status"],
+    return (run["name"], str(run["blocks"]), counted(run["points"]), ends,
             run["mode"] or "–", f"{stiff:.1f}" if stiff else "–", f"{peak:.0f}" if peak else "–",
-            f"{run['steps']:,}", f"{run['seconds']:.0f}")  # fmt: skip
+            counted(run["steps"]), f"{run['seconds']:.0f}")  # fmt: skip
+
+
+def counted(number: int | None) -> str:
+    """A number of many digits, or a dash."""
+    return "–" if number is None else f"{number:,}"
 
 
 def verdicts(runs: dict[str, Any]) -> list[tuple[str, str, str]]:
