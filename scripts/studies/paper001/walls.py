@@ -40,6 +40,7 @@ def measure(kind: str) -> list[dict[str, Any]]:
 def runs_of_sweep(file: Path) -> tuple[SweepRun, ...]:
     """What the [sweep] of a case asks for."""
     case = api.load_case(file).case
+    assert case.sweep is not None
     return plan_of(case.sweep, case.seed).runs
 
 
