@@ -218,7 +218,7 @@ def draw_curves(found: Mapping[str, Any], path: Path) -> None:
                     axis.plot(x, y, label=run["name"], **look(run["name"]))
             axis.set(xlim=(0.0, FARTHEST), xlabel="displacement of the top, middle of the length [mm]")
             axis.set_title(f"As Figure {number}")
-            axis.legend(loc="lower right", fontsize=8)
+            axis.legend(loc=(0.36, 0.31), fontsize=8, ncols=2)
         axes[0].set(ylabel="load multiplier λ")
         axes[0].set_ylim(bottom=0.0)
 
