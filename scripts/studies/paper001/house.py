@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from dem_cli import api
@@ -12,6 +13,7 @@ from dem_cli.case.overrides import Override, override_of
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import bracket_of
+from studies.storage import rounded
 from studies.template import bracket, table
 
 PUSHED, SHAKEN, MODES = (CASES / "validation" / f"lemos_stone_house{name}.toml" for name in ("", "_shaken", "_modes"))
@@ -44,40 +46,41 @@ def measure() -> dict[str, Any]:
 
 def pushed(name: str, changes: Mapping[str, Any]) -> dict[str, Any]:
     """One pushover."""
-    summary, seconds = solved(PUSHED, [override_of(*one) for one in changes.items()])
+    summary, _, seconds = solved(PUSHED, [override_of(*one) for one in changes.items()])
     return {
         "command": "dem run cases/validation/lemos_stone_house.toml", "name": name, "status": summary["status"],
-        "bracket": bracket_of(summary), "mode": summary["failure_mode"], "blocks": summary["blocks"] - 1,
+        "bracket": bracket_of(summary), "mode": summary["failure_mode"], "blocks": summary["blocks"],
         "seconds": seconds,
     }  # fmt: skip
 
 
 def frequencies() -> dict[str, Any]:
     """The lowest ones [Hz]."""
-    summary, seconds = solved(MODES, [])
+    summary, _, seconds = solved(MODES, [])
     return {"command": "dem run cases/validation/lemos_stone_house_modes.toml", "status": summary["status"],
             "frequencies": [round(value, 3) for value in summary["frequencies"]], "seconds": seconds}  # fmt: skip
 
 
 def shaken(name: str, changes: Mapping[str, Any]) -> dict[str, Any]:
     """One history."""
-    summary, seconds = solved(SHAKEN, [override_of(*one) for one in changes.items()])
-    peak = summary["peaks"]["ridge"]
+    summary, seen, seconds = solved(SHAKEN, [override_of(*one) for one in changes.items()])
+    ridge = seen.values[:, 0]
     return {
         "command": "dem run cases/validation/lemos_stone_house_shaken.toml", "name": name, "status": summary["status"],
         "ending": summary["ending"], "collapse_time": summary.get("collapse_time"),
-        "peak": round(peak["peak"], 4), "end": round(peak["residual"], 4),
+        "peak": rounded(ridge[abs(ridge).argmax()], 4), "end": rounded(ridge[-1], 4),
         "time_step": summary["time_step"], "steps": summary["steps"], "closure": summary["energy_closure"],
         "seconds": seconds,
     }  # fmt: skip
 
 
-def solved(file: Any, changes: list[Override]) -> tuple[dict[str, Any], float]:
-    """Summary of a case with changes, and its seconds of CPU."""
+def solved(file: Path, changes: list[Override]) -> tuple[dict[str, Any], RunKeeper, float]:
+    """Summary of a case with changes, what was seen of it, and its seconds of CPU."""
     begun = time.process_time()
-    loaded = api.load_case(file, changes)
-    summary = solve(loaded.case, api.build_model(loaded), RunKeeper()).summary
-    return summary, round(time.process_time() - begun, 1)
+    loaded, seen = api.load_case(file, changes), RunKeeper()
+    model = api.build_model(loaded)
+    summary = solve(loaded.case, model, seen).summary | {"blocks": int((~model.fixed).sum())}
+    return summary, seen, round(time.process_time() - begun, 1)
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:

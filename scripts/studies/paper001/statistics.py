@@ -33,6 +33,7 @@ KEYS = {  # of the sweep: what the paper calls them
 def measure() -> list[dict[str, Any]]:
     """Every run of the sweep."""
     case = api.load_case(FILE).case
+    assert case.sweep is not None
     return [run_of(run) for run in plan_of(case.sweep, case.seed).runs]
 
 
@@ -88,8 +89,7 @@ def loads_of(runs: Sequence[Mapping[str, Any]]) -> np.ndarray:
 
 def rank_correlation(x: np.ndarray, y: np.ndarray) -> float:
     """Spearman's, of values without ties."""
-    ranks = [values.argsort().argsort() for values in (x, y)]
-    return float(np.corrcoef(*ranks)[0, 1])
+    return float(np.corrcoef(x.argsort().argsort(), y.argsort().argsort())[0, 1])
 
 
 def draw_statistics(runs: Sequence[Mapping[str, Any]], path: Path) -> None:

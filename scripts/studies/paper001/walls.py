@@ -40,6 +40,7 @@ def measure(kind: str) -> list[dict[str, Any]]:
 def runs_of_sweep(file: Path) -> tuple[SweepRun, ...]:
     """What the [sweep] of a case asks for."""
     case = api.load_case(file).case
+    assert case.sweep is not None
     return plan_of(case.sweep, case.seed).runs
 
 
@@ -217,7 +218,7 @@ def draw_curves(found: Mapping[str, Any], path: Path) -> None:
                     axis.plot(x, y, label=run["name"], **look(run["name"]))
             axis.set(xlim=(0.0, FARTHEST), xlabel="displacement of the top, middle of the length [mm]")
             axis.set_title(f"As Figure {number}")
-            axis.legend(loc="lower right", fontsize=8)
+            axis.legend(loc=(0.36, 0.31), fontsize=8, ncols=2)
         axes[0].set(ylabel="load multiplier λ")
         axes[0].set_ylim(bottom=0.0)
 
