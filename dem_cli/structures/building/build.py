@@ -12,6 +12,7 @@ from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
 from dem_cli.model.blocks import Block
+from dem_cli.structures.building.courses import WallCourses
 from dem_cli.structures.building.elevation import Pocket, WallElevation
 from dem_cli.structures.building.floors import Slab, floors_of
 from dem_cli.structures.building.plan import Junction, Plan, PlanAxis, plan_of
@@ -79,7 +80,7 @@ def _behind(plan: Plan, wall: int, junction: Junction, pocket: Pocket) -> bool:
     return pocket.across[0] > right if side > 0 else pocket.across[1] < left
 
 
-def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> WallElevation:
+def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> WallCourses:
     """What a wall is laid from, courses of a gable above the others."""
     table = building.walls[wall]
     courses = [each.courses or building.courses for each in building.walls]
@@ -92,7 +93,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
         return course < courses[other]
 
     runs = [runs_of(plan, wall, course, present, passes) for course in range(len(levels) - 1)]
-    return WallElevation(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
+    return WallCourses(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
 
 
 def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
@@ -103,7 +104,7 @@ def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
     return np.concatenate([levels, levels[-1] + gable.height * np.arange(1, count + 1) / count])
 
 
-def _set_up(elevation: WallElevation) -> list[Block]:
+def _set_up(elevation: WallCourses) -> list[Block]:
     """Blocks of a wall in the places of the plan."""
     named = elevation.stones()
     parts = [part for _, stone in named for part in stone.parts]

@@ -1,30 +1,24 @@
-"""Elevation of one wall of a building: courses in stones around openings and pockets, under a gable."""
+"""Elevation of one wall of a building: openings, pockets of floors, the slopes of a gable, joints that are given."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.case.base import KeyProblem
-from dem_cli.geometry import cuts
-from dem_cli.geometry.polygon import rectangle
 from dem_cli.structures import tops
-from dem_cli.structures.building.bond import SHORTEST, RunEnds, laid
+from dem_cli.structures.building.bond import RunEnds
 from dem_cli.structures.building.plan import PlanAxis
 from dem_cli.structures.building.runs import Run
 from dem_cli.structures.building.table import PlanWall
 from dem_cli.structures.course_layout import Interruption, interruption
-from dem_cli.structures.stones import Part, Stone, put_together
 from dem_cli.structures.voids import Void
 
 SMALL = 1e-6  # of a block: shorter is nothing
-WELD = 1e-10  # of the same: round-off of corners that are the same
 
 
 Box = tuple[float, float, float, float]  # left, low, right, high [m]
@@ -50,23 +44,9 @@ class Pocket(NamedTuple):
     across: tuple[float, float]  # what is left of the wall, from its right to its left; empty: nothing
 
 
-class Stretch(NamedTuple):
-    """A part of a run with the same heights free all along."""
-
-    left: float
-    right: float
-    free: tuple[tuple[float, float], ...]  # from where to where up [m]
-    across: tuple[float, float]
-
-    def ends(self, askew: dict[float, float]) -> RunEnds:
-        """Its ends; askew: how far stones go on beyond the middle of an end, by its place."""
-        start, stop = askew.get(self.left, 0.0), askew.get(self.right, 0.0)
-        return RunEnds(self.left + start, self.right - stop, start, stop)
-
-
 @dataclass(frozen=True)
 class WallElevation:
-    """What a wall is laid from. Lengths along it from the start of its axis, heights from its foot [m]."""
+    """What a wall is laid around. Lengths along it from the start of its axis, heights from its foot [m]."""
 
     number: int  # of the wall, in the case
     axis: PlanAxis
@@ -181,202 +161,8 @@ class WallElevation:
         first, last = 0.5 * (inner[0] + outer[0]), 0.5 * (inner[1] + outer[1])
         return RunEnds(first, last, inner[0] - first, last - inner[1])
 
-    @cached_property
-    def first(self) -> float:
-        """A place to which the heads of odd courses belong; those of even ones lie between them.
-
-        Of those that suit an end of a run, the one with which the lowest courses cost least, openings left aside.
-        """
-        courses = [k for k in range(min(4, len(self.runs))) if self.levels[k] < self.eaves]
-        tried: dict[float, float] = {}
-        for k in courses:
-            for run in self.runs[k]:
-                ends = self.ends(run, k)
-                for place in (ends.start, ends.stop):
-                    for shift in (0.0, 0.5):
-                        first = round((place / self.length + shift + 0.5 * (k % 2)) % 1.0, 9) * self.length
-                        tried.setdefault(first % self.length, 0.0)
-        for first in tried:
-            tried[first] = sum(self._cost(k, first) for k in courses)
-        least = min(tried.values())
-        return next(first for first, cost in tried.items() if cost <= least + 1e-9)
-
-    def _cost(self, course: int, first: float) -> float:
-        near = [x for k in (course - 1, course + 1) if 0 <= k < len(self.runs) for run in self.runs[k]
-                for line in run for x in set(line.tolist())]  # fmt: skip
-        return sum(
-            laid(self.ends(run, course), self.length, self.place(course, first), near).cost for run in self.runs[course]
-        )
-
-    def place(self, course: int, first: float) -> float:
-        """A place to which heads of a course belong."""
-        return first + 0.5 * self.length * (course % 2)
-
-    # -- courses ---------------------------------------------------------------------------------------------------
-
-    def stones(self) -> list[tuple[str, Stone]]:
-        """All stones by name, course by course from below, what is over openings last.
-
-        Raises KeyProblem for a piece too small.
-        """
-        laid_ones = [stone for course in range(len(self.runs)) for stone in self._course(course)]
-        over = list(self._over_openings())
-        exact = self._welded([*laid_ones, *(stone for _, stone in over)])
-        found: list[tuple[str, Stone]] = []
-        count = dict.fromkeys(range(1, len(self.runs) + 1), 0)
-        together = put_together(exact[: len(laid_ones)], SMALL * self.length)
-        for stone in sorted(together, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
-            count[stone.course] += 1
-            found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
-        return found + [(name, stone) for (name, _), stone in zip(over, exact[len(laid_ones) :], strict=True)]
-
-    def _welded(self, stones: Sequence[Stone]) -> list[Stone]:
-        """With the same corners where they share them, exactly."""
-        if not any(len(void.joints) for void in self.voids):
-            return list(stones)
-        shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], WELD * self.length))
-        return [one._replace(parts=tuple(Part(next(shapes), part.across) for part in one.parts)) for one in stones]
-
-    def _over_openings(self) -> Iterator[tuple[str, Stone]]:
-        """Lintels and voussoirs."""
-        for i, (opening, void) in enumerate(zip(self.table.openings, self.voids, strict=True)):
-            if opening.lintel is not None and opening.lintel_box is not None:
-                x0, y0, x1, y1 = opening.lintel_box
-                part = Part(rectangle(x0, y0, x1 - x0, y1 - y0), self.across)
-                yield f"{self.axis.name}-lintel-{i + 1}", Stone(0, (part,), 0.0, material=opening.lintel.material)
-            for n, shape in enumerate(void.voussoirs):
-                material = opening.arch.material if opening.arch else ""
-                stone = Stone(0, (Part(shape, self.across),), 0.0, material=material)
-                yield f"{self.axis.name}-arch-{i + 1}-{n + 1}", stone
-
     @property
     def across(self) -> tuple[float, float]:
         """Its two faces across, right and left of the axis [m]."""
         right, left = self.axis.faces.tolist()
         return right, left
-
-    def _course(self, course: int) -> Iterator[Stone]:
-        """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
-        low, high = (float(level) for level in self.levels[course : course + 2])
-        full, small = self.length * (high - low), SMALL * self.length
-        arches = [self.voids[i] for i, beside in self._arches if course in beside and self._is_free(i, course)]
-        for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
-            x0, y0, x1, y1 = box
-            shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
-            for void in arches:
-                if void.reach[0] < x1 and void.reach[2] > x0:
-                    shapes = [piece for shape in shapes for piece in void.left_of(shape, small)]
-            if self.top is not None and high > self.eaves:
-                shapes = [piece for shape in shapes for piece in tops.below(shape, self.top, small)]
-            groups = cuts.connected(shapes, small) if arches else [range(len(shapes))] if shapes else []
-            for group in groups:
-                yield Stone(course + 1, tuple(Part(shapes[i], across) for i in group), full)
-
-    @cached_property
-    def _arches(self) -> list[tuple[int, range]]:
-        """Openings under arches, and the courses that they interrupt."""
-        return [
-            (i, self._beside(void.reach[1], void.reach[3])) for i, void in enumerate(self.voids) if len(void.joints)
-        ]
-
-    def _is_free(self, opening: int, course: int) -> bool:
-        """Whether an arch lies within one run of a course. Raises KeyProblem where it does not."""
-        left, _, right, _ = self.voids[opening].reach
-        small = SMALL * self.length
-        for run in self.runs[course]:
-            if run.start.max() - small <= left and right <= run.stop.min() + small:
-                return True
-        message = f"its arch, from {left:.4g} to {right:.4g} along wall '{self.axis.name}', reaches into another wall"
-        raise KeyProblem(message, *self._key(opening))
-
-    def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
-        """Blocks of a run [left, low, right, top], and from where to where they go across."""
-        ends, holes = self.ends(run, course), self.holes(course)
-        avoid = self.joints(course - 1) + self.joints(course + 1)
-        first = self.place(course, self.first)
-        outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
-        askew = {outer[0]: ends.start_askew, outer[1]: ends.stop_askew}
-        for hole in holes:
-            if hole.arch is not None:
-                askew |= {hole.left: hole.left - hole.arch.middle[0], hole.right: hole.arch.middle[1] - hole.right}
-        for stretch in self._stretches(run, ends, course):
-            heads = laid(stretch.ends(askew), self.length, first, avoid).heads if stretch.free else np.zeros(0)
-            if (stretch.left, stretch.right) == outer and self._is_tip(course):
-                count = math.ceil((outer[1] - outer[0]) / self.length - SMALL)
-                heads = outer[0] + (outer[1] - outer[0]) * np.arange(1, count) / count
-            for low, high in stretch.free:
-                for a, b in pairwise([stretch.left, *heads.tolist(), stretch.right]):
-                    yield (a, low, b, high), stretch.across
-        yield from self._tips(run, holes, course, avoid)
-
-    def _tips(
-        self, run: Run, holes: Sequence[Hole], course: int, avoid: Sequence[float]
-    ) -> Iterator[tuple[Box, tuple[float, float]]]:
-        """Thin leftovers over and under arches, which become parts of other stones."""
-        low, high = (float(level) for level in self.levels[course : course + 2])
-        for hole in holes:
-            if hole.arch is not None and run.start.max() <= hole.left and hole.right <= run.stop.min():
-                for tip in hole.arch.tips:
-                    heads = laid(RunEnds(*tip), self.length, self.place(course, self.first), avoid).heads
-                    for a, b in pairwise([tip[0], *heads.tolist(), tip[1]]):
-                        yield (a, low, b, high), self.across
-
-    def _is_tip(self, course: int) -> bool:
-        """Whether it is the course under the tip of a gable."""
-        return self.top is not None and course == len(self.runs) - 1
-
-    def _stretches(self, run: Run, ends: RunEnds, course: int) -> list[Stretch]:
-        """A run, cut where what is free changes. Raises KeyProblem: an opening in another wall, slivers beside it."""
-        small = SMALL * self.length
-        holes = [h for h in self.holes(course) if h.left < ends.stop - small and h.right > ends.start + small]
-        inner = ends.start + ends.start_askew, ends.stop - ends.stop_askew
-        for hole in holes:
-            if hole.left < inner[0] - small or hole.right > inner[1] + small:
-                message = f"it goes from {hole.left:g} to {hole.right:g} along wall '{self.axis.name}', which is free "
-                message += f"of other walls from {inner[0]:.6g} to {inner[1]:.6g}"
-                raise KeyProblem(message, *self._key(hole.opening))
-        pockets = self._pockets(course)
-        edges = {x for hole in holes for x in hole[:2]} | {x for pocket in pockets for x in pocket[:2]}
-        between = sorted(x for x in edges if inner[0] + small < x < inner[1] - small)
-        between = [x for x, before in zip(between, [-math.inf, *between]) if x - before > small]
-        low, high = (float(level) for level in self.levels[course : course + 2])
-        found: list[Stretch] = []
-        outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
-        for a, b in pairwise([outer[0], *between, outer[1]]):
-            middle = 0.5 * (a + b)
-            over = [hole for hole in holes if hole.left < middle < hole.right]
-            across = self._left_over([p.across for p in pockets if p.left < middle < p.right])
-            free = self._free(low, high, over) if across[1] > across[0] else ()
-            if found and found[-1][2:] == (free, across):
-                found[-1] = found[-1]._replace(right=b)
-            else:
-                found.append(Stretch(a, b, free, across))
-        self._check_lengths(found, course, holes)
-        return found
-
-    def _left_over(self, across: Sequence[tuple[float, float]]) -> tuple[float, float]:
-        """What pockets leave of the thickness."""
-        right, left = self.across
-        return max([right, *(a for a, _ in across)]), min([left, *(b for _, b in across)])
-
-    def _free(self, low: float, high: float, over: Sequence[Hole]) -> tuple[tuple[float, float], ...]:
-        """Heights of a course that holes leave."""
-        found, at = [], low
-        for hole in (*sorted(over, key=lambda each: each.low), None):
-            until = high if hole is None else hole.low
-            if until - at > SMALL * (high - low):
-                found.append((at, until))
-            at = max(at, high if hole is None else hole.high)
-        return tuple(found)
-
-    def _check_lengths(self, row: Sequence[Stretch], course: int, holes: Sequence[Hole]) -> None:
-        """Raises KeyProblem where a stretch is too short for a block."""
-        least = SHORTEST * self.length * (1.0 - SMALL)
-        for stretch in row:
-            length = stretch.right - stretch.left
-            if not stretch.free or length >= least or stretch.across != self.across:
-                continue
-            where = f"{length:.3g} m long, at {stretch.left:.4g} m in course {course + 1} of wall '{self.axis.name}'"
-            near = [h for h in holes if min(abs(h.left - stretch.right), abs(h.right - stretch.left)) < least]
-            key = self._key(near[0].opening) if near else ("walls", self.number, "axis")
-            raise KeyProblem(f"a piece is left that is too short, {where}; at least a quarter of a block", *key)
