@@ -15,10 +15,11 @@ from dem_cli.model.blocks import Block
 from dem_cli.structures.building.courses import WallCourses
 from dem_cli.structures.building.elevation import Pocket, WallElevation
 from dem_cli.structures.building.floors import Slab, floors_of
+from dem_cli.structures.building.irregular import IrregularWall, zones_of
 from dem_cli.structures.building.plan import Junction, Plan, PlanAxis, plan_of
 from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
 from dem_cli.structures.building.table import Building
-from dem_cli.structures.stones import Part
+from dem_cli.structures.stones import Part, Stone
 from dem_cli.structures.tops import Gable, with_gable
 
 WELD = 1e-12  # of the size of a building: coordinates that close are the same, but for round-off
@@ -36,7 +37,7 @@ def build(building: Building) -> list[Block]:
     elevations = [
         _elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))
     ]
-    walls = [block for each in elevations for block in _set_up(each)]
+    walls = [block for each in elevations for block in _blocks(building, plan, each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
 
@@ -104,18 +105,30 @@ def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
     return np.concatenate([levels, levels[-1] + gable.height * np.arange(1, count + 1) / count])
 
 
-def _set_up(elevation: WallCourses) -> list[Block]:
+def _blocks(building: Building, plan: Plan, wall: WallCourses) -> list[Block]:
     """Blocks of a wall in the places of the plan."""
-    named = elevation.stones()
+    pattern = wall.table.pattern or building.pattern
+    if pattern is None:
+        return _set_up(wall, wall.stones())
+    zones = zones_of(building, plan, wall)
+    found = IrregularWall(wall, zones, pattern, building.seed or 0).stones()
+    return [*_set_up(wall, found.dressed), *_set_up(wall, found.others, cut=False)]
+
+
+def _set_up(elevation: WallCourses, named: Sequence[tuple[str, Stone]], cut: bool = True) -> list[Block]:
+    """Stones of a wall in the places of the plan, cut where it ends askew."""
+    if not named:
+        return []
     parts = [part for _, stone in named for part in stone.parts]
     low, high = np.array([part.across for part in parts]).T
     solids = iter(polyhedron.prisms([part.shape for part in parts], low, high))
     to_plan = _turn(elevation.axis)
     blocks = []
     for name, stone in named:
-        cut = [behind_all(next(solids), _planes(elevation, stone.course, part)) for part in stone.parts]
+        planes = [_planes(elevation, stone.course, part) if cut else [] for part in stone.parts]
         material = stone.material or elevation.table.material
-        shapes = tuple(to_plan(solid) for solid in cut if solid is not None)
+        left = [behind_all(next(solids), each) for each in planes]
+        shapes = tuple(to_plan(solid) for solid in left if solid is not None)
         blocks.append(Block(name, shapes, material, course=stone.course))
     return blocks
 

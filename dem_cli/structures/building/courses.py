@@ -77,8 +77,7 @@ class WallCourses(WallElevation):
 
         Raises KeyProblem for a piece too small.
         """
-        laid_ones = [stone for course in range(len(self.runs)) for stone in self._course(course)]
-        over = list(self._over_openings())
+        laid_ones, over = self.laid_stones(), list(self.over_openings())
         exact = self._welded([*laid_ones, *(stone for _, stone in over)])
         found: list[tuple[str, Stone]] = []
         count = dict.fromkeys(range(1, len(self.runs) + 1), 0)
@@ -88,6 +87,10 @@ class WallCourses(WallElevation):
             found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
         return found + [(name, stone) for (name, _), stone in zip(over, exact[len(laid_ones) :], strict=True)]
 
+    def laid_stones(self) -> list[Stone]:
+        """Stones of all courses as they are laid, before small ones become parts of others."""
+        return [stone for course in range(len(self.runs)) for stone in self._course(course)]
+
     def _welded(self, stones: Sequence[Stone]) -> list[Stone]:
         """With the same corners where they share them, exactly."""
         if not any(len(void.joints) for void in self.voids):
@@ -95,7 +98,7 @@ class WallCourses(WallElevation):
         shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], WELD * self.length))
         return [one._replace(parts=tuple(Part(next(shapes), part.across) for part in one.parts)) for one in stones]
 
-    def _over_openings(self) -> Iterator[tuple[str, Stone]]:
+    def over_openings(self) -> Iterator[tuple[str, Stone]]:
         """Lintels and voussoirs."""
         for i, (opening, void) in enumerate(zip(self.table.openings, self.voids, strict=True)):
             if opening.lintel is not None and opening.lintel_box is not None:

@@ -7,12 +7,14 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, StructureBase
+from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, RandomStructure
+from dem_cli.structures.building.patterns import BuildingPattern
 from dem_cli.structures.openings import Opening, check_apart
 from dem_cli.structures.tops import Gable
 from dem_cli.structures.wall import MOST_BLOCKS
 
 FRONT = {"id": "front", "axis": [[0.0, 0.0], [5.0, 0.0]]}
+PATTERN = {"kind": "voronoi", "cell": 0.4}
 FLOOR = {"id": "attic", "z": 2.5, "on": ["left", "right"], "kind": "beams", "mass": 900.0}
 
 
@@ -40,6 +42,9 @@ class PlanWall(CaseModel):
         examples=[[{"x": 0.8, "y": 0.0, "width": 0.9, "height": 2.0}]],
     )
     gable: Gable | None = Field(None, description="a triangle on top; default: none", examples=[{"height": 1.5}])
+    pattern: BuildingPattern | None = Field(
+        None, description="irregular stones of this wall; default: those of the building", examples=[PATTERN]
+    )
 
     @model_validator(mode="after")
     def _has_a_length(self) -> PlanWall:
@@ -91,14 +96,17 @@ class Floor(CaseModel):
         return self
 
 
-class Building(StructureBase):
+class Building(RandomStructure):
     """Walls that meet, from their axes in plan: bonded at corners, T-junctions and crossings of any angle, with
     openings, gables and floors. Local origin: that of the plan, at the foot of the walls, on top of the base.
 
     Of two walls that meet, the one named first passes in odd courses, the other one in even ones. Where a length is no
     whole number of blocks, some are cut, none to less than a quarter of the given length.
-    Block names: "<id>-<wall>-<course>-<number>", both from 1, numbers along the axis; "<id>-<wall>-lintel-<number of
-    the opening>"; "<id>-<floor>", beams "<id>-<floor>-<number>"; "<id>-base", strips "<id>-base-<wall>".
+    With a pattern the stones of the regular courses where walls meet, end or carry a floor are kept as dressed ones.
+    Block names: "<id>-<wall>-<course>-<number>", both from 1, numbers along the axis; with a pattern
+    "<id>-<wall>-dressed-<course>-<number>" and "<id>-<wall>-<number>", coursed "<id>-<wall>-<course>-<number>";
+    "<id>-<wall>-lintel-<number of the opening>"; "<id>-<floor>", beams "<id>-<floor>-<number>"; "<id>-base", strips
+    "<id>-base-<wall>".
     """
 
     only_in: ClassVar[int | None] = 3
@@ -118,6 +126,11 @@ class Building(StructureBase):
         description="the walls by their axes in plan", examples=[[FRONT]]
     )
     floors: tuple[Floor, ...] = Field((), description="plates and beams on the walls", examples=[[FLOOR]])
+    pattern: BuildingPattern | None = Field(
+        None,
+        description="irregular stones between dressed ones where walls meet and end; default: regular courses",
+        examples=[PATTERN],
+    )
     base: Literal["slab", "strips", "none"] = Field(
         "slab", description="fixed blocks below: one slab under all walls, strips along them, or none"
     )

@@ -61,7 +61,7 @@ def overview(found: Sequence[CaseTable]) -> str:
 def section(found: Sequence[CaseTable]) -> list[str]:
     """A table at the top of the file with all its kinds, then the tables inside it."""
     first = found[0]
-    kinds = [table for table in found if table.tag]
+    kinds = [table for table in found if table.tag and table.path == first.path]
     parts = [f"## `{first.heading}`"]
     if kinds:
         shared = common(kinds)
@@ -79,7 +79,10 @@ def section(found: Sequence[CaseTable]) -> list[str]:
         alike = [table for table in inner if table.declared is declared]
         headings = ", ".join(f"`{table.heading}`" for table in alike)
         where = f"Of {', '.join(f'`{kind}`' for kind in alike[0].kinds)}." if alike[0].kinds else ""
-        parts += [f"### {headings}", " ".join(filter(None, [paragraphs(alike[0]), where])), *rows_of(plain(alike[0]))]
+        if alike[0].tag:
+            headings, where = f'{headings}, `{alike[0].tag} = "{alike[0].kinds[0]}"`', ""
+        own = [key for key in plain(alike[0]) if not (alike[0].tag and key.names_kind)]
+        parts += [f"### {headings}", " ".join(filter(None, [paragraphs(alike[0]), where])), *rows_of(own)]
         parts += [example(alike[0])]
     return parts
 
