@@ -163,7 +163,7 @@ WRONG = {  # text, line after the first [motion], what is said
     "duration": (PULSE + "frequency = 1.0\nduration = 2.0", 4, "motion.duration: not allowed with shape = 'sine'"),
     "rebound": (PULSE + "frequency = 1.0\nrebound = 0.5", 4, "motion.rebound: not allowed with shape = 'sine'"),
     "direction": (PULSE + "frequency = 1.0\ndirection = [0, 0]", 4, "motion.direction: [0, 0] is not allowed"),
-    "support": (PULSE + 'frequency = 1.0\nblocks = ["bse"]', 4, "motion.blocks.0: unknown support 'bse', did you mean"),
+    "support": (PULSE + 'frequency = 1.0\nblocks = ["bse"]', 4, "motion.blocks.0: unknown block 'bse', did you mean"),
     "free block": (
         PULSE + 'frequency = 1.0\nblocks = ["base", "column-1"]', 4,
         "motion.blocks.1: block 'column-1' is not fixed; only a fixed block can be moved (fixed: 'column-base', ",
