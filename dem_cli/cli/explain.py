@@ -61,7 +61,9 @@ def about_kinds(found: Sequence[CaseEntry]) -> str:
     """The key that says which kind of table it is, or all of these tables: the kinds, each with what it is."""
     table = found[0].table
     rows = [(f'"{entry.kinds[0]}"', summary(entry.table)) for entry in found]
-    about = f"{table.said}\n{table.tag} is one of these; keys: dem explain {table.path[0]}.{found[0].kinds[0]}"
+    about = f"{table.said}\n{table.tag} is one of these"
+    if len(table.path) == 1:
+        about += f"; keys: dem explain {table.path[0]}.{found[0].kinds[0]}"
     return laid_out(found[0].path if found[0].key else table.heading, about, [*rows, ("more", "docs/case.md")])
 
 

@@ -19,9 +19,18 @@ PLANS = {
 }
 
 
-def summary(walls, analysis, courses):
+COURSED = {
+    "kind": "coursed",
+    "spacing": [0.25, 0.05],
+    "segment": [0.6, 0.2],
+    "deviation": [0.0, 0.02],
+    "head_spacing": [0.3, 0.1],
+}
+
+
+def summary(walls, analysis, courses, **more):
     table = {"kind": "building", "id": "b", "block": [L, H], "thickness": T, "courses": courses, "walls": walls}
-    case = spatial_case(structure=[table], analysis=analysis, output={"frames": 0})
+    case = spatial_case(structure=[table | more], analysis=analysis, output={"frames": 0})
     found = solve(case, assemble(case), Observer()).summary
     assert found["status"] == "ok"
     return found
@@ -30,6 +39,11 @@ def summary(walls, analysis, courses):
 @pytest.mark.parametrize("plan", PLANS)
 def test_walls_that_meet_stand_under_their_weight(plan):
     assert 0.0 < summary(PLANS[plan], {"kind": "gravity"}, 4)["largest_displacement"] < 1e-4 * 4 * H
+
+
+def test_walls_of_irregular_courses_stand_under_their_weight():
+    found = summary(PLANS["T"], {"kind": "gravity"}, 4, pattern=COURSED, seed=1)
+    assert 0.0 < found["largest_displacement"] < 1e-4 * 4 * H
 
 
 def test_a_wall_turns_over_its_buttress_and_leaves_its_heel_behind():
@@ -57,3 +71,11 @@ def test_a_wall_turns_over_its_buttress_and_leaves_its_heel_behind():
     assert by_hand == pytest.approx(0.3844660, rel=1e-6)
     assert low == pytest.approx(by_hand, rel=2e-3)
     assert low <= by_hand <= high * (1 + 1e-3)
+
+
+def test_a_wall_of_irregular_courses_turns_over_its_foot():
+    push = {"kind": "pushover", "direction": [0.0, 1.0, 0.0], "resolution": 0.002}
+    low, high = summary([HOST], push, 6, pattern=COURSED, seed=1)["failure_load_bracket"]
+    by_hand = T / (6 * H)  # all stones reach through the wall: half of its thickness to half of its height
+    assert low == pytest.approx(by_hand, rel=2e-3)
+    assert high == pytest.approx(by_hand, rel=2e-3)
