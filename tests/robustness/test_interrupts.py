@@ -48,7 +48,10 @@ def here(**options):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_noted_and_raised_once_at_a_look(number):
+def test_noted_and_raised_once_at_a_look(number, request):
+    if signal.getsignal(number) is signal.SIG_IGN:  # as under nohup; what is ignored is left alone
+        request.addfinalizer(lambda: signal.signal(number, signal.SIG_IGN))
+        signal.signal(number, signal.SIG_DFL)
     with here():
         look()
         press(number)
