@@ -252,10 +252,8 @@ class Fill(Selection):
         """From where to where it lies along x, in space also along y [m]; (): wherever the blocks are."""
         if self.extent is None:
             return ()
-        low, high = self.extent
-        if isinstance(low, tuple) and isinstance(high, tuple):
-            return ((low[0], high[0]), (low[1], high[1]))
-        return (self.extent,)  # type: ignore[return-value]
+        low, high = (end if isinstance(end, tuple) else (end,) for end in self.extent)
+        return tuple(zip(low, high, strict=True))
 
 
 class GroundTable(CaseModel):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ class Contents(NamedTuple):
     bodies: Sequence[FileBody]
     unit: str = ""  # of lengths, where the file says it
     left_out: Sequence[str] = ()  # what the file holds beside blocks, in words such as "3 TEXT"
-    densities: dict[str, float] = {}  # of layers, where the file says them [kg/m3]  # noqa: RUF012
+    densities: Mapping[str, float] = MappingProxyType({})  # of layers, where the file says them [kg/m3]
 
 
 def finite(points: Sequence | np.ndarray, what: str) -> np.ndarray:

@@ -12,6 +12,11 @@ SAME_PLACE = 1e-6  # of a block: head joints so close are one
 Span = tuple[float, float]  # from where to where masonry is laid [m]
 
 
+def bed_joints(courses: int, height: float, heights: Sequence[float] = ()) -> np.ndarray:
+    """Heights of the bed joints from the foot to the top [m], (courses + 1,): of equal courses, or of given ones."""
+    return np.concatenate([[0.0], np.cumsum(heights)]) if heights else np.arange(courses + 1) * height
+
+
 class Piece(NamedTuple):
     """One block of a course, seen from the front."""
 

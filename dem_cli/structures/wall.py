@@ -12,7 +12,7 @@ from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.courses import HEADER_BONDS
+from dem_cli.structures.courses import HEADER_BONDS, bed_joints
 from dem_cli.structures.masonry import Core, Masonry, Quoins
 from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
@@ -134,9 +134,7 @@ class Wall(StructureBase):
     @property
     def levels(self) -> np.ndarray:
         """Heights of the bed joints from the foot to the top [m], (courses + 1,)."""
-        if self.course_heights:
-            return np.concatenate([[0.0], np.cumsum(self.course_heights)])
-        return np.arange(self.courses + 1) * self.block[1]
+        return bed_joints(self.courses, self.block[1], self.course_heights)
 
     @property
     def is_plain(self) -> bool:
@@ -222,9 +220,11 @@ def _check_top(wall: Wall) -> None:
         message = f"{wall.gable.ridge:g} is not allowed; must be less than the length of the wall, {wall.extent:g}"
         raise KeyProblem(message, "gable", "ridge")
     top = _top(wall)
-    for i, opening in enumerate(wall.openings if top is not None else ()):
+    if top is None:
+        return
+    for i, opening in enumerate(wall.openings):
         gap = NARROWEST_PIECE * opening.width
-        if any(tops.cuts_off(top, shape, gap) for shape in opening.void.solids):  # type: ignore[arg-type]
+        if any(tops.cuts_off(top, shape, gap) for shape in opening.void.solids):
             raise KeyProblem("reaches above the top of the wall there", "openings", i)
 
 

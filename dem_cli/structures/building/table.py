@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, RandomStructure
 from dem_cli.structures.building.patterns import BuildingPattern
+from dem_cli.structures.courses import bed_joints
 from dem_cli.structures.openings import Opening, check_apart
 from dem_cli.structures.tops import Gable
 from dem_cli.structures.wall import MOST_BLOCKS
@@ -142,9 +143,7 @@ class Building(RandomStructure):
     @property
     def levels(self) -> np.ndarray:
         """Heights of the bed joints from the foot to the top [m], (courses + 1,)."""
-        if self.course_heights:
-            return np.concatenate([[0.0], np.cumsum(self.course_heights)])
-        return np.arange(self.courses + 1) * self.block[1]
+        return bed_joints(self.courses, self.block[1], self.course_heights)
 
     @property
     def base_depth(self) -> float:

@@ -192,8 +192,8 @@ class _Courses:
         kinks = [self.beds[k][0]]
         for x, y in self.beds[k][1:-1]:
             at = [place + slope * (y - middle) for place, slope in zip(places, slopes, strict=True)]
-            near = min(at, key=lambda other, x=x: abs(other - x), default=math.inf)  # type: ignore[misc]
-            moved = near if abs(near - x) < self.reach else x
+            away, near = min(((abs(other - x), other) for other in at), default=(math.inf, x))
+            moved = near if away < self.reach else x
             if kinks[-1][0] + self.reach <= moved <= self.length - self.reach or len(kinks) == 1:
                 kinks.append((moved, y))
         self.beds[k] = [*kinks, self.beds[k][-1]]
