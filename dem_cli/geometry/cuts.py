@@ -50,6 +50,20 @@ def less_box(shape: np.ndarray, box: Sequence[float], gap: float) -> list[np.nda
     return [piece for piece in pieces if len(piece)] if len(rest) else [shape]
 
 
+def less_convex(shape: np.ndarray, hole: np.ndarray, gap: float) -> list[np.ndarray]:
+    """A convex polygon without another one, divided by the lines from its middle through its corners."""
+    rest, ends = shape, np.roll(hole, -1, axis=0)
+    for start, end in zip(hole, ends, strict=True):
+        rest = halves(rest, start, end, gap)[0]
+    if not len(rest):
+        return [shape]
+    middle, found = polygon.centroid(hole), []
+    for start, end in zip(hole, ends, strict=True):
+        wedge = halves(halves(shape, middle, start, gap)[0], middle, end, gap)[1]
+        found.append(halves(wedge, start, end, gap)[1])
+    return [piece for piece in found if len(piece)]
+
+
 def common_edge(a: np.ndarray, b: np.ndarray, gap: float) -> float:
     """Length along which two convex polygons that do not overlap touch [m]."""
     if (a.max(axis=0) < b.min(axis=0) - gap).any() or (b.max(axis=0) < a.min(axis=0) - gap).any():

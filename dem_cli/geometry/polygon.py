@@ -212,6 +212,13 @@ def rectangle(x: float, y: float, width: float, height: float) -> np.ndarray:
     return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
 
 
+def upright_box(vertices: np.ndarray) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right and top of a polygon that is a level rectangle, exactly [m]; None: it is not."""
+    (x0, y0), (x1, y1) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
+    at_sides = np.isin(vertices[:, 0], [x0, x1]) & np.isin(vertices[:, 1], [y0, y1])
+    return (x0, y0, x1, y1) if len(vertices) == 4 and at_sides.all() else None
+
+
 def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndarray:
     """Turned about the origin by angle [rad], then shifted [m]; an angle of 0 is exact."""
     vertices = np.asarray(vertices, float)

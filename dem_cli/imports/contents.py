@@ -27,6 +27,7 @@ class FileBody(NamedTuple):
     layer: str = ""  # material of an OBJ file, layer of a DXF file, group of an SVG file; "": the file has none
     fixed: bool = False
     indexed: bool = True
+    said: str = ""  # how a drawing calls it: kind and handle of an entity (DXF), id (SVG)
 
 
 class Contents(NamedTuple):
@@ -36,6 +37,7 @@ class Contents(NamedTuple):
     unit: str = ""  # of lengths, where the file says it
     left_out: Sequence[str] = ()  # what the file holds beside blocks, in words such as "3 TEXT"
     densities: Mapping[str, float] = MappingProxyType({})  # of layers, where the file says them [kg/m3]
+    layers: Sequence[str] = ()  # of a drawing: those on which anything is drawn
 
 
 def finite(points: Sequence | np.ndarray, what: str) -> np.ndarray:

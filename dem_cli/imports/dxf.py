@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,29 +17,43 @@ OUTLINES, PIECES = ("LWPOLYLINE", "POLYLINE"), ("LINE", "ARC")
 _SAME = 1e-9  # of the size of a drawing: ends of lines that meet
 
 
-def read(path: Path, chords: int | None = None) -> Contents:
-    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused."""
+class _Piece(NamedTuple):
+    """A line that is not closed by itself."""
+
+    layer: str
+    ring: np.ndarray  # corners along it, (n, 2)
+    said: str  # its kind and handle
+
+
+def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
+    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
+
+    only: layers that are read, others are left out; (): all.
+    """
     drawing = _drawing(path)
     shown = {layer.dxf.name for layer in drawing.layers if not layer.is_off() and not layer.is_frozen()}
     left_out: Counter[str] = Counter()
-    bodies, pieces = [], []
+    bodies, pieces, layers = [], [], {}
     for entity in _entities(drawing):
         kind, layer = entity.dxftype(), entity.dxf.layer
-        if layer not in shown and any(layer == known.dxf.name for known in drawing.layers):
+        layers[layer] = True
+        if only and layer not in only:
+            left_out[f"on layer '{layer}'"] += 1
+        elif layer not in shown and any(layer == known.dxf.name for known in drawing.layers):
             left_out[f"{kind} on layer '{layer}', which is off"] += 1
         elif kind in OUTLINES and (kind == "LWPOLYLINE" or entity.is_2d_polyline or entity.is_3d_polyline):
-            ring = _ring(_path(entity), layer, chords)
-            if _closed(entity, ring):
-                bodies.append(_body(ring, layer))
+            piece = _piece(entity, chords)
+            if _closed(entity, piece.ring):
+                bodies.append(_body(piece.ring, layer, piece.said))
             else:
-                pieces.append((layer, ring))
+                pieces.append(piece)
         elif kind in PIECES:
-            pieces.append((layer, _ring(_path(entity), layer, chords)))
+            pieces.append(_piece(entity, chords))
         else:
             left_out[kind] += 1
     bodies += _loops(pieces)
     words = [f"{count} {what}" for what, count in left_out.items()]
-    return Contents(bodies, UNITS.get(drawing.header.get("$INSUNITS", 0), ""), words)
+    return Contents(bodies, UNITS.get(drawing.header.get("$INSUNITS", 0), ""), words, layers=list(layers))
 
 
 def _drawing(path: Path) -> Any:
@@ -67,6 +81,12 @@ def _path(entity: Any) -> Any:
         return path.make_path(entity)
     except Exception as error:  # of ezdxf: a polyline without points, and so on
         raise FileProblem(f"a {entity.dxftype()} of layer '{entity.dxf.layer}' has no shape ({error})") from None
+
+
+def _piece(entity: Any, chords: int | None) -> _Piece:
+    handle = entity.dxf.handle  # None within a block reference
+    said = entity.dxftype() + (f" #{handle}" if handle else "")
+    return _Piece(entity.dxf.layer, _ring(_path(entity), entity.dxf.layer, chords), said)
 
 
 def _closed(entity: Any, ring: np.ndarray) -> bool:
@@ -101,37 +121,36 @@ def _curve(start: Any, command: Any, chords: int) -> list[Any]:
     return [*(bezier.point(k / chords) for k in range(1, chords)), command.end]
 
 
-def _loops(pieces: list[tuple[str, np.ndarray]]) -> list[FileBody]:
+def _loops(pieces: list[_Piece]) -> list[FileBody]:
     """Outlines made of lines that meet end to end, in twos, on one layer. Raises FileProblem where they do not."""
     from ezdxf import edgeminer
     from ezdxf.math import Vec3
 
     found = []
-    for layer in dict.fromkeys(layer for layer, _ in pieces):
-        rings = [ring for name, ring in pieces if name == layer]
-        size = float(np.abs(np.concatenate(rings)).max()) or 1.0
+    for layer in dict.fromkeys(piece.layer for piece in pieces):
+        own = [piece for piece in pieces if piece.layer == layer]
+        size = float(np.abs(np.concatenate([piece.ring for piece in own])).max()) or 1.0
         edges = [
-            edgeminer.make_edge(Vec3(*ring[0]), Vec3(*ring[-1]), _length(ring), payload=ring)
-            for ring in rings
-            if _length(ring) > _SAME * size
+            edgeminer.make_edge(Vec3(*piece.ring[0]), Vec3(*piece.ring[-1]), _length(piece.ring), payload=piece)
+            for piece in own
+            if _length(piece.ring) > _SAME * size
         ]
         deposit = edgeminer.Deposit(edges, gap_tol=_SAME * size)
         for chain in edgeminer.find_all_simple_chains(deposit):
             if not edgeminer.is_loop(chain, gap_tol=_SAME * size):
                 raise FileProblem(f"layer '{layer}': {_open_end(deposit, chain)}")
-            ring = [edge.payload[::-1] if edge.is_reverse else edge.payload for edge in chain]
-            found.append(_body(np.concatenate([piece[:-1] for piece in ring]), layer))
+            ring = [edge.payload.ring[:: -1 if edge.is_reverse else 1] for edge in chain]
+            found.append(_body(np.concatenate([piece[:-1] for piece in ring]), layer, chain[0].payload.said))
     return found
 
 
 def _open_end(deposit: Any, chain: Any) -> str:
-    for point in (chain[0].start, chain[-1].end):
-        count = deposit.degree(point)
-        if count != 2:
-            break
+    ends = ((chain[0], chain[0].start), (chain[-1], chain[-1].end))
+    edge, point = next((end for end in ends if deposit.degree(end[1]) != 2), ends[-1])
+    count = deposit.degree(point)
     how = "ends" if count < 2 else f"meets {count - 1} others"
     return (
-        f"a line {how} at [{point.x:g}, {point.y:g}]; an outline is a closed polyline for each block, "
+        f"{edge.payload.said} {how} at [{point.x:g}, {point.y:g}]; an outline is a closed polyline, "
         "or lines that meet in twos"
     )
 
@@ -140,7 +159,7 @@ def _length(ring: np.ndarray) -> float:
     return float(np.hypot(*np.diff(ring, axis=0).T).sum())
 
 
-def _body(ring: np.ndarray, layer: str) -> FileBody:
+def _body(ring: np.ndarray, layer: str, said: str) -> FileBody:
     """An outline, its last corner left out where it is the first one again."""
     same = len(ring) > 1 and np.abs(ring[0] - ring[-1]).max() <= _SAME * np.abs(ring).max()
-    return FileBody("", ring[:-1] if same else ring, layer=layer)
+    return FileBody("", ring[:-1] if same else ring, layer=layer, said=said)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
@@ -33,16 +33,23 @@ def format_of(file: str | Path) -> FileFormat | None:
     return FORMATS.get(Path(file).suffix.lower())
 
 
-def read(file: str | Path, chords: int | None = None) -> Contents:
-    """All bodies in a file. Raises FileProblem; chords: straight pieces of a curve in a drawing."""
+def read(file: str | Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
+    """All bodies in a file, of a drawing those on the layers `only`; (): on any. Raises FileProblem.
+
+    chords: straight pieces of a curve in a drawing.
+    """
     path, found = Path(file), format_of(file)
     if found is None:
         raise FileProblem(f"'{path.suffix}' is not read; allowed: {', '.join(FORMATS)}")
     reader: Callable[..., Contents] = import_module(found.module).read
     try:
-        contents = reader(path, chords) if found.flat else reader(path)
+        contents = reader(path, chords, only) if found.flat else reader(path)
     except OSError as error:
         raise FileProblem(f"cannot be read ({error.strerror or error})") from None
+    absent = [name for name in only if name not in contents.layers]
+    if absent:
+        drawn = ", ".join(f"'{name}'" for name in contents.layers if name) or "none"
+        raise FileProblem(f"nothing is drawn on a layer '{absent[0]}'; layers with something on them: {drawn}")
     if not contents.bodies:
         also = f"; left out: {', '.join(contents.left_out)}" if contents.left_out else ""
         raise FileProblem(f"no {found.what} in it{also}")

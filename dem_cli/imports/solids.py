@@ -51,7 +51,7 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
     for number, body in enumerate(bodies, 1):
         with_place = body._replace(points=_placed(body.points, factor, how.up))
         try:
-            found = shells_of(with_place) if body.faces else [_outline(with_place.points)]
+            found = shells_of(with_place) if body.faces else [closed_outline(with_place.points)]
         except FileProblem as error:
             raise FileProblem(f"{called(body, number)}: {error}") from None
         owners += [number] * len(found)
@@ -101,7 +101,7 @@ def _placed(points: np.ndarray, factor: float, up: str) -> np.ndarray:
     return found
 
 
-def _outline(ring: np.ndarray) -> np.ndarray:
+def closed_outline(ring: np.ndarray) -> np.ndarray:
     """An outline counter-clockwise, each corner once. Raises FileProblem."""
     found = polygon.simplified(ring)
     if len(found) < 3 or polygon.area(found) <= polygon.ROUND_OFF * polygon.size(found) ** 2:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -22,14 +22,23 @@ LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _PAGE = ("width", "height", "viewBox", "x", "y", "preserveAspectRatio")
 
 
-def read(path: Path, chords: int | None = None) -> Contents:
-    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused."""
+def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
+    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
+
+    only: groups (layers) that are read, others are left out; (): all.
+    """
     left_out: Counter[str] = Counter()
-    bodies = []
+    bodies, layers = [], {}
     for name, layer, shape in _shapes(_parsed(path), "", left_out):
+        layers[layer] = True
+        if only and layer not in only:
+            left_out[f"on group '{layer}'" if layer else "on no group"] += 1
+            continue
         for ring in _rings(shape, name, chords):
-            bodies.append(FileBody(name, finite(ring, f"'{name}'") * (1.0, -1.0), layer=layer))
-    return Contents(bodies, left_out=[f"{count} {what}" for what, count in left_out.items()])
+            ring = finite(ring, f"'{name}'") * (1.0, -1.0)
+            bodies.append(FileBody(name, ring, layer=layer, said=f"'{name}'" if name else ""))
+    words = [f"{count} {what}" for what, count in left_out.items()]
+    return Contents(bodies, left_out=words, layers=list(layers))
 
 
 def _parsed(path: Path) -> Any:

@@ -40,6 +40,8 @@ def interruption(void: Void, low: float, high: float, gap: float) -> Interruptio
     foot, head = void.span_at(low, 1, gap), void.span_at(high, -1, gap)
     height = high - low
     middle = void.span_at((low + high) / 2.0, 1, gap)
+    if void.shapes and (foot is None or head is None or max(foot[0], head[0]) > min(foot[1], head[1])):
+        return None  # cut out of what is laid
     if foot is None or head is None or middle is None:
         across = _thin(void, low, high, foot is not None, gap)
         return Interruption(across, middle or across, (across,)) if across else None

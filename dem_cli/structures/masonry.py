@@ -62,6 +62,7 @@ class Masonry:
     quoins: Quoins | None = None
     quoin_courses: int = 0  # the lowest ones have quoins; gables do without
     openings: Sequence[Opening] = ()
+    hollows: Sequence[Void] = ()  # beside an outline that is drawn, and openings in it that are not rectangles
     fit_rings: bool = True  # whether outer corners of arches are drawn to bed joints close by
     top: tops.Profile | None = None
 

@@ -31,7 +31,7 @@ def masonry_blocks(masonry: Masonry) -> list[Block]:
     if masonry.fit_rings:
         voids = [void.fitted(masonry.levels) for void in voids]
     over = list(_over_openings(masonry, voids))
-    laid = list(_cut_stones(masonry, voids))
+    laid = list(_cut_stones(masonry, [*voids, *masonry.hollows]))
     exact = _welded([*laid, *over], WELD * masonry.length)
     named = [*_named(put_together(exact[: len(laid)], masonry.small)), *((one.name, one) for one in exact[len(laid) :])]
     return [_block(name, stone, masonry) for name, stone in named]

@@ -22,6 +22,7 @@ class Void(NamedTuple):
     boxes: tuple[Box, ...]  # the opening where it is rectangular, its lintel
     joints: np.ndarray  # of its arch [inner, outer] from left to right, (n + 1, 2, 2) [m]; (0, 2, 2): it has none
     full: bool = False  # a ring of voussoirs: joints go round clockwise, the first is the last as well
+    shapes: tuple[np.ndarray, ...] = ()  # convex polygons with nothing over them, counter-clockwise [m], each (n, 2)
 
     @property
     def voussoirs(self) -> list[np.ndarray]:
@@ -39,12 +40,12 @@ class Void(NamedTuple):
     def outlines(self) -> list[np.ndarray]:
         """Convex shapes that it consists of; they may overlap."""
         boxes = [polygon.rectangle(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in self.boxes]
-        return [*boxes, self.outline] if len(self.joints) else boxes
+        return [*boxes, *self.shapes, *([self.outline] if len(self.joints) else [])]
 
     @property
     def solids(self) -> list[np.ndarray]:
         """Convex shapes of the hole, its lintel and its voussoirs."""
-        return self.outlines[: len(self.boxes)] + self.voussoirs
+        return self.outlines[: len(self.boxes) + len(self.shapes)] + self.voussoirs
 
     @property
     def reach(self) -> Box:
@@ -86,6 +87,8 @@ class Void(NamedTuple):
         pieces = [shape]
         for box in self.boxes:
             pieces = [rest for piece in pieces for rest in cuts.less_box(piece, box, gap)]
+        for hole in self.shapes:
+            pieces = [rest for piece in pieces for rest in cuts.less_convex(piece, hole, gap)]
         if len(self.joints):
             pieces = [rest for piece in pieces for rest in self._around_arch(piece, gap)]
         return pieces
@@ -112,6 +115,12 @@ class Void(NamedTuple):
             if np.hypot(*(end - start)) > gap:
                 rest = cuts.halves(rest, start, end, gap)[0]
         return len(rest) > 0
+
+
+def plain_void(shape: np.ndarray) -> Void:
+    """What a convex polygon (n, 2) takes out, with nothing built over it."""
+    box, no_arch = polygon.upright_box(shape), np.empty((0, 2, 2))
+    return Void((box,), no_arch) if box else Void((), no_arch, shapes=(shape,))
 
 
 def _aimed(joints: np.ndarray, shape: np.ndarray, full: bool) -> np.ndarray:

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive, StructureBase
+from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.courses import HEADER_BONDS, bed_joints
+from dem_cli.structures.courses import HEADER_BONDS, LEAST_PIECE, bed_joints
 from dem_cli.structures.masonry import Core, Masonry, Quoins
 from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
+from dem_cli.structures.wall_outline import Outlined, hollows
 
 MOST_BLOCKS = 1_000_000
+OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "course_lengths", "gable", "profile")
 
 
-class Wall(StructureBase):
+class Wall(Outlined):
     """Blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
 
     In 3D half of the thickness lies to either side of the origin.
@@ -38,7 +41,9 @@ class Wall(StructureBase):
         examples=[[0.4, 0.2]],
         json_schema_extra={"maxItems": 3},
     )
-    courses: int = Field(ge=1, le=10_000, description="number of courses", examples=[12])
+    courses: int | None = Field(
+        None, ge=1, le=10_000, description="number of courses; default: those of the outline", examples=[12]
+    )
     blocks_per_course: int | None = Field(
         None,
         ge=1,
@@ -119,6 +124,8 @@ class Wall(StructureBase):
     @property
     def extent(self) -> float:
         """Length of a full course [m]."""
+        if self.outline:
+            return self.outline.drawn.size[0]
         return self.block[0] * self.blocks_per_course if self.blocks_per_course else self.length or 0.0
 
     @property
@@ -133,8 +140,20 @@ class Wall(StructureBase):
 
     @property
     def levels(self) -> np.ndarray:
-        """Heights of the bed joints from the foot to the top [m], (courses + 1,)."""
-        return bed_joints(self.courses, self.block[1], self.course_heights)
+        """Heights of the bed joints from the foot to the top [m], (courses + 1,).
+
+        The uppermost course below an outline is as high as is left, a quarter of a course or more.
+        """
+        if self.outline is None:
+            return bed_joints(self.courses or 1, self.block[1], self.course_heights)
+        height, course = self.outline.drawn.size[1], self.block[1]
+        count = max(1, math.ceil((height / course - LEAST_PIECE) * (1.0 - NARROWEST_PIECE)))
+        return np.append(bed_joints(count - 1, course), height)
+
+    @property
+    def all_openings(self) -> tuple[Opening, ...]:
+        """Those of the case and, after them, those drawn."""
+        return self.with_drawn(self.openings)
 
     @property
     def is_plain(self) -> bool:
@@ -144,16 +163,19 @@ class Wall(StructureBase):
     @property
     def _shaped_by(self) -> list[str]:
         """Keys by which it is laid without short pieces."""
-        given = [key for key in ("length", "core", "quoins", "gable", "profile") if getattr(self, key)]
+        given = [key for key in ("length", "outline", "core", "quoins", "gable", "profile") if getattr(self, key)]
         given += ["bond"] * (self.bond in HEADER_BONDS) + ["leaves"] * (self.leaves > 1)
         return given + ["openings"] * any(opening.arch for opening in self.openings)
 
     @model_validator(mode="after")
     def _not_too_many(self) -> Wall:
-        if (self.blocks_per_course is None) == (self.length is None):
+        self.check_outlined(self.openings, OF_OUTLINE)
+        if self.courses is None and self.outline is None:
+            raise KeyProblem("missing; must be a whole number from 1 to 10,000, the number of courses", "courses")
+        if self.outline is None and (self.blocks_per_course is None) == (self.length is None):
             found = "found none" if self.length is None else "found both"
             raise KeyProblem(f"a wall needs either blocks_per_course or length; {found}", "blocks_per_course")
-        lengths = self.course_lengths or (self.block[0],) * self.courses
+        lengths = self.course_lengths or (self.block[0],) * (len(self.levels) - 1)
         count = sum(self.extent / length for length in lengths) * self.leaves
         if count > MOST_BLOCKS:
             key = "course_lengths" if self.course_lengths else "courses"
@@ -243,7 +265,7 @@ def _check_side(wall: Wall, side: Side, i: int) -> None:
 def build(wall: Wall) -> list[Block]:
     """Blocks in local coordinates, course by course from below, the base first, lintels last."""
     if wall.is_plain:
-        boxes = [_course(wall, k) for k in range(wall.courses)]
+        boxes = [_course(wall, k) for k in range(len(wall.levels) - 1)]
         ends = (min(box[0, 0] for box in boxes), max(box[-1, 2] for box in boxes))
         laid = _plain_blocks(wall, boxes)
     else:
@@ -265,12 +287,13 @@ def build(wall: Wall) -> list[Block]:
 def masonry_of(wall: Wall) -> Masonry:
     """What a wall is made of that is laid without short pieces."""
     levels = wall.levels
+    courses = len(levels) - 1
     if wall.gable:
         levels = tops.with_gable(levels, wall.gable, wall.block[1])
     top, stepped = _top(wall), wall.gable is not None and wall.gable.edges == "stepped"
-    spans = [((0.0, wall.extent),)] * wall.courses
+    spans = [((0.0, wall.extent),)] * courses
     if wall.gable and top is not None:
-        edges = zip(levels[wall.courses : -1].tolist(), levels[wall.courses + 1 :].tolist(), strict=True)
+        edges = zip(levels[courses:-1].tolist(), levels[courses + 1 :].tolist(), strict=True)
         spans += [(tops.level_span(top, (low + high) / 2.0 if stepped else low),) for low, high in edges]
     return Masonry(
         length=wall.block[0],
@@ -280,15 +303,23 @@ def masonry_of(wall: Wall) -> Masonry:
         bond=wall.bond or "running",
         offset=wall.offset,
         first=wall.first,
-        lengths=wall.course_lengths and (*wall.course_lengths, *[wall.block[0]] * (len(spans) - wall.courses)),
+        lengths=wall.course_lengths and (*wall.course_lengths, *[wall.block[0]] * (len(spans) - courses)),
         leaves=wall.leaves,
         through_stones=wall.through_stones,
         core=wall.core,
         quoins=wall.quoins,
-        quoin_courses=wall.courses,
-        openings=wall.openings,
+        quoin_courses=_quoin_courses(wall),
+        openings=wall.all_openings,
+        hollows=hollows(wall.outline),
         top=None if stepped else top,
     )
+
+
+def _quoin_courses(wall: Wall) -> int:
+    """How many courses have quoins: those at whose ends the outline is upright."""
+    if wall.outline is None:
+        return len(wall.levels) - 1
+    return int(np.searchsorted(wall.levels, wall.outline.drawn.eaves * (1.0 + NARROWEST_PIECE), side="right")) - 1
 
 
 def _top(wall: Wall) -> tops.Profile | None:

@@ -28,7 +28,7 @@ class CoursedWall(RandomStructure, PatternWall, coursed.CoursedPattern):
 
     @model_validator(mode="after")
     def _beds_and_heads_apart(self) -> CoursedWall:
-        self.check(*self.size)
+        self.check(*self.extent)
         return self
 
 

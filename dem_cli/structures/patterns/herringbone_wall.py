@@ -48,7 +48,7 @@ class HerringboneWall(PatternWall):
             near = round(length / height) * height
             message = f"a length of {length:g} is not allowed; must be a whole number of heights, such as {near:.4g}"
             raise KeyProblem(f"{message}, else stones do not interlock", "block")
-        count = self.size[0] * self.size[1] / (length * height)
+        count = self.extent[0] * self.extent[1] / (length * height)
         if count > MOST_STONES:
             raise KeyProblem(f"makes {count:.3g} stones; at most {MOST_STONES:,}", "block")
         return self

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.geometry import pockets
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
@@ -14,6 +15,7 @@ from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, c
 from dem_cli.structures.patterns.panel import WallPanel, blocks_of
 from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
+from dem_cli.structures.wall_outline import Outlined
 
 
 class DressedEnds(CaseModel):
@@ -35,11 +37,12 @@ class DressedEnds(CaseModel):
         return found
 
 
-class PatternWall(StructureBase):
+class PatternWall(Outlined):
     """What every wall of irregular masonry accepts."""
 
-    size: tuple[Positive, Positive] = Field(
-        description="length and height of the wall, in 3D its thickness may follow [m]",
+    size: tuple[Positive, Positive] | None = Field(
+        None,
+        description="length and height of the wall, in 3D its thickness may follow [m]; default: those of the outline",
         examples=[[4.0, 3.0]],
         json_schema_extra={"maxItems": 3},
     )
@@ -68,7 +71,10 @@ class PatternWall(StructureBase):
 
     @model_validator(mode="after")
     def _fits(self) -> PatternWall:
-        length, height = self.size
+        self.check_outlined(self.openings, ("size", "gable"))
+        if self.size is None and self.outline is None:
+            raise KeyProblem("missing; must be a list of 2 numbers above 0, length and height", "size")
+        length, height = self.extent
         if self.gable:
             height += self.gable.height
             if self.gable.edges != "cut":
@@ -76,7 +82,7 @@ class PatternWall(StructureBase):
             if self.gable.ridge is not None and self.gable.ridge >= length:
                 message = f"{self.gable.ridge:g} is not allowed; must be less than the length of the wall, {length:g}"
                 raise KeyProblem(message, "gable", "ridge")
-        top = self.outline[2:] if not self.gable else self.outline[[4, 3, 2]]
+        top = self.face[2:] if not self.gable else self.face[[4, 3, 2]]
         for i, opening in enumerate(self.openings):
             check_opening(opening, i, length, height)
             if self.gable and any(tops.cuts_off(top, shape, NARROWEST_PIECE * length) for shape in opening.void.solids):
@@ -100,12 +106,27 @@ class PatternWall(StructureBase):
     @property
     def base_depth(self) -> float:
         """Height of the base [m]."""
-        return self.base_height or self.size[1] / 10.0
+        return self.base_height or self.extent[1] / 10.0
 
     @property
-    def outline(self) -> np.ndarray:
-        """Corners of its face, with the gable [m], (n, 2)."""
-        length, height = self.size
+    def extent(self) -> tuple[float, float]:
+        """Length and height, of an outline those of the box around it [m]."""
+        if self.outline:
+            return self.outline.drawn.size
+        assert self.size is not None
+        return self.size
+
+    @property
+    def all_openings(self) -> tuple[Opening, ...]:
+        """Those of the case and, after them, those drawn."""
+        return self.with_drawn(self.openings)
+
+    @property
+    def face(self) -> np.ndarray:
+        """Corners of its face, with the gable, of an outline of its convex hull [m], (n, 2)."""
+        if self.outline:
+            return pockets.hull(self.outline.drawn.outline)
+        length, height = self.extent
         whole = rectangle(0.0, 0.0, length, height)
         if not self.gable:
             return whole
@@ -114,14 +135,20 @@ class PatternWall(StructureBase):
     @property
     def panel(self) -> WallPanel:
         """Its face without its openings, lintels, arches and quoins."""
-        found = [hole for opening in self.openings for hole in opening.void.outlines]
-        quoins = self.quoins.boxes(*self.size) if self.quoins else {}
-        return WallPanel(self.outline, (*quoins.values(), *found))
+        found = [hole for opening in self.all_openings for hole in opening.void.outlines]
+        found += [*self.outline.cut, *self.outline.drawn.beside_hull] if self.outline else []
+        return WallPanel(self.face, (*self.squared_ends.values(), *found))
+
+    @property
+    def squared_ends(self) -> dict[str, np.ndarray]:
+        """Local name -> shape of each quoin; beside an outline as high as its ends are upright."""
+        length, height = self.extent
+        return self.quoins.boxes(length, self.outline.drawn.eaves if self.outline else height) if self.quoins else {}
 
 
 def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
     """Raises KeyProblem where quoins leave nothing between them, or openings cross them."""
-    length = wall.size[0]
+    length = wall.extent[0]
     if quoins.length > length / 3.0:
         message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
         raise KeyProblem(message, "quoins", "length")
@@ -141,12 +168,12 @@ def masonry(wall: PatternWall, tiling: Tiling) -> list[Block]:
 def _quoins(wall: PatternWall) -> list[Block]:
     if not wall.quoins:
         return []
-    shapes = wall.quoins.boxes(*wall.size).items()
+    shapes = wall.squared_ends.items()
     return [Block(name, (shape,), wall.quoins.material, wall.thickness) for name, shape in shapes]
 
 
 def _supports(wall: PatternWall) -> list[Block]:
-    (length, height), blocks, extension = wall.size, [], wall.base_extension
+    (length, height), blocks, extension = wall.extent, [], wall.base_extension
     if wall.base:
         shape = rectangle(-extension, -wall.base_depth, length + 2.0 * extension, wall.base_depth)
         blocks.append(base_block("base", shape, wall.thickness, extension))
@@ -157,7 +184,7 @@ def _supports(wall: PatternWall) -> list[Block]:
 def _over_openings(wall: PatternWall) -> list[Block]:
     """Lintels and voussoirs."""
     blocks = []
-    for i, opening in enumerate(wall.openings):
+    for i, opening in enumerate(wall.all_openings):
         if opening.lintel and opening.lintel_box:
             x0, y0, x1, y1 = opening.lintel_box
             shape = rectangle(x0, y0, x1 - x0, y1 - y0)
