@@ -17,6 +17,7 @@ from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 from dem_cli.structures.registry import loose_ends
+from dem_cli.structures.wall_outline import Outlined
 
 if TYPE_CHECKING:
     from dem_cli.assembly.applied_loads import AppliedLoad
@@ -49,6 +50,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
         *_loose_ends(case),
+        *_unspanned(case),
         *_slivers(case, model, blocks),
     ]
 
@@ -159,6 +161,16 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
             message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
             message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
             yield CaseProblem(("structure", i, key), message)
+
+
+def _unspanned(case: Case) -> Iterator[CaseProblem]:
+    """Openings drawn in an outline that are cut out of the masonry, and nothing more."""
+    for i, table in enumerate(case.structure):
+        if isinstance(table, Outlined) and table.outline is not None and (names := table.outline.unspanned):
+            more = f" and {len(names) - 1} more have" if len(names) > 1 else " has"
+            message = f"{names[0]}{more} neither lintel nor arch: stones are cut there, and bond and friction alone "
+            message += "hold what is above; lintel goes over rectangular openings, openings of the case have arches"
+            yield CaseProblem(("structure", i, "outline"), message)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:

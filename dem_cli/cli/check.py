@@ -156,12 +156,21 @@ def _drawn(case: Case) -> list[tuple[str, str]]:
 
 
 def _imports(case: Case) -> list[tuple[str, str]]:
-    """How files of other programs were read."""
+    """How files of other programs and outlines of walls were read."""
     from dem_cli.structures.imported import Import, imported
+    from dem_cli.structures.wall_outline import Outlined
 
-    tables = [table for table in case.structure if isinstance(table, Import)]
-    notes = [(f"{table.id}: " if len(tables) > 1 else "", note) for table in tables for note in imported(table).notes]
-    return [("import" if k == 0 else "", name + note) for k, (name, note) in enumerate(notes)]
+    files = {table.id: imported(table).notes for table in case.structure if isinstance(table, Import)}
+    outlines = {
+        table.id: table.outline.drawn.notes
+        for table in case.structure
+        if isinstance(table, Outlined) and table.outline is not None
+    }
+    rows = []
+    for label, read in (("import", files), ("outline", outlines)):
+        notes = [(f"{name}: " if len(read) > 1 else "") + note for name, own in read.items() for note in own]
+        rows += [(label if k == 0 else "", note) for k, note in enumerate(notes)]
+    return rows
 
 
 def _imperfections(case: Case) -> str:

@@ -104,7 +104,8 @@ def _placed(points: np.ndarray, factor: float, up: str) -> np.ndarray:
 def closed_outline(ring: np.ndarray) -> np.ndarray:
     """An outline counter-clockwise, each corner once. Raises FileProblem."""
     found = polygon.simplified(ring)
-    if len(found) < 3 or polygon.area(found) <= polygon.ROUND_OFF * polygon.size(found) ** 2:
+    least = polygon.ROUND_OFF * polygon.size(ring)
+    if len(found) < 3 or np.linalg.svd(found - found.mean(axis=0), compute_uv=False)[1] <= least:
         raise FileProblem("its corners lie on one line: it has no area")
     found = found if polygon.signed_area(found) > 0.0 else found[::-1]
     if not is_simple(found):

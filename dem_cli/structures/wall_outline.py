@@ -142,13 +142,14 @@ class WallOutline(CaseModel):
         """The elevation. Raises KeyProblem."""
         if self.file is None:
             given = [("the outline", self.points or ()), *((f"holes.{i}", hole) for i, hole in enumerate(self.holes))]
-            return _elevation([(said, np.array(loop, float)) for said, loop in given])
+            return _elevation([(said, np.array(loop, float)) for said, loop in given], ("points", "holes"))
         try:
             only = [layer for layer in (self.layer, self.openings) if layer] if self.layer else []
             contents = read(self.file, self.chords, only)
             wall, inner = _wall_of(self, contents)
             factor = UNITS[self.unit or contents.unit or "m"]
-            found = _elevation([(_called(body), body.points * factor) for body in (wall, *inner)])
+            drawn = [(_called(body), body.points * factor) for body in (wall, *inner)]
+            found = _elevation(drawn, ("layer", "openings"))
         except FileProblem as error:
             raise KeyProblem(f"{Path(self.file).name}: {error}", "file") from None
         except KeyProblem as problem:
@@ -242,8 +243,8 @@ def _called(body: FileBody) -> str:
     return f"{body.said or 'an outline'}{on}"
 
 
-def _elevation(loops: Sequence[tuple[str, np.ndarray]]) -> DrawnElevation:
-    """The elevation with that outline, the first, and those openings. Raises FileProblem, KeyProblem."""
+def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -> DrawnElevation:
+    """The elevation with that outline, the first, and those openings. Raises KeyProblem, with the key of either."""
     from dem_cli.imports.solids import closed_outline
 
     closed = []
@@ -251,7 +252,7 @@ def _elevation(loops: Sequence[tuple[str, np.ndarray]]) -> DrawnElevation:
         try:
             closed.append((said, closed_outline(loop)))
         except FileProblem as error:
-            raise KeyProblem(f"{said}: {error}", "openings" if k else "layer") from None
+            raise KeyProblem(f"{said}: {error}", keys[min(k, 1)]) from None
     whole = closed[0][1]
     low = whole.min(axis=0)
     levels = [np.unique(whole[:, axis]) for axis in (0, 1)]

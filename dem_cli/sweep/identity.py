@@ -45,7 +45,8 @@ def facts(case: Case, text: str) -> dict[str, str]:
 
 def _digest(tables: Iterable[Any]) -> str:
     """Of all files that tables name."""
-    files = [Path(table.file) for table in tables if getattr(table, "file", None)]
+    named = [each for table in tables for each in (table, getattr(table, "outline", None))]
+    files = [Path(each.file) for each in named if getattr(each, "file", None)]
     return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
 
 

@@ -85,3 +85,23 @@ def prism(outline: list[tuple[float, float]], low: float, high: float) -> tuple[
     flat = np.array(outline, float)
     points = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (low, high)])
     return points, prism_faces(len(flat))
+
+
+def elevation_by_ezdxf(path: Path) -> Path:
+    """The elevation of a gabled façade in mm, 6 m × 4.8 m: a door, a window, an arched window, a dimension line."""
+    import ezdxf
+
+    drawing = ezdxf.new(units=4)
+    space = drawing.modelspace()
+    for layer in ("WALL", "OPENINGS", "TEXT"):
+        drawing.layers.add(layer)
+    wall = [(0, 0), (6000, 0), (6000, 3000), (3000, 4800), (0, 3000)]
+    space.add_lwpolyline(wall, close=True, dxfattribs={"layer": "WALL"})
+    for x0, y0, x1, y1 in ((2500, 0, 3500, 2100), (800, 900, 1700, 2100)):
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "OPENINGS"})
+    arched = [(4400, 900, 0), (5300, 900, 0), (5300, 1700, 1), (4400, 1700, 0)]
+    space.add_lwpolyline(arched, format="xyb", close=True, dxfattribs={"layer": "OPENINGS"})
+    space.add_line((0, -500), (6000, -500), dxfattribs={"layer": "TEXT"})
+    drawing.saveas(path)
+    return path
