@@ -45,8 +45,8 @@ def facts(case: Case, text: str) -> dict[str, str]:
 
 def _digest(tables: Iterable[Any]) -> str:
     """Of all files that tables name."""
-    named = [each for table in tables for each in (table, getattr(table, "outline", None))]
-    files = [Path(each.file) for each in named if getattr(each, "file", None)]
+    named = [getattr(each, "file", None) for table in tables for each in (table, getattr(table, "outline", None))]
+    files = [Path(file) for file in named if file]
     return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
 
 

@@ -1,45 +1,23 @@
-"""Groin (cross) vaults: two barrels over a bay that meet in its diagonal planes, on four corners.
-
-The second barrel is the first one stretched by the ratio of the spans, so that the groins are plane: corners of both
-webs on a groin are the same points. One eighth is drawn; the rest is its mirror images, exact to the last bit.
-"""
+"""Groin (cross) vaults: two barrels over a bay that meet in its diagonal planes, on four corners."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
 
 import numpy as np
 
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry.frusta import frustum, skewed
-from dem_cli.geometry.polyhedron import Polyhedron, box, hull
+from dem_cli.geometry.polyhedron import Polyhedron, box
 from dem_cli.model.blocks import Block
 from dem_cli.structures.arch import Pier
-from dem_cli.structures.vaults.profile import arch_of, symmetric_joints
 from dem_cli.structures.vaults.table import Vault
-
-EIGHT = 8  # corners of a piece between two joints and two heads
-Place = Callable[[np.ndarray], np.ndarray]
-SIDES = ("south", "north", "west", "east")
-CORNERS = {"sw": (-1.0, -1.0), "se": (1.0, -1.0), "ne": (1.0, 1.0), "nw": (-1.0, 1.0)}
-
-
-class Bay(NamedTuple):
-    """What the webs of a groin vault have in common; a web is drawn as the northern one of a square bay."""
-
-    joints: np.ndarray  # of the profile [inner, outer], x and z, (voussoirs + 1, 2, 2)
-    stretch: float  # of y against x
-    half: float  # from the middle to the edge, along x [m]
+from dem_cli.structures.vaults.webs import CORNERS, SIDES, Bay, along_x, along_y, at_corners, bay_of, mirrored, placed
 
 
 def build_groin(vault: Vault) -> list[Block]:
     """Blocks in local places: fixed ones, piers, stones astride the groins, webs."""
-    section = arch_of(vault)
-    joints = symmetric_joints(section)
-    joints[..., 1] += vault.piers.height if vault.piers else 0.0
-    span = vault.span or 0.0
-    bay = Bay(joints, (vault.length or span) / span, float(joints[-1, 1, 0]))
+    bay = bay_of(vault)
     return [*_feet(vault, bay), *_stones(vault, bay)]
 
 
@@ -55,7 +33,7 @@ def _stones(vault: Vault, bay: Bay) -> Iterator[Block]:
         for side in SIDES:
             own = pieces if inner else pieces[1:]
             for number, piece in enumerate(own, 1):
-                yield Block(f"{side}-{k + 1}-{number}", (_placed(piece, bay, side),), "", course=course)
+                yield Block(f"{side}-{k + 1}-{number}", (placed(piece, bay, side),), "", course=course)
         if not inner:
             yield from _astride(bay, pieces[0], k, course)
 
@@ -64,10 +42,9 @@ def _astride(bay: Bay, piece: np.ndarray, k: int, course: int) -> Iterator[Block
     """Stones that turn the corner: two pieces; four of the keystones make the boss."""
     n = len(bay.joints) - 1
     if 2 * k + 1 == n:
-        yield Block("boss", tuple(_placed(piece, bay, side) for side in SIDES), "", course=course)
+        yield Block("boss", tuple(placed(piece, bay, side) for side in SIDES), "", course=course)
     elif 2 * k + 1 > n:  # right of the middle: the piece of the northern web that meets the eastern one
-        for name, (x, y) in CORNERS.items():
-            parts = tuple(_solid(turned(piece) * [x, y, 1.0]) for turned in (_along_y(bay), _along_x(bay)))
+        for name, parts in at_corners(piece, bay).items():
             yield Block(f"{name}-{n - k}", parts, "", course=course)
 
 
@@ -93,36 +70,11 @@ def _piece(bay: Bay, k: int, low: float | None, high: float) -> np.ndarray:
     return np.concatenate([np.column_stack([face[:, 0], y, face[:, 1]]) for y in (starts, ends)])
 
 
-def _placed(piece: np.ndarray, bay: Bay, side: str) -> Polyhedron:
-    """A piece of the northern web in its place in another one; voussoirs count from the west or from the south."""
-    return _solid(
-        {
-            "north": lambda: _along_y(bay)(piece),
-            "south": lambda: _along_y(bay)(piece) * [1.0, -1.0, 1.0],
-            "east": lambda: _along_x(bay)(piece),
-            "west": lambda: _along_x(bay)(piece) * [-1.0, 1.0, 1.0],
-        }[side]()
-    )
-
-
-def _along_y(bay: Bay) -> Place:
-    return lambda piece: piece * [1.0, bay.stretch, 1.0]
-
-
-def _along_x(bay: Bay) -> Place:
-    return lambda piece: piece[:, [1, 0, 2]] * [1.0, bay.stretch, 1.0]
-
-
-def _solid(piece: np.ndarray) -> Polyhedron:
-    """The polyhedron of a piece; that of a keystone at the groin has points within its edges."""
-    return hull(piece) if len(piece) > EIGHT else frustum(*np.split(piece, 2))
-
-
 def _feet(vault: Vault, bay: Bay) -> Iterator[Block]:
     """Fixed blocks and piers at the corners, from below."""
     (inner, outer), s = bay.joints[-1], bay.stretch
     foot = np.array([[inner[0], inner[0], inner[1]], [outer[0], outer[0], outer[1]], [inner[0], outer[0], inner[1]]])
-    feet = [_along_y(bay)(foot), _along_x(bay)(foot)]  # below the piece of each web
+    feet = [along_y(bay)(foot), along_x(bay)(foot)]  # below the piece of each web
     down = np.array([0.0, 0.0, -vault.thickness])
     courses: list[tuple[Polyhedron, ...]] = []
     if vault.piers:
@@ -159,12 +111,3 @@ def _pier(pier: Pier, low: np.ndarray, feet: list[np.ndarray], outer: np.ndarray
         ]
         courses[-1] = tuple(parts)
     return courses
-
-
-def mirrored(parts: tuple[Polyhedron, ...], signs: tuple[float, float]) -> tuple[Polyhedron, ...]:
-    """Polyhedra at (+x, +y) in the corner of these signs; mirrored ones have their faces turned round."""
-    flip = signs[0] * signs[1] < 0.0
-    return tuple(
-        Polyhedron(part.vertices * [*signs, 1.0], tuple(face[::-1] for face in part.faces) if flip else part.faces)
-        for part in parts
-    )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from dem_cli.model.blocks import Block
 from dem_cli.structures.vaults.barrel import build_barrel
+from dem_cli.structures.vaults.cloister import build_cloister
 from dem_cli.structures.vaults.dome import build_dome
 from dem_cli.structures.vaults.groin import build_groin
 from dem_cli.structures.vaults.table import Vault
@@ -13,6 +14,7 @@ from dem_cli.structures.vaults.table import Vault
 SHAPES: dict[str, Callable[[Vault], list[Block]]] = {
     "barrel": build_barrel,
     "groin": build_groin,
+    "cloister": build_cloister,
     "dome": build_dome,
 }
 

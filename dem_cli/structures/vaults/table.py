@@ -1,4 +1,4 @@
-"""Vaults: barrels, groin (cross) vaults over a bay, domes; the table of kind = "vault"."""
+"""Vaults: barrels, groin (cross) and cloister (domical) vaults over a bay, domes; the table of kind = "vault"."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ Count = Annotated[int, Field(ge=3, le=10_000)]
 OF_SHAPE = {  # keys that not every shape has: those needed, those that may be given
     "barrel": (("span", "length", "voussoirs"), ("rise", "included_angle_deg", "rows", "offset", "piers")),
     "groin": (("span", "voussoirs"), ("length", "rise", "included_angle_deg", "rows", "groins", "piers")),
+    "cloister": (("span", "voussoirs"), ("length", "rise", "included_angle_deg", "rows", "groins", "piers")),
     "dome": (
         ("radius", "courses", "per_course"),
         ("facets", "bond", "springing_deg", "oculus_deg", "oculus_radius", "cap", "drum"),
@@ -28,43 +29,46 @@ class Vault(StructureBase):
     Block names: of a barrel "<id>-<voussoir>-<number>", voussoirs from left to right as in an arch, numbers along it
     from the front; "<id>-left-<course>-<number>", "<id>-right-..." for its walls. Of a groin vault
     "<id>-south-<voussoir>-<number>" and so on for the webs, "<id>-sw-<voussoir>" for stones astride the groin of a
-    corner, "<id>-boss" where all groins meet, "<id>-sw-pier-<number>". Of a dome "<id>-<course>-<number>",
+    corner, "<id>-boss" where all groins meet, "<id>-sw-pier-<number>". Of a cloister vault
+    "<id>-south-<course>-<number>" and so on, courses from the springing up, "<id>-sw-<course>" at its corners,
+    "<id>-boss"; "<id>-south-wall-<course>-<number>" and "<id>-sw-wall-<course>". Of a dome "<id>-<course>-<number>",
     numbers counter-clockwise from x, "<id>-cap", "<id>-drum-<course>-<number>". Fixed: "<id>-base-left",
-    "<id>-base-sw", "<id>-base-<number>".
+    "<id>-base-sw", "<id>-base-south", "<id>-base-<number>".
     """
 
     only_in: ClassVar[int | None] = 3
 
     kind: Literal["vault"] = "vault"
-    shape: Literal["barrel", "groin", "dome"] = Field(
-        description="barrel: a tunnel; groin: two barrels that cross over a bay; dome: part of a sphere",
+    shape: Literal["barrel", "groin", "cloister", "dome"] = Field(
+        description="barrel: a tunnel; groin: two barrels that cross over a bay; cloister: four webs that rise from "
+        "the sides of a bay; dome: part of a sphere",
         examples=["dome"],
     )
     thickness: Positive = Field(description="of the shell, from inner to outer face [m]", examples=[0.3])
-    span: Positive | None = Field(None, description="clear span along x [m] (barrel, groin)", examples=[4.0])
+    span: Positive | None = Field(None, description="clear span along x [m] (barrel, groin, cloister)", examples=[4.0])
     length: Positive | None = Field(
         None,
-        description="of a barrel, along y; clear span along y of a groin vault, default: span [m]",
+        description="of a barrel, along y; clear span along y over a bay, default: span [m]",
         examples=[6.0],
     )
     rise: Positive | None = Field(
         None,
-        description="rise of the inner face [m] (barrel, groin); more than half the span: pointed; default: a "
-        "semicircle",
+        description="rise of the inner face [m] (barrel, groin, cloister); more than half the span: pointed; default: "
+        "a semicircle",
         examples=[1.0],
     )
     included_angle_deg: float | None = Field(
         None,
         gt=0.0,
         le=180.0,
-        description="from springing to springing [deg], instead of rise (barrel, groin)",
+        description="from springing to springing [deg], instead of rise (barrel, groin, cloister)",
         examples=[120.0],
     )
     voussoirs: int | None = Field(
-        None, ge=2, le=10_000, description="number of voussoirs over the span (barrel, groin)", examples=[15]
+        None, ge=2, le=10_000, description="number of voussoirs over the span (barrel, groin, cloister)", examples=[15]
     )
     rows: int = Field(
-        1, ge=1, le=10_000, description="number of stones along a whole course (barrel, groin)", examples=[8]
+        1, ge=1, le=10_000, description="number of stones along a whole course (barrel, groin, cloister)", examples=[8]
     )
     offset: NonNegative | None = Field(
         None,
@@ -75,11 +79,12 @@ class Vault(StructureBase):
     groins: Literal["astride", "mitred"] = Field(
         "astride",
         description="astride: one stone turns the corner from web to web; mitred: a joint in the plane of the groin "
-        "(groin)",
+        "(groin, cloister)",
     )
     piers: Pier | None = Field(
         None,
-        description="below the springings: walls along a barrel, square piers at the corners of a groin vault",
+        description="below the springings: walls along a barrel, around a cloister vault, square piers at the corners of "
+        "a groin vault",
         examples=[{"width": 0.6, "height": 2.5, "courses": 6}],
     )
     radius: Positive | None = Field(

@@ -35,6 +35,8 @@ GROINS = {
     "oblong, segmental": GROIN | {"length": 5.0, "included_angle_deg": 120.0, "rows": 5},
     "pointed": GROIN | {"rise": 2.5, "voussoirs": 8},
 }
+CLOISTER = GROIN | {"shape": "cloister"}
+CLOISTERS = {name: keys | {"shape": "cloister"} for name, keys in GROINS.items()}
 
 
 def vault(**keys) -> dict:
@@ -151,10 +153,30 @@ def test_a_groin_vault_is_two_barrels_less_what_lies_beyond_the_groins(keys):
     assert open_area(model) == pytest.approx(skin, rel=1e-9)
 
 
+@pytest.mark.parametrize("keys", CLOISTERS.values(), ids=CLOISTERS)
+def test_a_cloister_vault_is_what_a_groin_vault_leaves_of_its_barrels(keys):
+    """A web is as long in every height as its profile is wide there, times the ratio s of the spans: s ∫ 2|x| dA."""
+    model = model_of(vault(**keys))
+    joints, s = arch_joints(keys), keys.get("length", keys["span"]) / keys["span"]
+    parts = triangles(joints)
+    arms = parts[:, 1:] - parts[:, :1]
+    areas = 0.5 * np.abs(arms[:, 0, 0] * arms[:, 1, 1] - arms[:, 0, 1] * arms[:, 1, 0])
+    assert free_volume(model) == pytest.approx(4.0 * s * (areas * np.abs(parts[:, :, 0].mean(axis=1))).sum(), rel=1e-12)
+    skin = 0.0
+    for line in (joints[:, 0], joints[:, 1], joints[0], joints[-1]):  # both faces, and the beds on which it stands
+        steps, ends = np.diff(line, axis=0), (np.abs(line[:-1, 0]), np.abs(line[1:, 0]))
+        mean = np.where(line[:-1, 0] * line[1:, 0] < 0.0, ends[0] / 2.0, (ends[0] + ends[1]) / 2.0)
+        for across, along in ((1.0, s), (s, 1.0)):
+            skin += (np.hypot(across * steps[:, 0], steps[:, 1]) * along * 2.0 * mean).sum()
+    assert open_area(model) == pytest.approx(skin, rel=1e-9)
+
+
 PIERS = {"piers": {"width": 0.6, "height": 2.0, "courses": 3}}
 
 
-@pytest.mark.parametrize("keys", [GROIN, GROIN | {"voussoirs": 10} | PIERS])
+@pytest.mark.parametrize(
+    "keys", [GROIN, GROIN | {"voussoirs": 10} | PIERS, CLOISTER, CLOISTER | {"voussoirs": 10} | PIERS]
+)
 def test_a_cross_vault_is_its_own_mirror_image_to_the_last_bit(keys):
     blocks = shapes.build(Vault.model_validate({"kind": "vault", **keys}))
     drawn = solids(blocks, np.eye(3))
@@ -191,6 +213,10 @@ def test_what_blocks_are_called():
     assert groin[:4] == ["base-sw", "base-se", "base-ne", "base-nw"]
     assert {"boss", "sw-1", "ne-1"} <= set(groin)
     assert "south-2-1" in groin
+    cloister = names(**CLOISTER | {"voussoirs": 3, "rows": 4})
+    assert cloister == [*(f"base-{side}" for side in ("south", "north", "west", "east")),
+                        *(f"{side}-1-{n}" for side in ("south", "north", "west", "east") for n in (1,)),
+                        *(f"{corner}-1" for corner in ("sw", "se", "ne", "nw")), "boss"]  # fmt: skip
 
 
 def test_no_stone_is_a_sliver():

@@ -97,7 +97,7 @@ def test_the_drawn_facade_stands_and_falls_below_the_load_of_a_wall_without_open
     found = dem_cli.run(case(drawn, push)).summary
     blind = dem_cli.run(case({key: drawn[key] for key in ("file", "layer")}, push)).summary
     assert 0.3 < found["failure_load"] < blind["failure_load"] < 0.6
-    assert found["failure_load"] <= found["rigid_limits"]["associated"] * 1.001
+    assert found["failure_load"] <= found["limit_analysis"]["associated"] * 1.001
 
 
 def test_openings_without_lintel_are_named(drawn):
