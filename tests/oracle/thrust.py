@@ -34,7 +34,7 @@ def thrust_range(
         columns = np.broadcast_to(np.arange(n_points * EDGES).reshape(n_points, EDGES, 1), wrench.shape)
         free = ~fixed[block]
         entries.append([wrench[free].ravel(), np.broadcast_to(rows, wrench.shape)[free].ravel(), columns[free].ravel()])
-        push += np.where(fixed[block][:, None], sign * edges[:, :, 0] * np.sign(centroids[block][:, :1]), 0.0)
+        push += np.where(fixed[block][:, None], sign * edges[:, :, 0] * np.sign(centroids[block][:, :1].round(9)), 0.0)
     data, rows, columns = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     balance = coo_matrix((data, (rows, columns)), shape=(6 * int((~fixed).sum()), n_points * EDGES)).tocsr()
     total = float(weights[~fixed].sum())

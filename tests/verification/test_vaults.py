@@ -105,14 +105,22 @@ def test_hoops_of_a_dry_hemisphere_open_below():
     assert forces[angles < 48.0].min() > 0.0
 
 
-def test_a_groin_vault_pushes_its_corners_alike_within_what_statics_allows():
-    row = thrust.measure((0.4,))["rows"][0]
+def test_groin_and_cloister_vaults_push_their_supports_alike_within_what_statics_allows():
+    found = thrust.measure((0.4,))
+    row = found["rows"][0]
     assert row["status"] == "ok"
     for force in row["supports"].values():
         assert force[2] == pytest.approx(-0.25, abs=2e-4)
         for k in (0, 1):
             assert abs(force[k]) == pytest.approx(0.1315, abs=5e-4)
             assert row["range"][0] < abs(force[k]) < row["range"][1]
+    row = found["cloister"][0]
+    assert row["status"] == "ok"
+    for name, force in row["supports"].items():
+        across = 0 if name.endswith(("east", "west")) else 1
+        assert force[2] == pytest.approx(-0.25, abs=2e-4)
+        assert abs(force[1 - across]) < 2e-4
+        assert 2.0 * row["range"][0] < abs(force[across]) < 2.0 * row["range"][1]
 
 
 @pytest.mark.parametrize("number", [4, 6, 9])

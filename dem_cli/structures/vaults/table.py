@@ -83,8 +83,8 @@ class Vault(StructureBase):
     )
     piers: Pier | None = Field(
         None,
-        description="below the springings: walls along a barrel, around a cloister vault, square piers at the corners of "
-        "a groin vault",
+        description="below the springings: walls along a barrel, around a cloister vault, square piers at the corners "
+        "of a groin vault",
         examples=[{"width": 0.6, "height": 2.5, "courses": 6}],
     )
     radius: Positive | None = Field(
