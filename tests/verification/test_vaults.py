@@ -116,6 +116,8 @@ def test_groin_and_cloister_vaults_push_their_supports_alike_within_what_statics
             assert row["range"][0] < abs(force[k]) < row["range"][1]
     row = found["cloister"][0]
     assert row["status"] == "ok"
+    sliding = 0.5 * np.tan(np.arctan(thrust.FRICTION) + np.radians(20.0))  # two walls carry it all, on beds of 20°
+    assert 2.0 * row["range"][1] == pytest.approx(sliding, rel=1e-4)
     for name, force in row["supports"].items():
         across = 0 if name.endswith(("east", "west")) else 1
         assert force[2] == pytest.approx(-0.25, abs=2e-4)
