@@ -18,7 +18,7 @@ from dem_cli.structures.masonry import Core, Masonry, Quoins
 from dem_cli.structures.masonry_blocks import masonry_blocks
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
-from dem_cli.structures.wall_outline import Outlined, hollows
+from dem_cli.structures.wall_outline import NOT_UPRIGHT, Outlined, hollows
 
 MOST_BLOCKS = 1_000_000
 OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "course_lengths", "gable", "profile")
@@ -227,6 +227,8 @@ def _check_leaves(wall: Wall) -> None:
     if wall.core and wall.core.thickness >= wall.thickness:
         message = f"{wall.core.thickness:g} is not allowed; must be less than the thickness of the wall, "
         raise KeyProblem(f"{message}{wall.thickness:g}", "core", "thickness")
+    if wall.quoins and _quoin_courses(wall) < 1:
+        raise KeyProblem(NOT_UPRIGHT, "quoins")
     if wall.quoins and 2.0 * wall.quoins.length > wall.extent:
         message = f"{wall.quoins.length:g} is not allowed; must be at most {wall.extent / 2.0:g}, half the wall"
         raise KeyProblem(message, "quoins", "length")

@@ -21,6 +21,7 @@ from dem_cli.structures.voids import Void, overlap, plain_void
 
 SAME = 1e-6  # of the size of an outline: what drawings round off
 DRAWN = [suffix for suffix, each in FORMATS.items() if each.flat]
+NOT_UPRIGHT = "an end of the outline is not upright from the foot on: there is no place for quoins"
 Chords = Annotated[int, Field(ge=1, le=100)]
 Loop = Annotated[tuple[Pair, ...], Field(min_length=3)]
 
@@ -195,12 +196,17 @@ class Outlined(StructureBase):
         for key in instead:
             if key in self.model_fields_set:
                 raise KeyProblem("not used with outline, which says it", key)
-        least = SAME * float(np.prod(self.outline.drawn.size))
+        for i, opening in enumerate(openings):
+            if self.leaves_outline(opening.void.solids):
+                raise KeyProblem("reaches out of the outline, or into an opening that is drawn", "openings", i)
+
+    def leaves_outline(self, shapes: Sequence[np.ndarray]) -> bool:
+        """Whether convex shapes reach out of the outline, or into an opening that is drawn."""
+        if self.outline is None:
+            return False
         taken = [*self.outline.drawn.beside_box, *self.outline.cut]
         taken += [shape for opening in self.outline.spanned for shape in opening.void.outlines]
-        for i, opening in enumerate(openings):
-            if overlap(opening.void.solids, taken) > least:
-                raise KeyProblem("reaches out of the outline, or into an opening that is drawn", "openings", i)
+        return overlap(shapes, taken) > SAME * float(np.prod(self.outline.drawn.size))
 
 
 def hollows(outline: WallOutline | None) -> list[Void]:

@@ -15,7 +15,7 @@ from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, c
 from dem_cli.structures.patterns.panel import WallPanel, blocks_of
 from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.sides import Side, SupportedWall, side_blocks
-from dem_cli.structures.wall_outline import Outlined
+from dem_cli.structures.wall_outline import NOT_UPRIGHT, Outlined
 
 
 class DressedEnds(CaseModel):
@@ -152,6 +152,10 @@ def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
     if quoins.length > length / 3.0:
         message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
         raise KeyProblem(message, "quoins", "length")
+    if wall.outline and wall.outline.drawn.eaves == 0.0:
+        raise KeyProblem(NOT_UPRIGHT, "quoins")
+    if wall.leaves_outline(list(wall.squared_ends.values())):
+        raise KeyProblem("would reach out of the outline, or into an opening that is drawn", "quoins", "length")
     for i, opening in enumerate(wall.openings):
         left, _, right, _ = opening.void.reach
         if left < quoins.length * (1.0 - 1e-9) or right > length - quoins.length * (1.0 - 1e-9):
