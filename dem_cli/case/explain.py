@@ -54,7 +54,7 @@ EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
     "pier pillar tower": "structure.column",
     "foundation subsidence": "settlement",
     "depth outofplane": "structure.thickness",
-    "layer": "structure.wall.courses",
+    "drawn elevation polyline": "structure.wall.outline",
 }
 
 

@@ -182,7 +182,7 @@ class Outlined(StructureBase):
     outline: WallOutline | None = Field(
         None,
         description="elevation of the wall as it is drawn, instead of its size; default: a rectangle",
-        examples=[{"file": "facade.dxf", "layer": "WALL", "openings": "OPENINGS", "unit": "mm"}],
+        examples=[{"points": [[0.0, 0.0], [6.0, 0.0], [6.0, 3.0], [3.0, 4.5], [0.0, 3.0]]}],
     )
 
     def with_drawn(self, openings: Sequence[Opening]) -> tuple[Opening, ...]:
