@@ -170,7 +170,7 @@ def test_a_block_that_stands_on_an_edge_of_a_narrow_wedge():
 
 @pytest.mark.parametrize(("tilt", "wedges"), [(0.05, 1), (0.2, 0), (0.5, 0)])
 def test_a_deep_joint_is_a_wedge_by_its_slope_not_by_its_depth(tilt, wedges):
-    """Of a wall in space: 0.2 m open at an angle, 3 m through the thickness; above STEEPEST it is a corner on a face."""
+    """0.2 m open at an angle, 3 m through the thickness; above STEEPEST it is a corner on a face."""
     turn = matrices(np.array([[0.0, tilt, 0.0]]))[0]
     block = box([-0.2, -1.5, 0.0], [0.0, 1.5, 0.4])
     model = spatial_model([BASE, Polyhedron(block.vertices @ turn.T, block.faces)])
