@@ -137,8 +137,8 @@ class KernelCache(FunctionCache):
     """Compiled code on disk, found again by what the closure of a kernel was made of.
 
     Numba finds it by the closure as it is pickled, which depends on whether Python had compiled the modules itself or
-    read them from `__pycache__`: the second process of a fresh checkout would compile everything again. And it numbers
-    files, so that two processes that save two kernels at one time may write one file: here none has the name of another.
+    read them from `__pycache__`: the second process of a fresh checkout would compile everything again. And it
+    numbers files, so that two processes that save two kernels at one time may write one file: here no two share a name.
     """
 
     def __init__(self, function: Callable) -> None:
@@ -153,7 +153,7 @@ class KernelCache(FunctionCache):
 
 def kernel(function: Callable) -> CompiledKernel:
     """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
-    compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+    compiled: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
     compiled._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(CompiledKernel, compiled)
 
