@@ -64,8 +64,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         track.frame("loading")
         found["joint_state"] = joint_state(sim, END)
     if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
-        found["limit_analysis"] = _limit_analysis(job, search)
-    return job.outcome(sims, _answer(search, sim, resolution) | found)
+        found["limit_analysis"] = limit_analysis(job, search)
+    return job.outcome(sims, answer(search, sim, resolution) | found)
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
@@ -170,7 +170,7 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
     return [f"the collapse was followed {why}: only its shape counts"]
 
 
-def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
+def limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
     assert search.limits is not None
     if job.case.analysis.limit:
@@ -242,7 +242,7 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, p
     return falling, post_peak.CurvePeak()
 
 
-def _answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
+def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
     """The failure load and how it was obtained."""
     status = search.status
     if status == NO_FAILURE:
