@@ -120,7 +120,7 @@ class DisplacementControlSettings:
     root, so that blocks are accelerated as much.
     """
 
-    first: float = 0.25  # increment, in elastic displacements at an internal multiplier of one
+    first: float = 0.05  # increment, in elastic displacements at an internal multiplier of one
     growth: float = 1.2  # of the next ones
     ramp: int = 200  # steps of the first increment; its rate grows and falls smoothly
     stairs: int = 10  # rates in a ramp

@@ -112,16 +112,23 @@ class PushoverAnalysis(LiveAnalysis):
 
 
 class CycleAnalysis(LiveAnalysis):
-    """[analysis] with kind = "cycle": the load multiplier follows a path of given values, slowly, to and fro."""
+    """[analysis] with kind = "cycle": the live load, or its displacement, follows a path of given values to and fro."""
 
     kind: Literal["cycle"] = "cycle"
+    control: Literal["load", "displacement"] = Field(
+        default="load",
+        description="what the path is of: load: of multipliers; displacement: of displacements of the live load, at which "
+        "the multiplier is found",
+    )
     path: tuple[float, ...] = Field(
         min_length=1,
-        description="load multipliers to go to one after the other, from 0 [-]",
+        description="load multipliers [-], or displacements of the live load [m], to go to one after the other, from 0",
         examples=[[0.2, -0.2, 0.0]],
     )
     step: float = Field(
-        gt=0.0, description="largest step of the multiplier [-]; every one is a proven equilibrium", examples=[0.02]
+        gt=0.0,
+        description="largest step of the multiplier [-] or displacement [m]; after every one all forces balance",
+        examples=[0.02],
     )
 
 
