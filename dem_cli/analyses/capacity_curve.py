@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
-from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings

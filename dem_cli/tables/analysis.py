@@ -90,8 +90,8 @@ class PushoverAnalysis(LiveAnalysis):
     limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
     control: Literal["load", "displacement"] = Field(
         default="load",
-        description="what grows: load: the multiplier, up to failure; displacement: that of the live load, at whose every "
-        "step the multiplier is found, up to `follow`: the whole capacity curve, then the proof of its peak",
+        description="what grows: load: the multiplier, up to failure; displacement: that of the live load, at whose "
+        "every step the multiplier is found, up to `follow`: the whole capacity curve, then the proof of its peak",
     )
     increments: int = Field(
         default=100, ge=10, le=100_000, description="control = 'displacement': so many steps to `follow` at least"
@@ -117,8 +117,8 @@ class CycleAnalysis(LiveAnalysis):
     kind: Literal["cycle"] = "cycle"
     control: Literal["load", "displacement"] = Field(
         default="load",
-        description="what the path is of: load: of multipliers; displacement: of displacements of the live load, at which "
-        "the multiplier is found",
+        description="what the path is of: load: of multipliers; displacement: of displacements of the live load, at "
+        "which the multiplier is found",
     )
     path: tuple[float, ...] = Field(
         min_length=1,
