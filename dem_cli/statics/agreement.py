@@ -13,13 +13,8 @@ from typing import Any, NamedTuple
 from dem_cli.statics.failure_bracket import FailureLoad
 from dem_cli.statics.warm_start import CURVE
 
-RAISED, FROM_CURVE, IN_LARGE_STEPS, PATH, CREEP = (
-    "raised from gravity",
-    "displacement control",
-    "in larger steps",
-    "zero-dilation path",
-    "creep",
-)
+RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
+FROM_CURVE = "displacement control"
 LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
 
 
