@@ -1,8 +1,9 @@
-"""kind = "cycle": the load multiplier follows a path of given values, slowly, to and fro."""
+"""kind = "cycle": the load multiplier, or the displacement of the live load, follows a path of values to and fro."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,9 @@ from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics.compliance import compliance
+from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
+from dem_cli.statics.failure_load import AGAINST
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -28,7 +31,7 @@ FAILS = "fails on the way"
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
     job = Job.start(case, model, observer, settings)
-    job.skipped.append("failure search: the load follows the path of the case")
+    job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
     sim = job.first_simulation()
     track = job.track(sim)
     found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": []}
@@ -44,29 +47,53 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], found)
 
 
-def loads_between(start: float, end: float, step: float) -> np.ndarray:
+def values_between(start: float, end: float, step: float) -> np.ndarray:
     """Equal steps of at most `step` from start (left out) to end."""
     return np.linspace(start, end, max(1, math.ceil(abs(end - start) / step - 1e-9)) + 1)[1:]
 
 
 def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> None:
-    """Every load of the path, each a proven equilibrium; what is found goes to `found` as it is found."""
+    """Every value of the path, after each of whose steps all forces balance; what is found goes to `found` at once."""
     analysis = job.case.analysis
-    elastic = compliance(sim)[1]
-    step = analysis.step / sim.live_scale
-    load = 0.0
+    go = WAYS[analysis.control](job, sim)
+    value = 0.0
     for turn, target in enumerate(analysis.path):
-        for next_load in loads_between(load, target / sim.live_scale, step):
+        for next_value in values_between(value, target, analysis.step):
             share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
-            track.observer.progress("on the path", next_load * sim.live_scale, moved, share)
-            verdict = settle_or_fail(sim, next_load, job.budget, elastic * max(abs(next_load), step))
-            if verdict.state != "equilibrium":
-                found |= {"status": FAILS, "failure_load": next_load * sim.live_scale}
+            track.observer.progress("on the path", sim.load * sim.live_scale, moved, share)
+            if not go(next_value):
+                found |= {"status": FAILS, "failure_load": sim.load * sim.live_scale}
                 track.write("collapse")
                 track.frame("collapse")
                 return
             track.write("loading")
-            load = next_load
+            value = next_value
         track.frame("loading")
-        found["turning_points"].append({"load": target, "displacement": measures.largest_displacement(sim)})
+        load = target if analysis.control == "load" else sim.load * sim.live_scale
+        point = {"load": load, "displacement": measures.largest_displacement(sim)}
+        found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
     found["status"] = "ok"
+
+
+def _by_load(job: Job, sim: Simulation) -> Callable[[float], bool]:
+    """Goes to a multiplier, a proven equilibrium."""
+    elastic = compliance(sim)[1]
+    step = job.case.analysis.step / sim.live_scale
+
+    def go(load: float) -> bool:
+        scale = elastic * max(abs(load) / sim.live_scale, step)
+        return settle_or_fail(sim, load / sim.live_scale, job.budget, scale).state == "equilibrium"
+
+    return go
+
+
+def _by_displacement(job: Job, sim: Simulation) -> Callable[[float], bool]:
+    """Goes to a displacement of the live load [m], to rest."""
+    elastic = compliance(sim)[0]
+    if elastic <= 0.0:
+        raise SolverError(AGAINST)
+    control = DisplacementControl(sim, job.budget, elastic)
+    return lambda displacement: control.go(displacement - control.displacement)
+
+
+WAYS = {"load": _by_load, "displacement": _by_displacement}  # of analysis.control

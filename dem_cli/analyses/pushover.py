@@ -15,6 +15,7 @@ from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import post_peak, softer_joints
 from dem_cli.statics.agreement import doubts, histories, load_range, unique
+from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
@@ -64,8 +65,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         track.frame("loading")
         found["joint_state"] = joint_state(sim, END)
     if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
-        found["limit_analysis"] = _limit_analysis(job, search)
-    return job.outcome(sims, _answer(search, sim, resolution) | found)
+        found["limit_analysis"] = limit_analysis(job, search)
+    return job.outcome(sims, answer(search, sim, resolution) | found)
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
@@ -85,20 +86,29 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
 
 
 def _search(job: Job) -> tuple[FailureLoad, Simulation]:
-    """Gravity and the failure search; again with moving geometry where given joints are too soft to freeze it."""
+    """Gravity and the failure search, with geometry that moves where given joints are too soft to freeze it.
+
+    That is decided before the search, by elastic displacements at the load that limit analysis allows at most; and
+    after it once more, by those at failure.
+    """
     analysis = job.case.analysis
     search, sim = FailureLoad(), job.first_simulation()
-    rigid: float | None = None  # failure load of the same blocks on stiff joints
+    rigid: float | None = None  # what the same blocks carry on stiff joints, or
+    searched = False  # at most
     while True:
         track = job.track(sim)
+        moved = 0.0  # smallest edges
         try:
             if settle(sim, track, job.budget).state == "equilibrium":
                 search.limits = RigidLimits(job, sim)
-                start, search.start = find_start(job, sim, search.limits)
-                wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
-                load_search = LoadSearch(sim, wanted, job.budget, track, search)
-                load_search.run(start)
-                _second_history(job, load_search)
+                moved = _expected_motion(job, sim, search.limits)
+                if not moved:
+                    start, search.start = find_start(job, sim, search.limits)
+                    wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
+                    load_search = LoadSearch(sim, wanted, job.budget, track, search)
+                    load_search.run(start)
+                    _second_history(job, load_search)
+                    moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0
             else:
                 search.status = FALLS
         except SolverError as error:
@@ -106,20 +116,42 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
             search.end_undecided(job.settings.load_search.widest)
         except KeyboardInterrupt:
             search.status = INTERRUPTED
-        moved = search.peak_displacement / sim.smallest
-        given = any(joint.kn != "auto" for joint in job.case.joints.values())
-        soft = given and moved > job.settings.load_search.soft * analysis.resolution
-        again = soft and sim.kinematics == "fixed" and analysis.kinematics == "auto"
+        again = moved > job.settings.load_search.soft * analysis.resolution
         if not again or search.status == INTERRUPTED:
             if rigid and search.found:
-                job.warnings += _changed(search.carried, rigid, job.settings.doubts.lowered)
+                job.warnings += _changed(search.carried, rigid, searched, job.settings.doubts.lowered)
             if search.status != "ok" or analysis.follow == 0.0 or _by_load(job):
                 track.flush()  # else the rows of the collapse tell the whole way
             return search, sim
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
+        rigid, searched = (search.carried, True) if search.found else (_bound_of_the_start(job, search), False)
         job.warnings.clear()
-        rigid = search.carried if search.found else None
         search, sim = FailureLoad(), job.simulation("large")
+
+
+def _bound_of_the_start(job: Job, search: FailureLoad) -> float | None:
+    """What rigid blocks carry at most, by limit analysis of the geometry of the start."""
+    if search.bound is not None:
+        return search.bound
+    loads = _of_the_start(job)
+    return None if loads is None else loads.associated.upper
+
+
+def _may_move(job: Job, sim: Simulation) -> bool:
+    """Whether geometry may have to move because joints have a stiffness that the case gives."""
+    given = any(joint.kn != "auto" for joint in job.case.joints.values())
+    return given and sim.kinematics == "fixed" and job.case.analysis.kinematics == "auto"
+
+
+def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
+    """Elastic displacement in smallest edges at the load that limit analysis allows at most, where that alone already
+    says that geometry has to move; else 0.
+    """
+    if not _may_move(job, sim):
+        return 0.0
+    settings, load = job.settings.load_search, 1.0 if limits.bound is None else limits.bound / sim.live_scale
+    moved = compliance(sim, job.budget)[1] * load / sim.smallest
+    return moved if moved > settings.soft * job.case.analysis.resolution else 0.0
 
 
 def _second_history(job: Job, load_search: LoadSearch) -> None:
@@ -143,10 +175,12 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")
 
 
-def _changed(load: float, rigid: float, lowered: float) -> list[str]:
-    """A word where joints of the given stiffness carry another load than stiff ones."""
+def _changed(load: float, rigid: float, searched: bool, lowered: float) -> list[str]:
+    """A word where joints of the given stiffness carry another load than stiff ones; searched: that was found."""
     if abs(load - rigid) <= lowered * rigid:
         return []
+    if not searched:
+        return [f"the given kn moves the geometry before failure: on stiff joints it carries at most {rigid:.5g}"]
     change = f"{'lowers' if load < rigid else 'raises'} the failure load by {100 * abs(load / rigid - 1):.2g} %"
     return [f"the given kn {change}: on stiff joints it is {rigid:.5g}"]
 
@@ -170,7 +204,7 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
     return [f"the collapse was followed {why}: only its shape counts"]
 
 
-def _limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
+def limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
     """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
     assert search.limits is not None
     if job.case.analysis.limit:
@@ -242,7 +276,7 @@ def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, p
     return falling, post_peak.CurvePeak()
 
 
-def _answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
+def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
     """The failure load and how it was obtained."""
     status = search.status
     if status == NO_FAILURE:

@@ -20,9 +20,10 @@ def _gravity():
 
 
 def _pushover():
-    from dem_cli.analyses.pushover import run
+    from dem_cli.analyses import capacity_curve, pushover
 
-    return run
+    ways = {"load": pushover.run, "displacement": capacity_curve.run}  # of analysis.control
+    return lambda case, *others: ways[case.analysis.control](case, *others)
 
 
 def _cycle():

@@ -20,6 +20,7 @@ from dem_cli.engine.dynamic_settings import (
     StatisticsSettings,
 )
 from dem_cli.engine.static_settings import (
+    DisplacementControlSettings,
     LoadSearchSettings,
     MechanismSettings,
     PostPeakSettings,
@@ -152,6 +153,7 @@ class Settings:
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)
     post_peak: PostPeakSettings = field(default_factory=PostPeakSettings)
+    displacement_control: DisplacementControlSettings = field(default_factory=DisplacementControlSettings)
     mechanism: MechanismSettings = field(default_factory=MechanismSettings)
     settlement: SettlementSettings = field(default_factory=SettlementSettings)
     frequency: FrequencySettings = field(default_factory=FrequencySettings)

@@ -219,6 +219,11 @@ class Simulation:
         return slot.TILT_CREEP if self.tilting else slot.CREEP
 
     @property
+    def guided_mode(self) -> int:
+        """The mode of a relaxation at a prescribed displacement of the live load (kernels.records)."""
+        return slot.TILT_GUIDED if self.tilting else slot.GUIDED
+
+    @property
     def unbalanced(self) -> float:
         """Largest unbalanced force of a block in the last step, over its own weight."""
         return float(self.control[slot.UNBALANCED])

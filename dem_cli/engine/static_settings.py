@@ -113,6 +113,26 @@ class PostPeakSettings:
 
 
 @dataclass(frozen=True)
+class DisplacementControlSettings:
+    """Equilibria at prescribed displacements of the live load, from gravity to far beyond the peak of the curve.
+
+    Increments grow from a share of the elastic displacement to what the case asks for; ramps grow with their square
+    root, so that blocks are accelerated as much.
+    """
+
+    first: float = 0.05  # increment, in elastic displacements at an internal multiplier of one
+    growth: float = 1.2  # of the next ones
+    ramp: int = 200  # steps of the first increment; its rate grows and falls smoothly
+    stairs: int = 10  # rates in a ramp
+    tolerance: float = 1e-4  # unbalanced force in own weights at which an increment is at rest
+    most: int = 20_000  # steps to come to rest, then the increment is tried again in
+    shares: int = 4  # parts, and
+    tries: int = 2  # once more in parts of these
+    coarser: float = 2.0  # increments of the curve that the peak is compared with
+    past: float = 0.999  # of the highest load so far: a curve that fell below it is past its peak
+
+
+@dataclass(frozen=True)
 class MechanismSettings:
     """Who takes part in a failure, and how it is called."""
 

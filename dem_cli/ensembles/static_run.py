@@ -15,7 +15,7 @@ from dem_cli.statics.equilibrium import Ahead, Verdict, settle_or_fail, stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.post_peak import fall_under, soften_falls
 from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import LIMIT, find_start, place
+from dem_cli.statics.warm_start import LIMIT, find_start
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -153,7 +153,7 @@ def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> 
     start, _ = find_start(job, sim, RigidLimits(job, sim))
     if start is None:
         return None
-    place(sim, start)
+    start.put_into(sim)
     before = sim.save()
     verdict = settle_or_fail(sim, load, job.budget, elastic, ahead=Ahead(start.plateau))
     if verdict.state == "failure" and load * sim.live_scale <= start.load:

@@ -23,12 +23,14 @@ from dem_cli.kernels.records import (
     FIRE_MIX,
     FIRE_START,
     FRICTION,
+    GUIDED,
     LIVE_FACTOR,
     MEAN_LOAD,
     RATE,
     SINCE_UPHILL,
     SUPPORT,
     TILT_CREEP,
+    TILT_GUIDED,
     TRAVEL_LIMIT,
     UNBALANCED,
 )
@@ -72,6 +74,15 @@ def _rate_impulse(
             drag = local_drag(unbalanced, previous[i], velocities[i], damp, damp_change)
             flow += q * (velocities[i] + dt * inverse_masses[i] * (unbalanced - drag))
     return (rate - flow) / stiffness
+
+
+@inline
+def _guiding_impulse(velocities, live_loads, keep, rate, stiffness):
+    """The same where velocities are steered (FIRE): what drives them has no component along the live load."""
+    flow = 0.0
+    for i in range(live_loads.size):
+        flow += live_loads[i] * velocities[i]
+    return (rate - keep * flow) / stiffness
 
 
 @inline
@@ -180,7 +191,8 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
         inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
         speed_limits = loads.speed_limits.ravel()
-        creeps = mode in (CREEP, TILT_CREEP)
+        guided = mode in (GUIDED, TILT_GUIDED)
+        creeps = guided or mode in (CREEP, TILT_CREEP)
         stiffness = 0.0
         if creeps:
             for i in range(live_loads.size):
@@ -197,17 +209,20 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
-                if mode == TILT_CREEP:  # the table turns gravity by θ: dead cos θ + live sin θ
+                if mode in (TILT_CREEP, TILT_GUIDED):  # the table turns gravity by θ: dead cos θ + live sin θ
                     factor = min(max(factor, -1.0), 1.0)
                     control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
                 control[LIVE_FACTOR] = factor
+            dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
+            if guided or mode == FIRE:
+                keep, steer = _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control)
+            if guided:
+                impulse = _guiding_impulse(velocities, live_loads, keep, control[RATE], stiffness)
+            elif creeps:
                 impulse = _rate_impulse(
                     velocities, forces, previous, dead_loads, live_loads, inverse_masses,
-                    control[DEAD_FACTOR], factor, control[DAMP], control[DAMP_CHANGE], control[RATE], dt, stiffness,
+                    dead, live, control[DAMP], control[DAMP_CHANGE], control[RATE], dt, stiffness,
                 )  # fmt: skip
-            dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
-            if mode == FIRE:
-                keep, steer = _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control)
             _kick(
                 velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,

@@ -271,4 +271,4 @@ FIRE_START = 11  # mixing with which FIRE begins, and begins again after a step 
 N_CONTROL = 12
 
 # What the step is driven by.
-HOLD_LOAD, CREEP, FIRE, TILT_CREEP = 0, 1, 2, 3
+HOLD_LOAD, CREEP, FIRE, TILT_CREEP, GUIDED, TILT_GUIDED = 0, 1, 2, 3, 4, 5

@@ -11,15 +11,17 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from dem_cli.statics.failure_bracket import FailureLoad
+from dem_cli.statics.warm_start import CURVE
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
+FROM_CURVE = "displacement control"
 LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
 
 
 class History(NamedTuple):
     """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
 
-    method: str  # RAISED, IN_LARGE_STEPS, PATH, CREEP or LIMIT
+    method: str  # RAISED, FROM_CURVE, IN_LARGE_STEPS, PATH, CREEP or LIMIT
     load: float
     finished: bool  # False: at least this load
 
@@ -38,7 +40,8 @@ def unique(search: FailureLoad, resolution: float) -> bool:
 
 def histories(search: FailureLoad) -> list[History]:
     """All ways to failure that were tried, that of the answer first."""
-    found = [] if search.low is None else [History(RAISED, search.low, search.found and not search.wide)]
+    way = FROM_CURVE if search.start.get("kind") == CURVE else RAISED
+    found = [] if search.low is None else [History(way, search.low, search.found and not search.wide)]
     if search.earlier is not None:
         found.append(History(IN_LARGE_STEPS, search.earlier[0], True))
     limits = search.limits

@@ -76,7 +76,7 @@ def relax(
     since = sim.places() if since is None else since
     sim.use(relaxation.fire_safety, damping=0.0)
     sim.set_load(load)
-    _limit_falls(sim)
+    limit_falls(sim)
     sim.restart_relaxation()
     max_steps = relaxation.most_steps if max_steps is None else max_steps
     calm = 0
@@ -128,7 +128,7 @@ def settle_or_fail(
     tolerance = relaxation.tolerance if tolerance is None else tolerance
     since = sim.places() if since is None else since
     sim.use_combined_damping()
-    _limit_falls(sim)
+    limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
     motion = FailureTest(sim, scale, *ahead)
     _ramp(sim, load, scale, budget, doing)
@@ -163,7 +163,7 @@ def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
     return sim.unbalanced < tolerance
 
 
-def _limit_falls(sim: Simulation) -> None:
+def limit_falls(sim: Simulation) -> None:
     """Blocks in flight would be detected at every step; what a joint holds is slower by far."""
     if sim.kinematics == "large" and len(sim.free):
         sim.limit_speed(sim.settings.relaxation.fall_speed * float(sim.widths[sim.free].min()))
@@ -193,7 +193,7 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
         return
     sim.use_combined_damping()
     sim.set_load(0.0)
-    _limit_falls(sim)
+    limit_falls(sim)
     _climb(sim, sim.set_dead_share, steps)
     sim.rest()
     budget.spend(steps, "putting on the dead loads")

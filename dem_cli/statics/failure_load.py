@@ -30,12 +30,12 @@ from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.trial_loads import TrialLoads
-from dem_cli.statics.warm_start import GRAVITY, LIMIT, place
+from dem_cli.statics.warm_start import GRAVITY, LIMIT
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
-    from dem_cli.statics.warm_start import WarmStart
+    from dem_cli.statics.warm_start import CurveStart, WarmStart
 
 
 AGAINST = "a small live load moves the structure against its direction: it hardly stands as it is"
@@ -58,7 +58,7 @@ class LoadSearch:
         self.first_step = sim.steps
         answer.scale, answer.limit = scale, self.limit * scale
 
-    def run(self, start: WarmStart | None = None) -> None:
+    def run(self, start: WarmStart | CurveStart | None = None) -> None:
         """The bracket; start: a state next to failure that was asked for, instead of loads raised from gravity.
 
         Where it does not hold, these are the way after all; where joints have a profile, nothing is estimated first.
@@ -152,14 +152,14 @@ class LoadSearch:
         sim = self.sim
         return largest_structure(sim.joints.blocks, sim.model.fixed) > sim.settings.warm_start.large
 
-    def _holds(self, start: WarmStart) -> bool:
+    def _holds(self, start: WarmStart | CurveStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
         sim, answer = self.sim, self.answer
         load = (1.0 - self.settings.below * self.resolution) * start.load / sim.live_scale
         if not 0.0 < load < self.limit:
             return False
         self.track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
-        place(sim, start)
+        start.put_into(sim)
         before = sim.steps
         verdict = settle_or_fail(sim, load, self.budget, answer.elastic * load)
         self._passed("start", before, load, verdict.state)

@@ -16,8 +16,10 @@ from dem_cli.statics.rigid_limits import RigidLimits
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.state import SavedState
 
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
+CURVE = "curve"  # of displacement control
 
 
 class WarmStart(NamedTuple):
@@ -31,6 +33,31 @@ class WarmStart(NamedTuple):
     displacements: np.ndarray  # since before gravity, (n_blocks, n_dof)
     work: float  # of the live loads on the way [J]
     plateau: bool = False  # the load grows no more with displacement
+
+    def put_into(self, sim: Simulation) -> None:
+        """Puts the simulation into this state; what the work on the way did not store counts as friction.
+
+        Where the forces come without a way (limit analysis), what they store was put in from outside.
+        """
+        sim.set_load(self.load / sim.live_scale)
+        share = sim.dead_share  # a tilted table has less of all loads
+        gaps = np.where(self.normal > 0.0, -share * self.normal / sim.joints.kn, self.gaps)
+        sim.place(share * self.normal, share * self.shear, gaps, self.displacements)
+        given = float((sim.loads.dead * self.displacements).sum()) + self.work
+        sim.open_books(max(given - sim.elastic_energy(), 0.0))
+
+
+class CurveStart(NamedTuple):
+    """The highest point of a capacity curve, as the explicit solver left it."""
+
+    load: float  # its multiplier, as users know it
+    state: SavedState
+    kind: str = CURVE
+    plateau: bool = False
+
+    def put_into(self, sim: Simulation) -> None:
+        """Puts the simulation into this state."""
+        sim.restore(self.state)
 
 
 def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStart | None, dict[str, Any]]:
@@ -49,19 +76,6 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
         report["kind"] = GRAVITY
     report.setdefault("note", limits.why_not)
     return start, {key: value for key, value in report.items() if value is not None}
-
-
-def place(sim: Simulation, start: WarmStart) -> None:
-    """Puts the simulation into the state of `start`; what the work on the way did not store counts as friction.
-
-    Where the forces come without a way (limit analysis), what they store was put in from outside.
-    """
-    sim.set_load(start.load / sim.live_scale)
-    share = sim.dead_share  # a tilted table has less of all loads
-    gaps = np.where(start.normal > 0.0, -share * start.normal / sim.joints.kn, start.gaps)
-    sim.place(share * start.normal, share * start.shear, gaps, start.displacements)
-    given = float((sim.loads.dead * start.displacements).sum()) + start.work
-    sim.open_books(max(given - sim.elastic_energy(), 0.0))
 
 
 def _by_path(job: Job, limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:

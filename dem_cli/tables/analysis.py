@@ -88,19 +88,47 @@ class PushoverAnalysis(LiveAnalysis):
         "that do not dilate; limit: forces of limit analysis, in equilibrium but maybe never reached; auto: gravity",
     )
     limit: bool = Field(default=False, description="rigid-block limit analysis beside the failure load")
+    control: Literal["load", "displacement"] = Field(
+        default="load",
+        description="what grows: load: the multiplier, up to failure; displacement: that of the live load, at whose "
+        "every step the multiplier is found, up to `follow`: the whole capacity curve, then the proof of its peak",
+    )
+    increments: int = Field(
+        default=100, ge=10, le=100_000, description="control = 'displacement': so many steps to `follow` at least"
+    )
+
+    @model_validator(mode="after")
+    def _a_way_to_go(self) -> PushoverAnalysis:
+        if self.control == "displacement":
+            if self.follow <= 0.0:
+                raise KeyProblem("0 is not allowed with control = 'displacement': how far the curve goes [m]", "follow")
+            refused = {"step": self.step is not None, "start": self.start not in ("auto", "gravity")}
+            refused["collapse"] = self.collapse != "auto"
+            for key in (key for key, given in refused.items() if given):
+                raise KeyProblem("not allowed with control = 'displacement'", key)
+        elif self.increments != 100:
+            raise KeyProblem("only allowed with control = 'displacement'", "increments")
+        return self
 
 
 class CycleAnalysis(LiveAnalysis):
-    """[analysis] with kind = "cycle": the load multiplier follows a path of given values, slowly, to and fro."""
+    """[analysis] with kind = "cycle": the live load, or its displacement, follows a path of given values to and fro."""
 
     kind: Literal["cycle"] = "cycle"
+    control: Literal["load", "displacement"] = Field(
+        default="load",
+        description="what the path is of: load: of multipliers; displacement: of displacements of the live load, at "
+        "which the multiplier is found",
+    )
     path: tuple[float, ...] = Field(
         min_length=1,
-        description="load multipliers to go to one after the other, from 0 [-]",
+        description="load multipliers [-], or displacements of the live load [m], to go to one after the other, from 0",
         examples=[[0.2, -0.2, 0.0]],
     )
     step: float = Field(
-        gt=0.0, description="largest step of the multiplier [-]; every one is a proven equilibrium", examples=[0.02]
+        gt=0.0,
+        description="largest step of the multiplier [-] or displacement [m]; after every one all forces balance",
+        examples=[0.02],
     )
 
 
