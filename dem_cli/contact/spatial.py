@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.contact.caps import apothems, has_cap, highest, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, too_deep, too_steep
-from dem_cli.contact.meetings import Meetings, meetings, polyhedra
+from dem_cli.contact.meetings import Meetings, meetings, polyhedra, room_of
 from dem_cli.contact.near_boxes import near_boxes
 from dem_cli.geometry.outlines import furthest
 from dem_cli.geometry.parts import shapes_of
@@ -40,7 +40,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
     solids = polyhedra(model, corners)
     pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
     faces, separation = np.empty((len(pairs), 2), np.int64), np.empty(len(pairs))
-    separations(solids, pairs, reach, separation, faces)
+    separations(solids, pairs, reach, room_of(solids), separation, faces)
     near = separation <= reach
     # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
     near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
