@@ -53,6 +53,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
         """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
 
+    def bonds(self, model: Model, geometry: Geometry) -> np.ndarray:
+        """Joints of the start that have an area which a bond can hold, (n_joints,) bool."""
+
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties
     ) -> Returning | None:

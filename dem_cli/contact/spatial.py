@@ -12,7 +12,7 @@ from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, too_deep, too_steep
 from dem_cli.contact.meetings import Meetings, meetings, polyhedra, room_of
 from dem_cli.contact.near_boxes import near_boxes
-from dem_cli.geometry.outlines import furthest
+from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
@@ -26,7 +26,7 @@ from dem_cli.kernels.records import (
     SpatialGeometry,
 )
 from dem_cli.kernels.separation import separations
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR
 from dem_cli.model.model import Model
 
 LONE = 0.25  # of the median face: the area of a point outside of face joints
@@ -52,7 +52,29 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
 
     Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
     """
-    return faces.where(meetings(model, faces, corners).measures[:, MARGIN] > reach)
+    found = meetings(model, faces, corners)
+    return faces.where((found.measures[:, MARGIN] > reach) & ~_on_joints(model, faces, corners, found, reach))
+
+
+def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings, reach: float) -> np.ndarray:
+    """Edges and corners that meet a block where another part of their block lies on it with a face, (n,) bool.
+
+    That edge is one of the parts, not of the block: what it carries is carried by the face. reach: [m].
+    """
+    blocks, repeated = model.part_blocks[faces.parts], np.zeros(len(faces.parts), bool)
+    several = np.bincount(model.part_blocks, minlength=model.n_blocks) > 1
+    flat = _along(shapes_of(corners).normals(corners, model.topology), found.kinds, faces.faces)
+    of_two = blocks.min(axis=1) * model.n_blocks + blocks.max(axis=1)
+    for k in np.flatnonzero(~flat & several[blocks].any(axis=1)):
+        others = np.flatnonzero(flat & (of_two == of_two[k]))
+        own = np.arange(found.starts[k], found.starts[k + 1])
+        nearest = found.gaps[own].min()
+        touching = own[found.gaps[own] <= nearest + reach]
+        for other in others:
+            which = np.full(len(touching), other)
+            away = away_from(found.places[touching], which, found.places, found.starts, found.frames[:, :3])
+            repeated[k] |= bool((away <= reach + abs(nearest)).all())
+    return repeated
 
 
 def points(
@@ -162,6 +184,7 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
     """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
     found = meetings(model, faces, corners)
     kept = found.widths > least
+    kept &= (found.measures[:, MARGIN] > least) & ~_on_joints(model, faces, corners, found, max(least, 0.0))
     points, normals = kept[found.owners], found.frames[:, :3]
     across = 0.5 * found.gaps[points, None] * normals[found.owners[points]]
     starts = np.concatenate([[0], np.cumsum(np.diff(found.starts)[kept])])
@@ -172,6 +195,21 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
         model.part_blocks[faces.parts[kept]], normals[kept], starts, places - across, places + across, shares,
         longest, _areas(model, found)[kept],
     )  # fmt: skip
+
+
+def bonds(model: Model, geometry: SpatialGeometry) -> np.ndarray:
+    """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
+    return along_each_other(model, geometry.kinds, geometry.keys)
+
+
+def along_each_other(model: Model, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Pairs of faces (n, 2) of undeformed blocks that lie along each other, (n,) bool; of kinds (n,)."""
+    return _along(model.faces.normals, kinds, faces)
+
+
+def _along(normals: np.ndarray, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    a, b = normals[faces.T]
+    return (kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= PARALLEL)
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:
