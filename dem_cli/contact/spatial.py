@@ -29,6 +29,8 @@ from dem_cli.kernels.separation import separations
 from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR
 from dem_cli.model.model import Model
 
+FLAT = 1e-4  # angle of kinks across which parts may touch on both sides, within round-off [rad]
+NOTED = 0.02  # of the smaller face: area beside a joint that is worth a word
 LONE = 0.25  # of the median face: the area of a point outside of face joints
 
 
@@ -37,14 +39,45 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 
     Two fixed blocks have no joint. Pairs are ordered by parts, whatever finds them.
     """
-    solids = polyhedra(model, corners)
     pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
-    faces, separation = np.empty((len(pairs), 2), np.int64), np.empty(len(pairs))
-    separations(solids, pairs, reach, room_of(solids), separation, faces)
+    separation, faces, _ = _facing(model, corners, pairs, reach)
     near = separation <= reach
     # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
     near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
     return Faces(pairs[near], faces[near], separation[near], reach)
+
+
+def _facing(
+    model: Model, corners: np.ndarray, pairs: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of pairs of parts: how far they are apart, by which faces, and what else they share (kernels/separation.py)."""
+    solids = polyhedra(model, corners)
+    faces, separation, beside = np.zeros((len(pairs), 2), np.int64), np.empty(len(pairs)), np.zeros(len(pairs))
+    separations(solids, pairs, reach, room_of(solids), separation, faces, beside)
+    return separation, faces, beside
+
+
+def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Blocks that also touch beside their joint, and the area of that [m²], (n, 2) and (n,).
+
+    Two convex parts have one joint, in one plane: where one of them lies on both sides of a kink that is flatter than
+    contact can tell, only the larger side counts. reach: [m].
+    """
+    normals, first = model.faces.normals, model.topology.part_faces
+    kinked = np.zeros(model.n_parts, bool)
+    for count in np.unique(np.diff(first)):
+        parts = np.flatnonzero(np.diff(first) == count)
+        own = normals[first[parts, None] + np.arange(count)]
+        near = np.linalg.norm(own[:, :, None] - own[:, None], axis=3) < FLAT
+        kinked[parts] = near.sum(axis=(1, 2)) > count
+    if not kinked.any():
+        return np.zeros((0, 2), np.int64), np.zeros(0)
+    pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
+    pairs = pairs[kinked[pairs].any(axis=1)]
+    separation, faces, beside = _facing(model, corners, pairs, reach)
+    smaller = model.faces.areas[faces].min(axis=1)
+    kept = (separation <= reach) & (beside > NOTED * smaller)
+    return model.part_blocks[pairs[kept]], beside[kept]
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:

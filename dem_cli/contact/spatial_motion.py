@@ -18,6 +18,7 @@ from dem_cli.contact.spatial import (
     drawn,
     facing,
     find,
+    left_out,
     median_face,
     open_gaps,
     profile_fault,
@@ -31,7 +32,7 @@ from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
-    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
+    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "left_out", "microrotations",
     "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 

@@ -166,7 +166,7 @@ def _carries(solids, face_a, face_b, axis, t1, t2, separation, size, work):
 
 @inline
 def _facing(solids, a, b, axis, separation, work):
-    """The faces of two parts that look at each other along an axis.
+    """The faces of two parts that look at each other along an axis, and what others of them share beside these [m²].
 
     Those most along it. Where a part has others that are nearly so, as beside the kink of a bed, the two of them that
     share the most: a part that lies over one side of the kink has nothing on the other side of it, however it turns.
@@ -174,12 +174,12 @@ def _facing(solids, a, b, axis, separation, work):
     most_a, limit_a, several_a = _most_along(solids, a, axis, 1.0)
     most_b, limit_b, several_b = _most_along(solids, b, axis, -1.0)
     if not (several_a or several_b):
-        return most_a, most_b
+        return most_a, most_b, 0.0
     size = min(solids.sizes[a], solids.sizes[b])
     across = (1.0, 0.0, 0.0) if abs(axis[0]) < 0.7 else (0.0, 1.0, 0.0)
     t1 = unit3(cross3(across, axis))
     t2 = cross3(axis, t1)
-    face_a, face_b = most_a, most_b
+    face_a, face_b, total = most_a, most_b, 0.0
     best = _carries(solids, most_a, most_b, axis, t1, t2, separation, size, work)
     for i in range(solids.part_faces[a], solids.part_faces[a + 1]):
         if _off_axis(solids, i, axis, 1.0) > limit_a:
@@ -188,9 +188,10 @@ def _facing(solids, a, b, axis, separation, work):
             if _off_axis(solids, k, axis, -1.0) > limit_b:
                 continue
             shared = _carries(solids, i, k, axis, t1, t2, separation, size, work)
+            total += shared
             if shared > best * (1.0 + TIE):
                 best, face_a, face_b = shared, i, k
-    return face_a, face_b
+    return face_a, face_b, max(total - best, 0.0)
 
 
 @inline
@@ -220,9 +221,10 @@ def separate(solids, a, b, reach):
 
 
 @kernel
-def separations(solids, pairs, reach, work, separation_out, faces_out):
+def separations(solids, pairs, reach, work, separation_out, faces_out, left_out):
     """Separation [m] of pairs of parts (n, 2), and their two faces that look at each other along the axis, (n, 2).
 
+    left_out: area that they share with other faces as well, across a kink of almost nothing [m²], (n,).
     work: room for the corners of two faces, as `clip` has it.
     """
     for number in range(pairs.shape[0]):
@@ -230,4 +232,5 @@ def separations(solids, pairs, reach, work, separation_out, faces_out):
         separation, axis, _, _ = separate(solids, a, b, reach)
         separation_out[number] = separation
         if separation <= reach:
-            faces_out[number, 0], faces_out[number, 1] = _facing(solids, a, b, axis, separation, work)
+            face_a, face_b, left_out[number] = _facing(solids, a, b, axis, separation, work)
+            faces_out[number, 0], faces_out[number, 1] = face_a, face_b
