@@ -68,7 +68,7 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
     for count in np.unique(np.diff(first)):
         parts = np.flatnonzero(np.diff(first) == count)
         own = normals[first[parts, None] + np.arange(count)]
-        near = np.linalg.norm(own[:, :, None] - own[:, None], axis=3) < FLAT
+        near = own @ own.swapaxes(1, 2) > 1.0 - 0.5 * FLAT**2
         kinked[parts] = near.sum(axis=(1, 2)) > count
     if not kinked.any():
         return np.zeros((0, 2), np.int64), np.zeros(0)
@@ -96,6 +96,8 @@ def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings,
     """
     blocks, repeated = model.part_blocks[faces.parts], np.zeros(len(faces.parts), bool)
     several = np.bincount(model.part_blocks, minlength=model.n_blocks) > 1
+    if not several.any():
+        return repeated
     flat = _along(shapes_of(corners).normals(corners, model.topology), found.kinds, faces.faces)
     of_two = blocks.min(axis=1) * model.n_blocks + blocks.max(axis=1)
     for k in np.flatnonzero(~flat & several[blocks].any(axis=1)):

@@ -116,15 +116,22 @@ def _off_axis(solids, face, axis, sign):
 def _most_along(solids, part, axis, sign):
     """The face of a part whose normal points most along sign × axis; how far off a face may be that stands for it,
     squared, and whether there is one."""
-    best, best_face, second = math.inf, solids.part_faces[part], math.inf
-    for face in range(solids.part_faces[part], solids.part_faces[part + 1]):
-        off = _off_axis(solids, face, axis, sign)
-        if off < best * (1.0 - TIE) - TURN * TURN:
-            best, best_face, second = off, face, best
+    cosine, face, after = -math.inf, solids.part_faces[part], -math.inf
+    for other in range(solids.part_faces[part], solids.part_faces[part + 1]):
+        level = sign * dot(row3(solids.normals, other), axis)
+        if level > cosine + TIE:
+            cosine, face, after = level, other, cosine
         else:
-            second = min(second, off)
-    limit = (math.sqrt(best) + NEARLY) ** 2
-    return best_face, limit, second <= limit
+            after = max(after, level)
+    limit = (math.sqrt(max(2.0 - 2.0 * cosine, 0.0)) + NEARLY) ** 2
+    if 2.0 - 2.0 * after > limit:
+        return face, limit, False
+    best = math.inf  # cosines do not tell small angles apart
+    for other in range(solids.part_faces[part], solids.part_faces[part + 1]):
+        off = _off_axis(solids, other, axis, sign)
+        if off < best * (1.0 - TIE) - TURN * TURN:
+            best, face = off, other
+    return face, limit, True
 
 
 @inline
