@@ -11,7 +11,9 @@ from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
 from dem_cli.contact.gaps import CLOSING_GAP, joined, joint_reach
+from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.layout import PointLayout
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.geometry.parts import shapes_of
@@ -19,6 +21,7 @@ from dem_cli.geometry.rotation import unturned
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
+from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -125,6 +128,7 @@ def warnings(model: Model) -> list[str]:
     return [
         *_remote(model, float(np.median(sizes))),
         *_slivers(widths / sizes, names),
+        *_kinks(model),
         *_spread("size", sizes, names, SIZE_RATIO),
         *_spread("mass", model.masses[block], [model.block_ids[i] for i in block], MASS_RATIO),
     ]
@@ -167,6 +171,21 @@ def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -
     if ratio <= limit:
         return []
     return [f"block '{names[large]}' has {ratio:.1e} times the {what} of '{names[small]}': expect a slow run"]
+
+
+def _kinks(model: Model) -> list[str]:
+    """Blocks that lie on both sides of a kink which contact cannot tell from a plane."""
+    reach = TOUCHING_GAP * smallest_edge(model)
+    blocks, areas = geometry_of(model.dimension).left_out(model, undeformed(model), reach)
+    if not len(blocks):
+        return []
+    worst = int(areas.argmax())
+    a, b = (model.block_ids[i] for i in blocks[worst])
+    more = f", and {len(blocks) - 1} more joints" if len(blocks) > 1 else ""
+    return [
+        f"'{a}' and '{b}' touch on both sides of a kink that is almost flat, and their joint is on one side only, "
+        f"short of {areas[worst]:.2g} m²{more}: draw the face straight, or the kink clearly"
+    ]
 
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:

@@ -38,6 +38,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def corners_of(self, shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
         """Corners of all parts in place [m], (n_vertices, d)."""
 
+    def left_out(self, model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+        """Blocks that touch beside their joints, within `reach` [m], (n, 2), and how much of an area [m²], (n,)."""
+
     def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
         """Of faces that are near each other, those that can carry force between blocks that do not move."""
 
@@ -52,6 +55,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
 
     def drawn(self, model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
         """Outlines of the joints of the undeformed structure that are wider than `least` [m]."""
+
+    def bonds(self, model: Model, geometry: Geometry) -> np.ndarray:
+        """Joints of the start that have an area which a bond can hold, (n_joints,) bool."""
 
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties

@@ -50,12 +50,17 @@ def polyhedra(model: Model, corners: np.ndarray) -> Polyhedra:
     )  # fmt: skip
 
 
+def room_of(solids: Polyhedra) -> np.ndarray:
+    """Room for what any two faces have in common, as kernels/overlap.py reads it."""
+    return np.zeros((5, 2 * int(np.diff(solids.face_starts).max(initial=0)) + 2, 3))
+
+
 def meetings(model: Model, faces: Faces, corners: np.ndarray) -> Meetings:
     """Contact points of pairs of parts, where these are now."""
     solids = polyhedra(model, corners)
     n, sizes = len(faces.parts), np.diff(solids.face_starts)
     room = np.concatenate([[0], np.cumsum(sizes[faces.faces].sum(axis=1))]).astype(np.int64)
-    work = np.zeros((5, 2 * int(sizes.max(initial=0)) + 2, 3))
+    work = room_of(solids)
     frames, measures = np.zeros((n, 9)), np.zeros((n, 7))
     places, weights, gaps = np.zeros((room[-1], 3)), np.zeros(room[-1]), np.zeros(room[-1])
     features, kinds, counts = np.zeros(room[-1], np.int64), np.zeros(n, np.int8), np.zeros(n, np.int64)

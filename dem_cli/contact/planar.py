@@ -148,6 +148,16 @@ def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarr
     return corners
 
 
+def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nothing: in the plane each two edges have a joint of their own."""
+    return np.zeros((0, 2), np.int64), np.zeros(0)
+
+
+def bonds(model: Model, geometry: PlanarGeometry) -> np.ndarray:
+    """All of them: joints in the plane are edges that overlap."""
+    return np.ones(len(geometry.keys), bool)
+
+
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Chains | None:
     """Points that come back wherever the same faces meet again; None: all joints have two points, at their ends."""
     return made_chains(model, faces, corners, properties) if properties.profiled else None

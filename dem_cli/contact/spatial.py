@@ -10,9 +10,9 @@ import numpy as np
 from dem_cli.contact.caps import apothems, has_cap, highest, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, too_deep, too_steep
-from dem_cli.contact.meetings import Meetings, meetings, polyhedra
+from dem_cli.contact.meetings import Meetings, meetings, polyhedra, room_of
 from dem_cli.contact.near_boxes import near_boxes
-from dem_cli.geometry.outlines import furthest
+from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
@@ -26,9 +26,11 @@ from dem_cli.kernels.records import (
     SpatialGeometry,
 )
 from dem_cli.kernels.separation import separations
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, POLAR
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR
 from dem_cli.model.model import Model
 
+FLAT = 1e-4  # angle of kinks across which parts may touch on both sides, within round-off [rad]
+NOTED = 0.02  # of the smaller face: area beside a joint that is worth a word
 LONE = 0.25  # of the median face: the area of a point outside of face joints
 
 
@@ -37,14 +39,45 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 
     Two fixed blocks have no joint. Pairs are ordered by parts, whatever finds them.
     """
-    solids = polyhedra(model, corners)
     pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
-    faces, separation = np.empty((len(pairs), 2), np.int64), np.empty(len(pairs))
-    separations(solids, pairs, reach, separation, faces)
+    separation, faces, _ = _facing(model, corners, pairs, reach)
     near = separation <= reach
     # Where a piece touches another block with an inner face only, it is at an edge that another piece has too.
     near[near] &= ~model.inner_faces[faces[near]].any(axis=1)
     return Faces(pairs[near], faces[near], separation[near], reach)
+
+
+def _facing(
+    model: Model, corners: np.ndarray, pairs: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of pairs of parts: how far they are apart, by which faces, and what else they share (kernels/separation.py)."""
+    solids = polyhedra(model, corners)
+    faces, separation, beside = np.zeros((len(pairs), 2), np.int64), np.empty(len(pairs)), np.zeros(len(pairs))
+    separations(solids, pairs, reach, room_of(solids), separation, faces, beside)
+    return separation, faces, beside
+
+
+def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Blocks that also touch beside their joint, and the area of that [m²], (n, 2) and (n,).
+
+    Two convex parts have one joint, in one plane: where one of them lies on both sides of a kink that is flatter than
+    contact can tell, only the larger side counts. reach: [m].
+    """
+    normals, first = model.faces.normals, model.topology.part_faces
+    kinked = np.zeros(model.n_parts, bool)
+    for count in np.unique(np.diff(first)):
+        parts = np.flatnonzero(np.diff(first) == count)
+        own = normals[first[parts, None] + np.arange(count)]
+        near = own @ own.swapaxes(1, 2) > 1.0 - 0.5 * FLAT**2
+        kinked[parts] = near.sum(axis=(1, 2)) > count
+    if not kinked.any():
+        return np.zeros((0, 2), np.int64), np.zeros(0)
+    pairs = near_boxes(corners, model.part_starts, model.part_blocks, model.fixed, reach)
+    pairs = pairs[kinked[pairs].any(axis=1)]
+    separation, faces, beside = _facing(model, corners, pairs, reach)
+    smaller = model.faces.areas[faces].min(axis=1)
+    kept = (separation <= reach) & (beside > NOTED * smaller)
+    return model.part_blocks[pairs[kept]], beside[kept]
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
@@ -52,7 +85,31 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> F
 
     Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
     """
-    return faces.where(meetings(model, faces, corners).measures[:, MARGIN] > reach)
+    found = meetings(model, faces, corners)
+    return faces.where((found.measures[:, MARGIN] > reach) & ~_on_joints(model, faces, corners, found, reach))
+
+
+def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings, reach: float) -> np.ndarray:
+    """Edges and corners that meet a block where another part of their block lies on it with a face, (n,) bool.
+
+    That edge is one of the parts, not of the block: what it carries is carried by the face. reach: [m].
+    """
+    blocks, repeated = model.part_blocks[faces.parts], np.zeros(len(faces.parts), bool)
+    several = np.bincount(model.part_blocks, minlength=model.n_blocks) > 1
+    if not several.any():
+        return repeated
+    flat = _along(shapes_of(corners).normals(corners, model.topology), found.kinds, faces.faces)
+    of_two = blocks.min(axis=1) * model.n_blocks + blocks.max(axis=1)
+    for k in np.flatnonzero(~flat & several[blocks].any(axis=1)):
+        others = np.flatnonzero(flat & (of_two == of_two[k]))
+        own = np.arange(found.starts[k], found.starts[k + 1])
+        nearest = found.gaps[own].min()
+        touching = own[found.gaps[own] <= nearest + reach]
+        for other in others:
+            which = np.full(len(touching), other)
+            away = away_from(found.places[touching], which, found.places, found.starts, found.frames[:, :3])
+            repeated[k] |= bool((away <= reach + abs(nearest)).all())
+    return repeated
 
 
 def points(
@@ -162,6 +219,7 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
     """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
     found = meetings(model, faces, corners)
     kept = found.widths > least
+    kept &= (found.measures[:, MARGIN] > least) & ~_on_joints(model, faces, corners, found, max(least, 0.0))
     points, normals = kept[found.owners], found.frames[:, :3]
     across = 0.5 * found.gaps[points, None] * normals[found.owners[points]]
     starts = np.concatenate([[0], np.cumsum(np.diff(found.starts)[kept])])
@@ -172,6 +230,21 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
         model.part_blocks[faces.parts[kept]], normals[kept], starts, places - across, places + across, shares,
         longest, _areas(model, found)[kept],
     )  # fmt: skip
+
+
+def bonds(model: Model, geometry: SpatialGeometry) -> np.ndarray:
+    """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
+    return along_each_other(model, geometry.kinds, geometry.keys)
+
+
+def along_each_other(model: Model, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Pairs of faces (n, 2) of undeformed blocks that lie along each other, (n,) bool; of kinds (n,)."""
+    return _along(model.faces.normals, kinds, faces)
+
+
+def _along(normals: np.ndarray, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    a, b = normals[faces.T]
+    return (kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= PARALLEL)
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:

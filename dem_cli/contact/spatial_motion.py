@@ -13,10 +13,12 @@ from dem_cli.contact.joints import Faces, JointArrays, JointProperties, joints_o
 from dem_cli.contact.meetings import polyhedra
 from dem_cli.contact.spatial import (
     LONE,
+    along_each_other,
     corners_of,
     drawn,
     facing,
     find,
+    left_out,
     median_face,
     open_gaps,
     profile_fault,
@@ -30,7 +32,7 @@ from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
-    "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "microrotations",
+    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "left_out", "microrotations",
     "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
@@ -167,6 +169,11 @@ def _held(of: JointArrays) -> float:
     used = of.joints.kn > 0.0
     normal, shear = of.contacts.normal[used], of.contacts.shear[used]
     return 0.5 * float((normal**2 / of.joints.kn[used]).sum() + ((shear**2).sum(axis=1) / of.joints.ks[used]).sum())
+
+
+def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:
+    """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
+    return along_each_other(model, geometry.kinds, geometry.faces)
 
 
 def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:

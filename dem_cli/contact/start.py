@@ -6,12 +6,12 @@ import numpy as np
 
 from dem_cli.contact.assemble import build_joints
 from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.geometry import geometry_of
+from dem_cli.contact.geometry import AnyNarrowPhase, geometry_of
 from dem_cli.contact.joint_planes import in_planes
 from dem_cli.contact.joints import JointArrays, JointProperties
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import turns_of, unturned
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.kernels.records import Bodies, Contacts
 from dem_cli.model.model import Model
 
 TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
@@ -38,10 +38,12 @@ def close_touching(contacts: Contacts, smallest: float) -> None:
     contacts.gaps[np.abs(contacts.gaps) <= TOUCHING_GAP * smallest] = 0.0
 
 
-def bond_touching(model: Model, joints: Joints, contacts: Contacts, properties: JointProperties) -> None:
-    """Points without a gap start intact: they remember what their law says of a young joint."""
+def bond_touching(model: Model, built: JointArrays, properties: JointProperties, narrow: AnyNarrowPhase) -> None:
+    """Points without a gap start intact, where faces lie on each other: they remember what their law says of a young
+    joint. An edge on a face has no area that a bond could hold. narrow: of the geometry of these joints."""
+    joints, contacts = built.joints, built.contacts
     count = min(properties.intact.shape[1], contacts.memory.shape[1])  # limit analysis remembers nothing
-    touching = contacts.gaps <= 0.0
+    touching = (contacts.gaps <= 0.0) & narrow.bonds(model, built.geometry)[joints.owners]
     named = properties.between(model, joints.blocks)[joints.owners]
     contacts.memory[touching, :count] = properties.intact[named[touching], :count]
 
@@ -58,6 +60,6 @@ def joints_of_start(
     faces = narrow.touching(model, narrow.find(model, bodies.corners, reach), bodies.corners, reach)
     built = build_joints(model, faces, bodies, properties, n_memory, moves=False)
     close_touching(built.contacts, smallest)
-    bond_touching(model, built.joints, built.contacts, properties)
+    bond_touching(model, built, properties, narrow)
     planes = in_planes(built.joints, built.contacts.gaps, bodies.positions)
     return built._replace(joints=planes, geometry=built.geometry.settled())

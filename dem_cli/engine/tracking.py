@@ -56,7 +56,7 @@ class JointTracking:
         self.chains = self.narrow.chains_of(model, faces, bodies.corners, self.properties)
         built = build_joints(model, faces, bodies, self.properties, n_memory, self.chains)
         close_touching(built.contacts, self.smallest)
-        bond_touching(model, built.joints, built.contacts, self.properties)
+        bond_touching(model, built, self.properties, self.narrow)
         return built
 
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.contact.gaps import gap_words, gaps_of_start
+from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import JointProperties, only_points
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.errors import UsageError
@@ -113,7 +114,7 @@ def limit_loads(
     begun = time.perf_counter()
     _require_known(model, bounds)
     structure = start_structure(model, properties, law)
-    strength = envelope_of(structure.joints, law, heads_frictionless)
+    strength = envelope_of(structure.joints, law, heads_frictionless, bonds=structure.bonds)
     associated = limit_load(structure, strength, settings.associated)
     found = LimitLoads(structure, strength.friction, associated, None, time.perf_counter() - begun, None)
     try:
@@ -129,7 +130,7 @@ def limit_loads(
         begun = time.perf_counter()
         path = _path(structure, friction, associated, progress, settings)
         found = found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
-    left = envelope_of(structure.joints, law, heads_frictionless, residual=True)
+    left = envelope_of(structure.joints, law, heads_frictionless, residual=True, bonds=structure.bonds)
     return _with_bounds(found, strength, left, bounds, settings)
 
 
@@ -187,7 +188,8 @@ def require_scalable(model: Model, properties: JointProperties, law: Law) -> Non
 
     Dead loads fall with the cosine of its angle, and so does the strength of joints with friction alone.
     """
-    strength = envelope_of(start_structure(model, properties, law).joints, law)
+    structure = start_structure(model, properties, law)
+    strength = envelope_of(structure.joints, law, bonds=structure.bonds)
     if strength.cohesion.any() or strength.tension.any() or np.isfinite(strength.compression).any():
         raise UsageError(
             f"limit analysis keeps the dead loads, and those of a tilting table fall: strengths of law '{law.name}' "
@@ -222,4 +224,6 @@ def start_structure(model: Model, properties: JointProperties, law: Law | None =
     plane = (layout if shared and layout and layout.sides is None else None for layout in properties.layouts)
     properties = properties._replace(layouts=tuple(plane))
     built = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
-    return structure_of(model, only_points(built.joints, built.contacts.gaps <= 0.0))
+    closed = built.contacts.gaps <= 0.0
+    bonds = geometry_of(model.dimension).bonds(model, built.geometry)[built.joints.owners]
+    return structure_of(model, only_points(built.joints, closed), bonds[closed])

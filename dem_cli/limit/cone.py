@@ -212,10 +212,17 @@ def _joined(members: list[_Members], first: np.ndarray, n_round: int, most: np.n
     return Cone(points, shares, first, n_round, cap, share, most)
 
 
-def envelope_of(joints: Joints, law: Law, heads_frictionless: bool = False, residual: bool = False) -> Envelope:
+def envelope_of(
+    joints: Joints,
+    law: Law,
+    heads_frictionless: bool = False,
+    residual: bool = False,
+    bonds: np.ndarray | None = None,
+) -> Envelope:
     """The largest forces of every point; residual: what is left of them after sliding and opening for long.
 
-    heads_frictionless: joints steeper than 45° to the horizontal carry no shear force (thesis Table 5-3).
+    bonds: points that cohesion and tension hold, (n_points,) bool; None: all. heads_frictionless: joints steeper than
+    45° to the horizontal carry no shear force (thesis Table 5-3).
     Raises UsageError where the strength of the law is not held by straight lines.
     """
     if law.envelope is None:
@@ -225,6 +232,9 @@ def envelope_of(joints: Joints, law: Law, heads_frictionless: bool = False, resi
         )
     strength = (residual and law.residual) or law.envelope
     found = strength(joints.law[joints.owners], joints.kn)
+    if bonds is not None and not bonds.all():
+        loose = {name: np.where(bonds, getattr(found, name), 0.0) for name in ("cohesion", "tension")}
+        found = found._replace(**loose)
     if not heads_frictionless:
         return found
     smooth = {name: np.where(steep(joints), 0.0, getattr(found, name)) for name in ("friction", "cohesion", "dilation")}

@@ -34,6 +34,7 @@ class Structure(NamedTuple):
     dead: np.ndarray  # dead loads of the free degrees of freedom [N, N m], (n_free,)
     live: np.ndarray  # per unit of the user's multiplier [N, N m], (n_free,)
     scales: np.ndarray  # own weight of the block, times its radius for moments [N, N m], (n_free,)
+    bonds: np.ndarray  # points of faces that lie on each other, which a bond can hold, (n_points,) bool
 
     @property
     def n_dof(self) -> int:
@@ -54,14 +55,19 @@ class Structure(NamedTuple):
         return (self.compatibility.T @ reactions + self.dead + multiplier * self.live) / self.scales
 
 
-def structure_of(model: Model, joints: Joints) -> Structure:
-    """Matrices and loads of a model whose joints are those of the start (contact.start.joints_of_start)."""
+def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) -> Structure:
+    """Matrices and loads of a model whose joints are those of the start (contact.start.joints_of_start).
+
+    bonds: as Structure.bonds; None: of all points.
+    """
     d, n_dof = model.dimension, model.dead_loads.shape[1]
     blocks = np.flatnonzero(~model.fixed)
     free = (blocks[:, None] * n_dof + np.arange(n_dof)).ravel()
     dead, live = model.dead_loads[blocks], model.live_loads[blocks]
     scales = np.repeat(own_weights(dead, live, d)[:, None], n_dof, axis=1) if len(blocks) else np.zeros((0, n_dof))
     scales[:, d:] *= model.shapes.radii[blocks, None]
+    bonds = np.ones(len(joints.kn), bool) if bonds is None else bonds
     return Structure(
-        model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel()
-    )
+        model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel(),
+        bonds,
+    )  # fmt: skip
