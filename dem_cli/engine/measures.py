@@ -12,6 +12,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
+from dem_cli.links.matrices import softest
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -54,13 +55,13 @@ def live_displacement(sim: Simulation) -> float:
 
 
 def dead_scale(sim: Simulation) -> float:
-    """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
+    """What all dead loads would do to the softest joint or link [m]: no elastic displacement is larger by much."""
     joints = sim.joints
     total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
     if not len(joints.kn):
-        return sim.smallest
+        return float(total / softest(sim.links)) if sim.links else sim.smallest
     stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
-    return float(total / stiffness[stiffness > 0.0].min())
+    return float(total / min(stiffness[stiffness > 0.0].min(), softest(sim.links)))
 
 
 def largest_overlap(sim: Simulation) -> float:

@@ -135,7 +135,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
         f"joint '{name}': of law '{joint.law}' only its friction" for name, joint in case.joints.items()
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
-    notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection") if getattr(case, key, None)]
+    notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
     notes += ["stiffness of joints: bodies do not overlap in LMGC90"] if _stiff(exported) else []
     return notes
 
