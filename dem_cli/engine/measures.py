@@ -59,9 +59,18 @@ def dead_scale(sim: Simulation) -> float:
     joints = sim.joints
     total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
     if not len(joints.kn):
-        return float(total / softest(sim.links)) if sim.links else sim.smallest
+        return link_scale(sim) if sim.links else sim.smallest
     stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
-    return float(total / min(stiffness[stiffness > 0.0].min(), softest(sim.links)))
+    return max(float(total / stiffness[stiffness > 0.0].min()), link_scale(sim))
+
+
+def link_scale(sim: Simulation) -> float:
+    """What all present loads would do to the softest link, at most a smallest edge [m]; 0: there are no links."""
+    if not sim.links:
+        return 0.0
+    d, control, loads = sim.model.dimension, sim.control, sim.loads
+    total = control[slot.DEAD_FACTOR] * loads.dead[sim.free, :d] + control[slot.LIVE_FACTOR] * loads.live[sim.free, :d]
+    return min(float(np.sqrt((total**2).sum(axis=1)).sum() / softest(sim.links)), sim.smallest)
 
 
 def largest_overlap(sim: Simulation) -> float:
