@@ -19,7 +19,7 @@ from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation
+from dem_cli.engine.dynamic import DynamicSimulation, no_watch
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.measures import closure
@@ -164,7 +164,7 @@ class TimeHistory:
         """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
         history = sim.settings.history
-        nothing = sim.watch(np.zeros(0, np.int64), 1, 1)
+        nothing = no_watch(sim)
 
         def advance(n_steps: int) -> None:
             sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)

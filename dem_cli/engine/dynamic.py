@@ -85,7 +85,7 @@ class DynamicSimulation(Simulation):
     def start_moving(self) -> None:
         """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
-        self._run(0, 1, self._still(1), _no_watch(self))
+        self._run(0, 1, self._still(1), no_watch(self))
         kicked = self.bodies.pulled.reshape(before.shape)
         change, elastic = (kicked - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
@@ -135,7 +135,7 @@ class DynamicSimulation(Simulation):
         super().compile()
         self._new_dampers()
         control = self.control.copy()
-        self._run(0, 0, self._still(0), _no_watch(self))
+        self._run(0, 0, self._still(0), no_watch(self))
         self.control[:] = control
 
     def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None) -> None:
@@ -254,5 +254,6 @@ def _masses(model: Model) -> np.ndarray:
     return np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
 
 
-def _no_watch(sim: Simulation) -> Watch:
-    return sim.watch(np.zeros(0, np.int64), 1, 1)
+def no_watch(sim: Simulation) -> Watch:
+    """Nobody looks: room for no sample, however long the stretch."""
+    return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))

@@ -115,7 +115,7 @@ def _sample_links(step, links, watch):
     row, place = step // watch.every, 0
     for link in literal_unroll(links):
         state = link.state
-        for i in range(state.shape[0]):
+        for i in range(min(state.shape[0], watch.links.shape[1] - place)):  # nobody may look
             for k in range(state.shape[1]):
                 watch.links[row, place + i, k] = state[i, k]
         place += state.shape[0]
