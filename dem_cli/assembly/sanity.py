@@ -19,7 +19,7 @@ from dem_cli.model.places import undeformed
 from dem_cli.structures.registry import loose_ends
 
 if TYPE_CHECKING:
-    from dem_cli.assembly.applied_loads import AppliedLoad
+    from dem_cli.assembly.point_forces import AppliedLoad
     from dem_cli.case.schema import Case
 
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
