@@ -16,7 +16,7 @@ from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
-from dem_cli.structures.registry import loose_ends
+from dem_cli.structures.registry import loose_ends, unsaid
 
 if TYPE_CHECKING:
     from dem_cli.assembly.point_forces import AppliedLoad
@@ -49,6 +49,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
         *_loose_ends(case),
+        *_unsaid(case),
         *_slivers(case, model, blocks),
     ]
 
@@ -158,6 +159,13 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
         if key := loose_ends(table):
             message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
             message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
+            yield CaseProblem(("structure", i, key), message)
+
+
+def _unsaid(case: Case) -> Iterator[CaseProblem]:
+    """What structures take for granted and might be otherwise."""
+    for i, table in enumerate(case.structure):
+        for key, message in unsaid(table):
             yield CaseProblem(("structure", i, key), message)
 
 

@@ -27,6 +27,7 @@ class FileBody(NamedTuple):
     layer: str = ""  # material of an OBJ file, layer of a DXF file, group of an SVG file; "": the file has none
     fixed: bool = False
     indexed: bool = True
+    compound: bool = False  # the file says that its solids, and those of the same name, are parts of one block
 
 
 class Contents(NamedTuple):
