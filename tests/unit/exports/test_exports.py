@@ -325,6 +325,18 @@ def test_lmgc90_gets_the_masses_the_supports_and_the_friction(tmp_path, monkeypa
         assert notes == ["stiffness of joints: bodies do not overlap in LMGC90"]
 
 
+def test_lmgc90_says_which_moments_it_has_not(tmp_path):
+    """In space those of forces beside the centroid; in the plane they are written."""
+    off = [{"block": "ell", "force": [10.0, 0.0, 0.0], "at": [0.5, 0.5, 2.0]}]
+    case = spatial_case(materials={"wood": {"density": WOOD}}, block=[{"id": "ell", "parts": ELL}], load=off)
+    made = assembly(case)
+    notes = write_case(tmp_path / "a.lmgc90.py", ExportedCase(case, made.model, made.blocks, "a"))
+    assert notes == ["moments of forces beside the centroid of 'ell'"]
+    text = (tmp_path / "a.lmgc90.py").read_text()
+    assert ", [10.0, 0.0, 0.0], [0.0, 0.0, 0.0])  # ell" in text
+    assert notes[0] in text
+
+
 def test_3dec_gets_closed_convex_blocks_clockwise_from_outside(tmp_path, exported):
     notes = write_case(tmp_path / "model.3ddat", exported)
     text = (tmp_path / "model.3ddat").read_text()
