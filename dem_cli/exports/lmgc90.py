@@ -2,8 +2,8 @@
 
 Rigid bodies (RBDY3 with POLYR contactors, RBDY2 with POLYG), fixed ones with imposed velocities of zero, the friction
 of each pair of materials as IQS_CLB, gravity, forces. Moments are written in the plane alone: in space the components 4
-to 6 of RBDY3 are about the axes of inertia that LMGC90 finds, and turn with the body. Calls are those of the examples of
-LMGC90 RIGID_3D/arche_plein_ceintre_3D/gen_sample.py, RIGID_3D/Wall_PR/command.py, Pre/wall2D/test_rigid_bricks/
+to 6 of RBDY3 are about the axes of inertia that LMGC90 finds, and turn with the body. Calls are those of the examples
+of LMGC90 RIGID_3D/arche_plein_ceintre_3D/gen_sample.py, RIGID_3D/Wall_PR/command.py, Pre/wall2D/test_rigid_bricks/
 gen_sample.py and of pylmgc90/pre/build_avatar/particles.py. LMGC90 was not at hand: tests read the script back, nobody
 has run it there.
 """
