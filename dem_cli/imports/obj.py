@@ -125,4 +125,6 @@ def _body(found: _NamedFaces, points: np.ndarray) -> FileBody:
     used, numbers = np.unique(np.concatenate(found.loops), return_inverse=True)
     ends = np.cumsum([len(loop) for loop in found.loops])[:-1]
     layer = found.materials.most_common(1)[0][0]
-    return FileBody(found.name, points[used], tuple(np.split(numbers.astype(np.int64), ends)), layer, compound=found.compound)
+    return FileBody(
+        found.name, points[used], tuple(np.split(numbers.astype(np.int64), ends)), layer, compound=found.compound
+    )
