@@ -141,7 +141,9 @@ def _advice(case: Case, sim: Simulation, bracket: list[float | None]) -> str:
     known = f"it stands at {low:.5g}" if low is not None else "no equilibrium was proven"
     if high is not None:
         known += f" and fails at {high:.5g}"
-    ways = [f"raise analysis.max_steps ({case.analysis.max_steps:,})"]
+    weightless = not sim.loads.dead[sim.free].any()
+    ways = ["give the blocks weight, or dead loads: nothing presses them together"] if weightless else []
+    ways.append(f"raise analysis.max_steps ({case.analysis.max_steps:,})")
     if getattr(case.analysis, "resolution", None) is not None:
         ways.append(f"accept a wider bracket (analysis.resolution {case.analysis.resolution:g})")
     fall, ids = free_falls(sim)[sim.free], sim.model.block_ids

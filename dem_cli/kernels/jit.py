@@ -14,13 +14,17 @@ import platform
 import sys
 import tempfile
 import time
+import uuid
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
+from types import CodeType, FunctionType
 from typing import Any, Protocol, cast
 
 import numba
 from numba.core import event
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
 from numba.extending import overload, register_jitable
 
 __all__ = [
@@ -119,9 +123,38 @@ class CompiledKernel(Protocol):
         """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
 
 
+def _made_of(part: Any) -> object:
+    """What tells a function, its code or a value in a closure from others: the same in every process."""
+    if isinstance(part, FunctionType):
+        held = tuple(_made_of(cell.cell_contents) for cell in part.__closure__ or ())
+        return part.__module__, part.__qualname__, _made_of(part.__code__), held
+    if isinstance(part, CodeType):
+        return part.co_code, part.co_names, tuple(map(_made_of, part.co_consts))
+    return _made_of(part.py_func) if isinstance(part, Dispatcher) else repr(part)
+
+
+class KernelCache(FunctionCache):
+    """Compiled code on disk, found again by what the closure of a kernel was made of.
+
+    Numba finds it by the closure as it is pickled, which depends on whether Python had compiled the modules itself or
+    read them from `__pycache__`: the second process of a fresh checkout would compile everything again. And it
+    numbers files, so that two processes that save two kernels at one time may write one file: here no two share a name.
+    """
+
+    def __init__(self, function: Callable) -> None:
+        super().__init__(function)
+        pattern = self._cache_file._data_name_pattern
+        self._cache_file._data_name = lambda number: pattern.format(number=uuid.uuid4().int >> 64)
+
+    def _index_key(self, sig: Any, codegen: Any) -> tuple:
+        made_of = hashlib.sha256(repr(_made_of(self._py_func)).encode()).hexdigest()
+        return sig, codegen.magic_tuple(), made_of
+
+
 def kernel(function: Callable) -> CompiledKernel:
     """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
-    compiled = numba.njit(cache=True, error_model="numpy", fastmath=False, nogil=True)(function)
+    compiled: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+    compiled._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(CompiledKernel, compiled)
 
 

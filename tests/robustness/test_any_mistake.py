@@ -47,10 +47,16 @@ def nodes(value, path=()):
         yield from nodes(item, (*path, key))
 
 
+BUILT: set[str] = set()  # cases as they were read: what is typed into a remark is the same one again
+
+
 def outcome(path: Path, overrides: tuple[str, ...] = ()) -> None:
-    """Read the case and build it; what is refused is refused in our words, one line each."""
+    """Read the case and build it, if none like it was; what is refused is refused in our words, one line each."""
     try:
-        build_model(load_case(path, overrides))
+        loaded = load_case(path, overrides)
+        if (read := repr(loaded.case)) not in BUILT:
+            build_model(loaded)
+            BUILT.add(read)
     except DemError as error:
         refused = error
     else:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
 from types import FunctionType
 
 import pytest
 from numba.core.dispatcher import Dispatcher
+from numba.core.registry import cpu_target
 
+import dem_cli
 from dem_cli.engine.loops import compiled_advance, compiled_shake
+from dem_cli.kernels.jit import KernelCache, kernel
 from dem_cli.laws.registry import LAWS
 
 PROGRAM = """
@@ -52,3 +58,59 @@ def test_loops_come_from_the_cache(dimension):
         compiled_shake(law, False, True, dimension),
     ):
         assert not [found for found in named_by(loop.py_func, set()) if isinstance(found, Dispatcher)]
+
+
+KEYS = """
+from numba.core.registry import cpu_target
+from dem_cli.engine.loops import compiled_advance, compiled_shake
+from dem_cli.laws.registry import LAWS
+law, codegen = LAWS["coulomb"], cpu_target.target_context.codegen()
+for loop in (compiled_advance("fixed", law), compiled_shake(law, False, True, 3)):
+    print(loop._cache._index_key((), codegen)[-1])
+"""
+
+
+def test_modules_that_were_compiled_before_make_no_difference(tmp_path):
+    """The first process of a fresh checkout compiles the modules, all others read them: both find the same kernels."""
+    package = Path(dem_cli.__file__).parent
+    shutil.copytree(package, tmp_path / "dem_cli", ignore=shutil.ignore_patterns("__pycache__"))
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    command = [sys.executable, "-c", KEYS]
+    first, second = (
+        subprocess.run(command, env=environment, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+        for _ in range(2)
+    )
+    assert next((tmp_path / "dem_cli").rglob("jit.*.pyc"), None) is not None  # the second one read it
+    assert len(set(first.split())) == 2
+    assert first == second
+
+
+def key(kernel: Dispatcher) -> str:
+    return kernel._cache._index_key((), cpu_target.target_context.codegen())[-1]
+
+
+def test_each_loop_is_found_as_itself():
+    laws, flags, dimensions = LAWS.values(), (False, True), (2, 3)
+    loops = [compiled_advance("fixed", law) for law in laws]
+    loops += [compiled_advance("large", *each) for each in product(laws, flags, dimensions)]
+    loops += [compiled_shake(*each) for each in product(laws, flags, flags, dimensions)]
+    assert len({key(loop) for loop in loops}) == len(loops)
+
+
+def test_what_a_closure_holds_tells_kernels_apart():
+    def made(held: float, constant: int) -> Dispatcher:
+        names: dict = {"__name__": __name__}
+        exec(f"def inner(held):\n    def add(x):\n        return held + x + {constant}\n    return add\n", names)
+        add = names["inner"](held)
+        return kernel(lambda x: add(x))
+
+    keys = [key(made(held, constant)) for held, constant in ((1, 2), (1, 3), (1.5, 2), (1, 2))]
+    assert len(set(keys)) == 3
+    assert keys[0] == keys[3]
+
+
+def test_no_two_kernels_are_written_to_one_file():
+    """Two processes that save at one time know nothing of each other."""
+    one, other = (KernelCache(compiled_advance("fixed", LAWS["coulomb"]).py_func) for _ in range(2))
+    assert one._cache_file._data_name(1) != other._cache_file._data_name(1)
