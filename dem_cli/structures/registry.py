@@ -23,6 +23,7 @@ class Generator(NamedTuple):
     build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
     figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
     loose_ends: Callable[[Any], str] = lambda table: ""  # key that lets stones slide out at free ends; "": none does
+    unsaid: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # keys not given that matter, what was taken
 
 
 GENERATORS: dict[str, Generator] = {
@@ -47,7 +48,7 @@ GENERATORS: dict[str, Generator] = {
         ),
         Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
         Generator("building", Building, build_building),
-        Generator("import", imported.Import, imported.build),
+        Generator("import", imported.Import, imported.build, unsaid=imported.unsaid),
     )
 }
 
@@ -65,3 +66,8 @@ def generated_figures(table: Any, seed: int) -> list[tuple[str, str]]:
 def loose_ends(table: Any) -> str:
     """The key by which stones of a structure may slide out at its free ends; "": none does."""
     return GENERATORS[table.kind].loose_ends(table)
+
+
+def unsaid(table: Any) -> list[tuple[str, str]]:
+    """Keys that a structure does not give although they matter here, and what was taken instead."""
+    return GENERATORS[table.kind].unsaid(table)
