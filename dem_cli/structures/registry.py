@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall
+from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall, wall_blocks
 from dem_cli.structures.building.build import build as build_building
 from dem_cli.structures.building.table import Building
 from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
@@ -28,7 +28,7 @@ class Generator(NamedTuple):
 GENERATORS: dict[str, Generator] = {
     generator.kind: generator
     for generator in (
-        Generator("wall", wall.Wall, wall.build),
+        Generator("wall", wall.Wall, wall_blocks.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
         Generator("bridge", bridge.Bridge, bridge.build),

@@ -94,7 +94,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
         return course < courses[other]
 
     runs = [runs_of(plan, wall, course, present, passes) for course in range(len(levels) - 1)]
-    return WallCourses(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
+    return WallCourses(wall, plan.axes[wall], table, building.block[0], building, levels, eaves, runs, tuple(pockets))
 
 
 def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:

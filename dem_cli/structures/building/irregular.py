@@ -21,6 +21,7 @@ from dem_cli.structures.building.elevation import SMALL
 from dem_cli.structures.building.patterns import CoursedRubble, VoronoiRubble
 from dem_cli.structures.building.plan import Plan
 from dem_cli.structures.building.table import Building
+from dem_cli.structures.leaves import numbered
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of
 from dem_cli.structures.stones import Part, Stone, put_together
 from dem_cli.structures.voids import overlap
@@ -78,11 +79,8 @@ class IrregularWall:
 
     def stones(self) -> WallStones:
         """All stones. Raises KeyProblem for what the pattern cannot fill."""
-        dressed, name = [], self.courses.axis.name
-        count = dict.fromkeys(range(1, len(self.regular.runs) + 1), 0)
-        for stone in sorted(self._kept, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
-            count[stone.course] += 1
-            dressed.append((f"{name}-dressed-{stone.course}-{count[stone.course]}", stone))
+        prefix = f"{self.courses.axis.name}-dressed"
+        dressed = [(f"{prefix}-{name}", stone) for name, stone in numbered(self._kept)]
         return WallStones(dressed, [*self._pattern_stones(), *self.courses.over_openings()])
 
     # -- dressed stones -------------------------------------------------------------------------------------------
