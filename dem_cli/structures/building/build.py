@@ -17,7 +17,7 @@ from dem_cli.structures.building.elevation import Pocket, WallElevation
 from dem_cli.structures.building.floors import Slab, floors_of
 from dem_cli.structures.building.irregular import IrregularWall, zones_of
 from dem_cli.structures.building.plan import Junction, Plan, PlanAxis, plan_of
-from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
+from dem_cli.structures.building.runs import Passes, Run, runs_of, turn_by_turn
 from dem_cli.structures.building.table import Building
 from dem_cli.structures.stones import Part, Stone
 from dem_cli.structures.tops import Gable, with_gable
@@ -138,11 +138,11 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
     if not course:
         return []
     (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
-    middle, reach = 0.5 * (low + high), ASKEW * elevation.length
+    reach = ASKEW * elevation.length
     laid = int(
         np.searchsorted(elevation.levels, 0.5 * (foot + head))
     )  # a stone may have got a piece of the next course
-    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    run = _run_of(elevation.runs[laid - 1], low, high, reach)
     found = []
     for line, sign, inside in (
         (run.start, -1.0, low >= run.start.max() - reach),
@@ -154,6 +154,16 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
             normal /= np.linalg.norm(normal)
             found.append((normal, float(normal @ [line[0], right, 0.0])))
     return found
+
+
+def _run_of(runs: Sequence[Run], low: float, high: float, reach: float) -> Run:
+    """The run of a part, from where to where along the wall: on both sides of a wall that is askew two may overlap."""
+
+    def beyond(run: Run) -> tuple[float, float]:
+        before, after = low - float(run.start.min()), float(run.stop.max()) - high
+        return max(-before, -after, reach), min(abs(before), abs(after))
+
+    return min(runs, key=beyond)
 
 
 def _turn(axis: PlanAxis) -> Callable[[Polyhedron], Polyhedron]:

@@ -124,7 +124,7 @@ def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction
     """Where two axes cross, or one comes as near as the thickness of the other; None: they do not meet."""
     a, b = axes[i], axes[j]
     sine = float(a.along @ b.across)
-    if abs(sine) < math.sin(math.radians(SHARPEST)):
+    if abs(sine) < math.sin(math.radians(SHARPEST)) * (1.0 - SAME):
         return None
     at = (float((b.start - a.start) @ b.across) / sine, float((a.start - b.start) @ a.across) / -sine)
     ends = []
