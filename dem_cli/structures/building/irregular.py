@@ -18,6 +18,7 @@ from dem_cli.geometry import polygon
 from dem_cli.structures import tops
 from dem_cli.structures.building.courses import WallCourses
 from dem_cli.structures.building.elevation import SMALL
+from dem_cli.structures.building.jambs import jamb_stones
 from dem_cli.structures.building.patterns import CoursedRubble, VoronoiRubble
 from dem_cli.structures.building.plan import Plan
 from dem_cli.structures.building.table import Building
@@ -81,7 +82,11 @@ class IrregularWall:
         """All stones. Raises KeyProblem for what the pattern cannot fill."""
         prefix = f"{self.courses.axis.name}-dressed"
         dressed = [(f"{prefix}-{name}", stone) for name, stone in numbered(self._kept)]
-        return WallStones(dressed, [*self._pattern_stones(), *self.courses.over_openings()])
+        jambs = [
+            (f"{self.courses.axis.name}-{name}", Stone(0, (Part(shape, self.courses.across),), 0.0))
+            for name, shape in self._jambs
+        ]
+        return WallStones(dressed, [*self._pattern_stones(), *jambs, *self.courses.over_openings()])
 
     # -- dressed stones -------------------------------------------------------------------------------------------
 
@@ -175,6 +180,15 @@ class IrregularWall:
         ]
         return max(a for a, _ in around), min(b for _, b in around)
 
+    @cached_property
+    def _boxes(self) -> list[np.ndarray]:
+        return list(self._dressed_boxes())
+
+    @cached_property
+    def _jambs(self) -> list[tuple[str, np.ndarray]]:
+        """Stones beside openings by name."""
+        return jamb_stones(self.courses, self._boxes) if self.pattern.jambs == "dressed" else []
+
     # -- the pattern ----------------------------------------------------------------------------------------------
 
     def _panel(self) -> WallPanel:
@@ -183,7 +197,7 @@ class IrregularWall:
         outline = _box(low, 0.0, high, wall.eaves)
         if wall.table.gable is not None:
             outline = np.insert(outline, 3, tops.gable_profile(wall.table.gable, low, high, wall.eaves)[1], axis=0)
-        boxes = list(self._dressed_boxes())
+        boxes = self._boxes
         for i, void in enumerate(wall.voids):
             for box in boxes:
                 if overlap([box], void.outlines) > self.small * wall.length:
@@ -191,7 +205,8 @@ class IrregularWall:
                     message = "it reaches into dressed stones where walls meet, end or carry a floor, from "
                     message += f"{x0:.4g} to {x1:.4g} m along wall '{wall.axis.name}', {y0:.4g} to {y1:.4g} m high"
                     raise KeyProblem(message, "walls", wall.number, "openings", i)
-        return WallPanel(outline, (*boxes, *(shape for void in wall.voids for shape in void.outlines)))
+        jambs = [shape for _, shape in self._jambs]
+        return WallPanel(outline, (*boxes, *jambs, *(shape for void in wall.voids for shape in void.outlines)))
 
     def _key(self) -> tuple[str | int, ...]:
         return ("walls", self.courses.number, "pattern") if self.courses.table.pattern is not None else ("pattern",)
