@@ -92,22 +92,8 @@ class WallCourses(WallElevation):
         if course:
             apart = clearance(self.pattern(course - 1), self.pattern(course))
         found = laid(ends, self.bond(course, self.first), fixed, self._heads.get(course - 1, ()), apart)
-        self._check_heads(ends, found.heads, course)
         self._heads.setdefault(course, []).extend(found.heads.tolist())
         return found
-
-    def _check_heads(self, ends: RunEnds, heads: np.ndarray, course: int) -> None:
-        """Raises KeyProblem where a stretch is too short for two stones that both reach its ends, which are askew."""
-        small = SMALL * self.length
-        low, high = ends.start + ends.start_askew - small, ends.stop - ends.stop_askew + small
-        if len(heads) and not low <= heads[0] <= heads[-1] <= high:
-            message = f"from {ends.start:.4g} to {ends.stop:.4g} m, in course {course + 1}, it ends askew on both sides "
-            message += f"and is too short to be bonded: for two stones it must be {self._least(ends):.3g} m long"
-            raise KeyProblem(message, "walls", self.number, "axis")
-
-    def _least(self, ends: RunEnds) -> float:
-        """Length of a stretch whose ends are so much askew, in two stones [m]."""
-        return ends.start_askew + ends.stop_askew + 2.0 * SHORTEST * self.length
 
     @cached_property
     def _heads(self) -> dict[int, list[float]]:

@@ -24,8 +24,7 @@ def jamb_stones(wall: WallElevation, taken: Sequence[np.ndarray]) -> list[tuple[
     """
     small = SMALL * wall.length
     found: list[tuple[str, np.ndarray]] = []
-    boxes: list[Box] = [_around(shape) for shape in taken]
-    boxes += [void.reach for void in wall.voids]
+    boxes = [_around(shape) for shape in (*taken, *(each for void in wall.voids for each in void.outlines))]
     for i, opening in enumerate(wall.table.openings):
         if opening.arch is not None and opening.arch.form == "circle":
             continue
