@@ -138,7 +138,7 @@ def _places(ends: RunEnds, bond: CourseBond, avoid: np.ndarray) -> np.ndarray:
     """Where heads may be [m], in order, each once."""
     length, first, period = bond.length, bond.first, bond.period
     count = math.ceil(ends.length / length) + 1
-    steps = np.arange(-1, count + 1) * period
+    steps = np.arange(-1, math.ceil(ends.length / period) + 2) * period
     begun = first + math.floor((ends.start - first) / period) * period + steps
     begun = (begun[:, None] + bond.steps).ravel()
     quarters = np.array([SHORTEST, 0.5, 0.75, 1.0]) * length

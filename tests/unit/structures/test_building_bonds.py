@@ -1,4 +1,4 @@
-"""Bonds and leaves of buildings: volumes and shared faces exact, no slivers, heads apart, corners through all leaves."""
+"""Bonds and leaves of buildings: volumes and shared faces exact, no slivers, heads apart, leaves where walls meet."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_courses_of_english_bond_are_stretchers_and_headers_in_turn():
     assert [LENGTH, T / 2] in found[1]
     assert [LENGTH, T / 2] not in found[2]
     headers = [size for size in found[2] if size == [LENGTH / 2, T]]
-    assert len(headers) >= 12  # of 16: two more and a closer at either end
+    assert len(headers) >= 12  # of 16; ends and closers are longer or shorter
 
 
 def test_ends_and_corners_go_through_all_leaves():

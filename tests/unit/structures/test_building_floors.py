@@ -35,7 +35,7 @@ REFUSED = {
     "in one wall from both sides": (
         [*SQUARE, wall("s", (2.5, 0), (2.5, 4))],
         [floor("bs"), floor("ds", "g")],
-        "floors.1.bearing: 'g-1' and 'f-1' would lie in the same place",
+        "floors.1.bearing: 'g-1' and 'f-6' would lie in the same place",
     ),
 }
 
