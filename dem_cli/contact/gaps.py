@@ -13,7 +13,7 @@ import numpy as np
 
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.geometry import geometry_of
-from dem_cli.contact.joints import Faces, JointProperties
+from dem_cli.contact.joints import Faces, JointProperties, Joints
 from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
@@ -83,7 +83,7 @@ def _filled(model: Model, faces: Faces, corners: np.ndarray, pair: np.integer) -
 def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
     """Joints that touch at one end and are open at the other, by a small angle: blocks sit down on them; widest there.
 
-    An end that is open by more than STEEPEST of the length of its joint is far from anything: a corner on a face.
+    An end that is open by more than STEEPEST of the way to where it touches is far from anything: a corner on a face.
     """
     smallest = smallest_edge(model)
     built = joints_of_start(model, bodies_at_rest(model), properties, smallest)
@@ -91,12 +91,18 @@ def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
     if not len(joints.blocks):
         return StartGaps(joints.blocks, gaps, gaps > 0.0)
     first = joints.starts[:-1]
-    arms = joints.points - joints.points[first][joints.owners]
-    length = np.sqrt(np.maximum.reduceat((arms**2).sum(axis=1), first))
     nearest, widest = np.minimum.reduceat(gaps, first), np.maximum.reduceat(gaps, first)
-    wedge = (nearest <= 0.0) & (widest > TOUCHING_GAP * smallest) & (widest <= STEEPEST * length)
+    wedge = (nearest <= 0.0) & (widest > TOUCHING_GAP * smallest)
+    wedge[wedge] = [widest[k] <= STEEPEST * _across(joints, gaps, k) for k in np.flatnonzero(wedge)]
     order = np.flatnonzero(wedge)[np.argsort(widest[wedge], kind="stable")]
     return StartGaps(joints.blocks[order], widest[order], np.ones(len(order), bool))
+
+
+def _across(joints: Joints, gaps: np.ndarray, joint: np.integer) -> float:
+    """Distance from where a joint is widest to where it touches [m]: along the slope, however deep a joint in 3D is."""
+    of = slice(joints.starts[joint], joints.starts[joint + 1])
+    points, own = joints.points[of], gaps[of]
+    return float(np.linalg.norm(points[own <= 0.0] - points[own.argmax()], axis=1).min())
 
 
 def gap_words(model: Model, gaps: StartGaps) -> str:

@@ -36,13 +36,25 @@ class _Cut:
         self.corners = list(tiling.corners)
         self.new: dict[tuple[int, int, int], int] = {}  # (edge, side of the polygon) -> corner
         self.on_edge: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self.split: set[int] = set()  # ends of the edges on which there are new corners
         self.gap = SAME * polygon.size(tiling.corners)
         arms = tiling.corners[:, None] - shape
         self.left = _left_of(self.ends - shape, arms, self.gap)  # of each corner from each side [m], (n, n_sides)
 
     def outside(self, narrowest: float) -> Tiling:
         """The stones without what lies in the polygon."""
-        return self._whole([self._without(k, narrowest) for k in range(len(self.tiling.stones))])
+        loops = self.tiling.stones
+        counts = [len(loop) for loop in loops]
+        if not loops:
+            return self._whole([])
+        furthest = np.maximum.reduceat(self.left[np.concatenate(loops)], np.cumsum([0, *counts[:-1]]))
+        clear: np.ndarray = np.any(furthest <= 0.0, axis=1)  # wholly beyond a side, as nearly all are
+        return self._whole(
+            [
+                [loop] if far else self._without(k, narrowest)
+                for k, (loop, far) in enumerate(zip(loops, clear, strict=True))
+            ]
+        )
 
     def inside(self) -> Tiling:
         """What of the stones lies in the polygon."""
@@ -83,9 +95,6 @@ class _Cut:
         return [tuple(loop[i] for i in part) for part in convex_parts(outline)]
 
     def _without(self, k: int, narrowest: float) -> list[Loop]:
-        loop = self.tiling.stones[k]
-        if (self.left[list(loop)].max(axis=0) <= 0.0).any():
-            return [loop]
         pieces = []
         for part in self._parts(k):
             rest = part
@@ -144,10 +153,13 @@ class _Cut:
             self.new[key] = len(self.corners)
             self.corners.append(point)
             self.on_edge[i, j].append(self.new[key])
+            self.split |= {i, j}
         return self.new[key]
 
     def _with_new_corners(self, loop: Loop) -> Loop:
         """The loop with all corners that were made on its edges."""
+        if self.split.isdisjoint(loop):
+            return loop
         found: list[int] = []
         for i, j in around(loop):
             between = self._all_between(min(i, j), max(i, j))

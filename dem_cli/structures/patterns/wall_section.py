@@ -89,9 +89,10 @@ def _stones(section: WallSection) -> tuple[list[tuple[str, np.ndarray, int]], Ti
     draws = np.random.default_rng(section.seed)
     (width, height), (mean, deviation) = section.size, section.face
     levels = divided(height, section.course, draws).tolist()
-    found, holes = [], []
+    found, holes, depths = [], [], [0.0, 0.0]
     for k, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
-        depths = draws.uniform(mean - deviation, mean + deviation, 2).tolist()
+        drawn = draws.uniform(mean - deviation, mean + deviation, 2).tolist()
+        depths = [b if abs(d - b) < section.shortest * section.cell else d for d, b in zip(drawn, depths)]
         if section.through and (k + 1) % section.through == 0:
             through = np.array([[0.0, low], [width, low], [width, high], [0.0, high]])
             found.append((f"through-{k + 1}", through, k + 1))

@@ -168,6 +168,17 @@ def test_a_block_that_stands_on_an_edge_of_a_narrow_wedge():
     assert found.widths == pytest.approx([np.sin(tilt)], rel=1e-3)
 
 
+@pytest.mark.parametrize(("tilt", "wedges"), [(0.05, 1), (0.2, 0), (0.5, 0)])
+def test_a_deep_joint_is_a_wedge_by_its_slope_not_by_its_depth(tilt, wedges):
+    """0.2 m open at an angle, 3 m through the thickness; above STEEPEST it is a corner on a face."""
+    turn = matrices(np.array([[0.0, tilt, 0.0]]))[0]
+    block = box([-0.2, -1.5, 0.0], [0.0, 1.5, 0.4])
+    model = spatial_model([BASE, Polyhedron(block.vertices @ turn.T, block.faces)])
+    found = wedges_of_start(model, one_joint())
+    assert len(found.widths) == wedges
+    assert found.widths == pytest.approx([0.2 * np.sin(tilt)] * wedges, rel=1e-2)
+
+
 def test_areas_of_a_wall_are_those_of_its_contact_points():
     model = spatial_model(extruded([np.array([[i, 0], [i + 1, 0], [i + 1, 1], [i, 1]], float) for i in range(4)]), (0,))
     places, built = DrawnJoints(model).places, start_joints(model)

@@ -64,6 +64,18 @@ def test_a_section_fills_its_outline(through):
     assert open_area(model) == pytest.approx(2.0 * 0.8 * 3.0 + 2.0 * (0.8 + 3.0) * 1.5, rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_face_stones_of_a_section_have_no_steps_that_are_shorter_than_edges_may_be(seed):
+    """Two depths drawn almost alike would leave the core an edge of nothing, and the run a joint that never rests."""
+    thin = SECTION | {"face": [0.2, 0.02], "shortest": 0.05, "seed": seed}
+    stones = [block for block in free(thin) if block.id.startswith("left")]
+    depths = np.array([block.parts[0][:, 0].max() for block in stones])
+    steps = np.abs(np.diff(depths))
+    assert ((steps == 0.0) | (steps >= 0.05 * 0.12)).all()
+    assert len(set(depths)) > 1
+    assert 0.18 <= depths.min() <= depths.max() <= 0.22
+
+
 @pytest.mark.parametrize("name", WALLS)
 @pytest.mark.parametrize("seed", range(3))
 def test_quoins_and_openings_leave_the_area_exact(name, seed):
