@@ -88,7 +88,9 @@ def _holding(
         message += "may be the second end of a tie with anchored = true"
     elif name is None and len(inside) > 1:
         key = path[-1]
-        message = f"{where} lies on the edge of several blocks ({listing([ids[i] for i in inside])}): say which by {key}"
+        message = (
+            f"{where} lies on the edge of several blocks ({listing([ids[i] for i in inside])}): say which by {key}"
+        )
     if message is not None:
         problems.append(CaseProblem(at, message))
         return None

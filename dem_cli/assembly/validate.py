@@ -68,14 +68,18 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
     """Monitors at a point where there is no block, of blocks that share no joint, or of a tie that there is not."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
-    return tie_problems(case, model) + shared_problems(case, model) + [
-        CaseProblem(
-            ("monitor", i, "point"),
-            f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
-        )
-        for i, monitor in enumerate(case.monitor)
-        if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
-    ]
+    return (
+        tie_problems(case, model)
+        + shared_problems(case, model)
+        + [
+            CaseProblem(
+                ("monitor", i, "point"),
+                f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
+            )
+            for i, monitor in enumerate(case.monitor)
+            if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
+        ]
+    )
 
 
 def tie_problems(case: Case, model: Model) -> list[CaseProblem]:

@@ -102,17 +102,15 @@ class Monitor(Selection):
         description="for opening and slip: ids of two blocks that share a joint at the start",
         examples=[["arch-3", "arch-4"]],
     )
-    tie: str | None = Field(
-        default=None, description="for force and elongation: id of a [[tie]]", examples=["north"]
-    )
+    tie: str | None = Field(default=None, description="for force and elongation: id of a [[tie]]", examples=["north"])
     quantity: Literal[
         "displacement", "rotation", "velocity", "acceleration", "opening", "slip", "force", "elongation"
     ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
-        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length; of a tie: "
-        "force [N], tension positive, or elongation [m] since it was drawn",
+        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length; "
+        "of a tie: force [N], tension positive, or elongation [m] since it was drawn",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(

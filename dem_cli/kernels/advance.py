@@ -246,5 +246,5 @@ def make_advance(contact_forces: Callable, drift: Callable, link_forces: Callabl
         control[MEAN_LOAD] = mean_load / done
         return done
 
-    named(advance.py_func, contact_forces, drift, *((link_forces,) if link_forces is not None else ()))
+    named(advance.py_func, contact_forces, drift, *filter(None, (link_forces,)))
     return advance

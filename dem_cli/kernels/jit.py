@@ -22,10 +22,10 @@ from types import CodeType, FunctionType
 from typing import Any, Protocol, cast
 
 import numba
+from numba import literal_unroll
 from numba.core import event
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
-from numba import literal_unroll
 from numba.extending import overload, register_jitable
 
 __all__ = [

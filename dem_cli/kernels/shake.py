@@ -186,5 +186,11 @@ def make_shake(
         control[UNBALANCED] = largest
         return done
 
-    named(shake.py_func, contact_forces, drift, "damped" if damped else "", *((link_forces,) if link_forces is not None else ()))
+    named(
+        shake.py_func,
+        contact_forces,
+        drift,
+        "damped" if damped else "",
+        *((link_forces,) if link_forces is not None else ()),
+    )
     return shake

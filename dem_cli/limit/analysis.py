@@ -200,8 +200,8 @@ def require_scalable(model: Model, properties: JointProperties, law: Law) -> Non
         )
     if structure.links:
         raise UsageError(
-            "limit analysis keeps the dead loads, and those of a tilting table fall: largest forces of ties would count "
-            "for too little; use analysis.pattern = 'mass'"
+            "limit analysis keeps the dead loads, and those of a tilting table fall: largest forces of ties would "
+            "count for too little; use analysis.pattern = 'mass'"
         )
 
 

@@ -158,7 +158,9 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     settings = program.settings
     gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
     normal, shear = forces[:, 0].copy(), forces[:, 1:].copy()
-    made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0, axial)
+    made = LimitLoad(
+        OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0, axial
+    )
     if residual <= settings.residual and -settings.residual <= gap <= settings.gap:
         return made
     reason = f"{GIVEN_UP}: residual {residual:.1e} of own weights, bounds {gap:.1e} apart ({found.said})"

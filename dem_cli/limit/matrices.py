@@ -25,7 +25,6 @@ from dem_cli.links.matrices import elongations, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
 
-
 NO_LINKS = "the path of joints that do not dilate knows no ties"
 
 

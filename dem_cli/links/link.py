@@ -45,6 +45,7 @@ class LinkArrays(Protocol):
     state: np.ndarray  # what changes: plastic elongation [m], elongation [m], axial force, tension positive [N], (n, 3)
     limits: np.ndarray  # least and largest axial force [N], (n, 2)
     stiffness: np.ndarray  # [N/m], (n,)
+    lengths: np.ndarray  # as they were drawn [m], (n,)
 
     @property
     def kind(self) -> str:

@@ -101,7 +101,8 @@ class Tie(CaseModel):
         """Force per elongation [N/m]."""
         if self.stiffness is not None:
             return self.stiffness
-        assert self.area is not None and self.young is not None
+        assert self.area is not None
+        assert self.young is not None
         return self.area * self.young / length
 
 
