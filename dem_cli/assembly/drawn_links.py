@@ -87,10 +87,8 @@ def _holding(
         message = f"there is no block at {where}; the structure lies between {low} and {high}; a point outside of it "
         message += "may be the second end of a tie with anchored = true"
     elif name is None and len(inside) > 1:
-        key = path[-1]
-        message = (
-            f"{where} lies on the edge of several blocks ({listing([ids[i] for i in inside])}): say which by {key}"
-        )
+        several, key = listing([ids[i] for i in inside]), path[-1]
+        message = f"{where} lies on the edge of several blocks ({several}): say which by {key}"
     if message is not None:
         problems.append(CaseProblem(at, message))
         return None
