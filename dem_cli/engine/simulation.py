@@ -21,7 +21,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
-from dem_cli.links.matrices import elastic_energy_of_links, joined
+from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 
@@ -301,7 +301,14 @@ class Simulation:
         bodies.orientations[blocks] = turned_further(bodies.orientations[blocks], rotation)
 
     def shift(self, motion: np.ndarray) -> None:
-        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces stay."""
+        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces of joints stay.
+
+        Links become shorter or longer by it: that changes their forces, and what they store comes from outside.
+        """
+        before = elastic_energy_of_links(self.links)
+        for link in self.links:
+            follow(link, motion, self.bodies)
+        self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
         bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
         bodies.orientations[:] = turned_further(bodies.orientations, spins)

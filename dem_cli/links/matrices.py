@@ -6,11 +6,11 @@ T: from the free degrees of freedom, block by block, translations first, to the 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.links.link import FORCE, LinkArrays, Springs
+from dem_cli.links.link import FORCE, STRETCH, LinkArrays, Springs
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -42,7 +42,7 @@ def free_columns(blocks: np.ndarray, fixed: np.ndarray, n_dof: int) -> np.ndarra
     return np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof))
 
 
-def geometric(links: Iterable[LinkArrays], bodies, fixed: np.ndarray, n_dof: int) -> csr_array:
+def geometric(links: Iterable[LinkArrays], bodies: Any, fixed: np.ndarray, n_dof: int) -> csr_array:
     """Geometric stiffness of the present forces of links, (n_free, n_free)."""
     from scipy.sparse import coo_array
 
@@ -72,6 +72,14 @@ def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.n
 def elastic_energy_of_links(links: Iterable[LinkArrays]) -> float:
     """In the springs of links [J]."""
     return 0.5 * float(sum((link.state[:, FORCE] ** 2 / link.stiffness).sum() for link in links))
+
+
+def follow(link: LinkArrays, motion: np.ndarray, bodies: Any) -> None:
+    """Elongations and forces of a link after small displacements of all blocks, (n_blocks, n_dof); none yields."""
+    springs = link.axial(bodies)
+    longer = (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
+    link.state[:, STRETCH] += longer
+    link.state[:, FORCE] = np.clip(link.state[:, FORCE] + springs.stiffness * longer, *link.limits.T)
 
 
 def softest(links: Iterable[LinkArrays]) -> float:

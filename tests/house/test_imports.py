@@ -78,7 +78,6 @@ ALLOWED: dict[str, set[str] | None] = {
         "case.variation",
         "dynamics",
         "engine",
-        "kernels.records",
         "laws",
         "limit",
         "model",

@@ -21,7 +21,9 @@ def case(*ties: dict, **more) -> dict:
 
 
 def test_ends_are_points_of_the_blocks_in_which_they_lie():
-    made = scene(case({"ends": [[0.5, 1.5], [0.5, -0.5]]}, {"id": "rock", "ends": [[1, 0.2], [5, 3]], "anchored": True}))
+    made = scene(
+        case({"ends": [[0.5, 1.5], [0.5, -0.5]]}, {"id": "rock", "ends": [[1, 0.2], [5, 3]], "anchored": True})
+    )
     (ties,), model = made.model.links, made.model
     assert made.model.link_names == ("tie-1", "rock")
     assert ties.blocks.tolist() == [[made.number("b"), made.number("floor")], [made.number("a"), FIXED_POINT]]
