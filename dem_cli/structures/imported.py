@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -18,10 +17,10 @@ from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.imports.contents import Contents, FileBody, FileProblem
 from dem_cli.imports.formats import FORMATS, format_of, read
 from dem_cli.model.blocks import Block
+from dem_cli.structures.drawn_once import drawn_once
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 SHOWN = 6  # names in a message
-MOST_KEPT = 4  # files that were read
 
 
 class Layer(CaseModel):
@@ -134,29 +133,9 @@ class ImportedStructure(NamedTuple):
     divided: dict[str, int]  # names in the file with several solids that nobody said what they are, and how many
 
 
-_KEPT: dict[tuple[str, str], ImportedStructure] = {}  # by the table, and what its file holds
-
-
 def build(table: Import) -> list[Block]:
     """Blocks in local coordinates, in the order of the file."""
     return imported(table).blocks
-
-
-def imported(table: Import) -> ImportedStructure:
-    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem.
-
-    A command asks for them several times: they are kept until the file or the table changes.
-    """
-    try:
-        held = hashlib.sha256(Path(table.file).read_bytes()).hexdigest()
-    except OSError:
-        held = ""  # what is wrong is said where it is read
-    key = table.model_dump_json(), held
-    if key not in _KEPT:
-        if len(_KEPT) >= MOST_KEPT:
-            _KEPT.clear()
-        _KEPT[key] = _read(table)
-    return _KEPT[key]
 
 
 def unsaid(table: Import) -> list[tuple[str, str]]:
@@ -170,7 +149,9 @@ def unsaid(table: Import) -> list[tuple[str, str]]:
     return [("shells", message + "those of a name, shells = 'blocks' says that they are meant")]
 
 
-def _read(table: Import) -> ImportedStructure:
+@drawn_once
+def imported(table: Import) -> ImportedStructure:
+    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem."""
     from dem_cli.imports.solids import solids_of
 
     try:
