@@ -21,7 +21,6 @@ from dem_cli.structures.voids import Void
 
 LEAVES = "abc"  # names of leaves, from the front (y = −thickness / 2) to the back
 CORE_LEAF = "b"
-WELD = 1e-10  # of a block: round-off of corners that are the same
 SMALL = 1e-6  # of a block's smaller side: what is narrower is not made
 
 
