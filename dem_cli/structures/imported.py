@@ -17,7 +17,7 @@ from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
 from dem_cli.model.blocks import Block
-from dem_cli.structures.drawn_once import drawn_once
+from dem_cli.structures.patterns.drawn_once import drawn_once
 
 SHOWN = 6  # names in a message
 

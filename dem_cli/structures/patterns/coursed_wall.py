@@ -9,8 +9,8 @@ from pydantic import model_validator
 
 from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
-from dem_cli.structures.drawn_once import drawn_once
 from dem_cli.structures.patterns import coursed
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, spread, stone_figures
 
 UNITS = {"head_angle_deg": "deg"}

@@ -9,8 +9,8 @@ from pydantic import model_validator
 
 from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
-from dem_cli.structures.drawn_once import drawn_once
 from dem_cli.structures.patterns import voronoi
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
 

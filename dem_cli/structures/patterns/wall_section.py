@@ -11,8 +11,8 @@ from dem_cli.case.base import KeyProblem, NonNegative, Positive, RandomStructure
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.drawn_once import drawn_once
 from dem_cli.structures.patterns.coursed import Size, divided
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of
 from dem_cli.structures.patterns.pattern_wall import stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
