@@ -165,7 +165,7 @@ class Output(CaseModel):
 class ProgramStamp(CaseModel):
     """[dem]: put into the effective case by the program."""
 
-    version: str = Field(description="version of dem that wrote this file", examples=["0.7.0"])
+    version: str = Field(description="version of dem that wrote this file", examples=["0.8.0"])
 
 
 class Case(CaseModel):
