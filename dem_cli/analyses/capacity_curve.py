@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover under displacement control; status "not converged" where its peak could not be proved."""
     job = Job.start(case, model, observer, settings)
-    sim = job.simulation("fixed" if case.analysis.kinematics == "fixed" else "large")
+    sim = job.moving_simulation()
     search, found = FailureLoad(), dict[str, Any]()
     track, resolution = job.track(sim), case.analysis.resolution
     try:

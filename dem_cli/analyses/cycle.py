@@ -31,7 +31,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
     job = Job.start(case, model, observer, settings)
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
-    sim = job.first_simulation()
+    sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
     track = job.track(sim)
     found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": []}
     try:

@@ -74,6 +74,17 @@ def test_to_and_fro():
     assert records.rows[-1].energy.friction == pytest.approx(0.6 * weight * ways, rel=1e-3)
 
 
+def test_a_block_that_rocks_to_and_fro():
+    """On joints of "auto" stiffness: tan(α − θ) to either side, as geometry moves without being told to."""
+    keys = {"kind": "cycle", "control": "displacement", "path": [0.04, -0.04], "step": 0.02}
+    case = tables(BASE, block("b", rectangle(0, 0, 0.5, 1.0)), joints={"dry": {"friction": 1.0}}, analysis=keys)
+    summary, _ = solve(case)
+    lean, radius = np.arctan2(0.5, 1.0), np.hypot(0.5, 1.0) / 2.0
+    exact = np.tan(np.arcsin(np.sin(lean) - 0.04 / radius))
+    assert [point["load"] for point in summary["turning_points"]] == pytest.approx([exact, -exact], rel=2e-3)
+    assert summary["status"] == "ok"
+
+
 def test_a_peak_beyond_the_end_is_said():
     summary, _ = solve(controlled(1e-6, block("b", rectangle(0, 0, 0.2, 1)), friction=2.0))
     assert any("still rises where it ends" in line for line in summary["warnings"])
