@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
+from dem_cli.kernels.records import NO_LINKS
 from dem_cli.links.link import FORCE, N_STATE, STRETCH
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
@@ -160,7 +161,7 @@ class Monitors:
         links = np.concatenate([link.state for link in sim.links]) if sim.links else np.zeros((0, N_STATE))
         return tuple(self.series(sample[np.newaxis], still, links[np.newaxis])[0].tolist())
 
-    def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray) -> np.ndarray:
+    def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
         """Over time, (n, n_monitors).
 
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
