@@ -139,7 +139,7 @@ def _points(case: Case, sim: Simulation, named: int) -> str:
     if table.points is not None or layout is None or layout.sides is not None or not table.bends:
         return ""
     why = "kn is given" if table.kn != "auto" else "blocks deform"
-    return f", {layout.points} contact points each (auto): {why}, and so does bending count"
+    return f", {layout.points} contact points each (auto): {why}, so that bending counts"
 
 
 def _stiffness(case: Case, sim: Simulation) -> Rows:

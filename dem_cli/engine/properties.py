@@ -76,7 +76,7 @@ def _layout(table: StiffJoint, case: Case, deforms: bool) -> PointLayout | None:
     """Where the contact points of a joint are; None: at its two ends."""
     if table.profile is not None:
         return PointLayout(seed=case.seed, **table.profile.ranges)
-    points = table.contact_points(case.dimension, deforms)
+    points = table.contact_points(case.dimension, deforms, lands=hasattr(case.analysis, "margin"))
     return None if points == 2 else PointLayout(points)
 
 

@@ -36,9 +36,9 @@ class StiffJoint(CaseModel):
     points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D the vertices of the area "
-        "of contact, or its centre as well; default: 2; 5 where kn is given, blocks deform (materials.NAME.young) or "
-        "the joint can crack, 3 where it is elastic, 2 with softening; in 3D vertices, and the centre as well where "
-        "the joint can crack or is elastic",
+        "of contact, or its centre as well; default: 2; 5 where the joint can crack, 3 where it is elastic; without "
+        "softening also 5 where kn is given or blocks deform (materials.NAME.young), but for time histories; in 3D "
+        "vertices, and the centre as well where the joint can crack or is elastic",
         examples=[5],
     )
 
@@ -53,13 +53,14 @@ class StiffJoint(CaseModel):
         """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
         return True
 
-    def contact_points(self, dimension: int, deforms: bool = False) -> int:
+    def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
         """Number of contact points of a plane joint in 2D; in 3D 2 stands for the vertices alone.
 
-        They follow stiffness: where it is a property, the joint has those that its bending needs. deforms: whether the
-        joint carries the deformation of blocks.
+        They follow stiffness: where it is a property, the joint has those that its bending needs. Not where blocks land
+        on each other: points between the ends take part of the blow, and a block that rocks loses less than Housner's.
+        deforms: whether the joint carries the deformation of blocks; lands: whether the analysis is a time history.
         """
         if self.points is not None:
             return self.points if isinstance(self.points, int) else AREA_POINTS[self.points]
-        soft = self.bends and (deforms or self.kn != "auto")
+        soft = self.bends and not lands and (deforms or self.kn != "auto")
         return max(self.plane_points, BENDING_POINTS[dimension]) if soft else self.plane_points
