@@ -62,7 +62,7 @@ class Material(CaseModel):
     @property
     def moduli(self) -> tuple[float, float]:
         """E and G = E / 2(1 + ν) of blocks that deform in their joints [Pa]; infinite: they are rigid."""
-        if self.young is None or self.deformation == "none":
+        if self.young is None or self.deformation not in (None, "joints"):
             return math.inf, math.inf
         return self.young, self.young / (2.0 * (1.0 + self.poisson))
 

@@ -1,13 +1,13 @@
-"""Elastic blocks lumped into their joints: columns against closed forms, the joints that carry them, what is refused."""
+"""Elastic blocks lumped into their joints: columns against closed forms, a wall against finite elements, refusals."""
 
 import math
 
 import numpy as np
 import pytest
-from scipy.sparse import diags
-from scipy.sparse.linalg import spsolve
 from casefiles import CASES
 from engine import rectangle, scene, simulation, solve, tables
+from scipy.sparse import diags
+from scipy.sparse.linalg import spsolve
 
 from dem_cli.assembly.sanity import problems
 from dem_cli.contact.compatibility import compatibility
@@ -76,14 +76,16 @@ def test_rigid_joints_leave_the_blocks_alone():
         -1e5 / A * (N - 0.5) * H / E, rel=1e-9
     )
     sim = simulation(column(joint={"friction": 0.6}))
-    assert not sim.properties.rigid.any() and sim.properties.given
+    assert not sim.properties.rigid.any()
+    assert sim.properties.given
     assert np.isinf(shares_of_blocks(sim)).all()
 
 
 @pytest.mark.parametrize("stone", [{"density": 2000.0}, STONE | {"deformation": "none"}])
 def test_rigid_blocks_are_as_before(stone):
     properties = simulation(column(stone=stone)).properties
-    assert properties.compliance is None and properties.rows is None
+    assert properties.compliance is None
+    assert properties.rows is None
     assert moved(column(stone=stone), np.array([0.0, -1e5, 0.0]))[1] == pytest.approx(-1e5 / A * N / KN, rel=1e-9)
 
 
@@ -138,7 +140,8 @@ def test_a_turned_column_is_as_stiff():
 def test_a_word_where_joints_are_stiff_beside_the_blocks():
     case = column(joint={"friction": 0.6, "kn": 4e10, "ks": 4e10})  # kn h/E = 4
     said = [word for word in solve(case)[0]["warnings"] if "lumped into the joints" in word]
-    assert len(said) == 1 and "4 times" in said[0]
+    assert len(said) == 1
+    assert "4 times" in said[0]
     soft = column(joint={"friction": 0.6, "kn": 1e9, "ks": 1e9})
     assert not [word for word in solve(soft)[0]["warnings"] if "lumped into the joints" in word]
 
@@ -147,7 +150,8 @@ def test_modulus_in_another_unit():
     made = scene(column(stone=STONE | {"young": 2.0}))
     (problem,) = problems(made.case, made.model)
     assert problem.path == ("materials", "stone", "young")
-    assert "2 Pa is too soft" in problem.message and "did you mean 2 GPa" in problem.message
+    assert "2 Pa is too soft" in problem.message
+    assert "did you mean 2 GPa" in problem.message
 
 
 def displacement(*overrides):
@@ -173,7 +177,8 @@ def test_a_wall_against_finite_elements(ratio, rigid, lumped, within):
     joints = (f"joints.dry.kn={kn!r}", f"joints.dry.ks={0.417 * kn!r}")
     blocks = [f"materials.{name}.young=15.5e9" for name in ("sandstone", "concrete")]
     error = displacement(*joints, *blocks) / displacement(*joints) * (1.0 + rigid) - 1.0
-    assert error == pytest.approx(0.0, abs=within) and error < lumped
+    assert error == pytest.approx(0.0, abs=within)
+    assert error < lumped
 
 
 def test_blocks_without_modulus_cannot_deform():
