@@ -26,7 +26,6 @@ from dem_cli.statics.equilibrium import settle, stand
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.contact.joints import JointProperties
 
 AXES = "xyz"
 
@@ -81,7 +80,7 @@ def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
         "mechanisms": found.mechanisms,
         "loose_blocks": [model.block_ids[i] for i in found.loose],
     }
-    _doubts(job, found, sim.properties)
+    _doubts(job, found, sim)
     if wanted.measured is not None:
         answer["calibration"] = _calibration(job, sim, float(found.frequencies[wanted.mode - 1]))
     return answer
@@ -150,8 +149,8 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     )
 
 
-def _doubts(job: Job, found: Modes, properties: JointProperties) -> None:
-    tables, rigid = job.case.joints, dict(zip(properties.names, properties.rigid, strict=True))
+def _doubts(job: Job, found: Modes, sim: Simulation) -> None:
+    tables, rigid = job.case.joints, dict(zip(sim.properties.names, sim.properties.rigid, strict=True))
     names = [name for name, table in tables.items() if rigid[name] or (table.ks == "auto" and table.kn != "auto")]
     if names:
         key = "kn and ks" if tables[names[0]].kn == "auto" else "ks"
