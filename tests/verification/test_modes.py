@@ -24,7 +24,8 @@ MODES = {"kind": "modes"}
 
 
 def joint(kn: float, ks: float, **more) -> dict:
-    return {"dry": {"friction": 0.9, "kn": kn, "ks": ks, **more}}
+    """Springs at both ends, as in the closed forms; where time goes on, joints have these anyway."""
+    return {"dry": {"friction": 0.9, "kn": kn, "ks": ks, "points": 2, **more}}
 
 
 def slender(kn: float, ks: float) -> float:
