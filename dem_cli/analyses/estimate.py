@@ -56,7 +56,7 @@ def describe(case: Case, model: Model) -> Rows:
         return sim
 
     wanted = case.analysis.kinematics
-    moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
+    moving = _visible(case) if wanted != "fixed" else None
     moving = why_moving(case, model) if moving is None else moving
     kinematics = "fixed" if moving is None else "large"
     sim = simulation(kinematics, _ratio(case, model, kinematics))
@@ -177,6 +177,13 @@ def _range(values: np.ndarray) -> str:
     """One number, or the smallest and the largest."""
     low, high = f"{values.min():.4g}", f"{values.max():.4g}"
     return low if low == high else f"{low} to {high}"
+
+
+def _visible(case: Case) -> str | None:
+    """Why blocks move visibly in the analysis of a case before anything fails; None: they do not."""
+    if getattr(case.analysis, "control", "load") == "displacement":
+        return "the live load is moved as far as the case says"
+    return VISIBLE.get(case.analysis.kind)
 
 
 def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:

@@ -49,11 +49,10 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 def _simulation(job: Job) -> Simulation:
     """On joints that are the springs that they are. With a measured frequency their stiffness is a property of the
     structure, which has the contact points of such joints (laws/stiffness.py)."""
-    kinematics = "fixed" if job.case.analysis.kinematics == "fixed" else "large"
-    sim = job.simulation(kinematics, elastic=True)
+    sim = job.moving_simulation(elastic=True)
     if job.case.analysis.measured is None or not sim.properties.rigid.any():
         return sim
-    return replace(job, case=_scaled_case(job.case, sim, 1.0)).simulation(kinematics, elastic=True)
+    return replace(job, case=_scaled_case(job.case, sim, 1.0)).moving_simulation(elastic=True)
 
 
 def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
