@@ -13,6 +13,7 @@ import numpy as np
 from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
 from dem_cli.engine.clock import duration_words
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
+from dem_cli.engine.measures import shares_of_blocks
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
@@ -147,8 +148,18 @@ def _joints(case: Case, sim: Simulation) -> Rows:
     for k, name in enumerate(sim.properties.names):
         here = named == k
         count = int((here & bed).sum())
-        rows.append((f"joint {name}", f"{count:,} bed joints, {int(here.sum()) - count:,} others"))
+        text = f"{count:,} bed joints, {int(here.sum()) - count:,} others"
+        rows.append((f"joint {name}", text + _points(case, sim, k)))
     return rows
+
+
+def _points(case: Case, sim: Simulation, named: int) -> str:
+    """How many contact points a plane joint has that takes them from its stiffness."""
+    table, layout = case.joints[sim.properties.names[named]], sim.properties.layouts[named]
+    if table.points is not None or layout is None or layout.sides is not None or not table.bends:
+        return ""
+    why = "kn is given" if table.kn != "auto" else "blocks deform"
+    return f", {layout.points} contact points each (auto): {why}, so that bending counts"
 
 
 def _stiffness(case: Case, sim: Simulation) -> Rows:
@@ -160,7 +171,32 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
         given = " and ".join(key for key in ("kn", "ks") if getattr(table, key) == "auto")
         origin = f", {given} chosen (auto)" if given else ""
         rows.append((f"stiffness {name}", f"kn {kn:.4g} Pa/m, ks {ks:.4g} Pa/m, kn·h/W {kn / scale:.3g}{origin}"))
+    return rows + _deformation(case, sim)
+
+
+def _deformation(case: Case, sim: Simulation) -> Rows:
+    """Materials whose blocks deform, and what the joints are with what they give way."""
+    rows, properties, joints = [], sim.properties, sim.joints
+    for name, material in case.materials.items():
+        young, shear = material.moduli
+        if np.isfinite(young):
+            rows.append((f"blocks {name}", f"deform, lumped into their joints: E {young:.4g} Pa, G {shear:.4g} Pa"))
+    if properties.compliance is None or not len(joints.blocks):
+        return rows
+    named, shares = properties.between(sim.model, joints.blocks), shares_of_blocks(sim)
+    together = properties.stiffness_of(named, sim.geometry.faces)[0]
+    for k, name in enumerate(properties.names):
+        here = (named == k) & (shares > 0.0)
+        if here.any():
+            kn, share = (_range(values[here]) for values in (together, shares))
+            rows.append((f"with blocks {name}", f"kn {kn} Pa/m, kn h/E {share}"))
     return rows
+
+
+def _range(values: np.ndarray) -> str:
+    """One number, or the smallest and the largest."""
+    low, high = f"{values.min():.4g}", f"{values.max():.4g}"
+    return low if low == high else f"{low} to {high}"
 
 
 def _visible(case: Case) -> str | None:

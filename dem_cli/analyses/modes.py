@@ -47,7 +47,12 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _simulation(job: Job) -> Simulation:
-    return job.moving_simulation(elastic=True)
+    """On joints that are the springs that they are. With a measured frequency their stiffness is a property of the
+    structure, which has the contact points of such joints (laws/stiffness.py)."""
+    sim = job.moving_simulation(elastic=True)
+    if job.case.analysis.measured is None or not sim.properties.rigid.any():
+        return sim
+    return replace(job, case=_scaled_case(job.case, sim, 1.0)).moving_simulation(elastic=True)
 
 
 def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
@@ -74,7 +79,7 @@ def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
         "mechanisms": found.mechanisms,
         "loose_blocks": [model.block_ids[i] for i in found.loose],
     }
-    _doubts(job, found)
+    _doubts(job, found, sim)
     if wanted.measured is not None:
         answer["calibration"] = _calibration(job, sim, float(found.frequencies[wanted.mode - 1]))
     return answer
@@ -143,10 +148,11 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     )
 
 
-def _doubts(job: Job, found: Modes) -> None:
-    names = [name for name, table in job.case.joints.items() if "auto" in (table.kn, table.ks)]
+def _doubts(job: Job, found: Modes, sim: Simulation) -> None:
+    tables, rigid = job.case.joints, dict(zip(sim.properties.names, sim.properties.rigid, strict=True))
+    names = [name for name, table in tables.items() if rigid[name] or (table.ks == "auto" and table.kn != "auto")]
     if names:
-        key = "kn and ks" if job.case.joints[names[0]].kn == "auto" else "ks"
+        key = "kn and ks" if tables[names[0]].kn == "auto" else "ks"
         job.warnings.append(
             f"{key} of joint '{names[0]}' is chosen by the program (auto): the frequencies follow from that choice, "
             "not from the structure; give kn and ks, or a measured frequency (analysis.measured)"
@@ -180,6 +186,7 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
             break
         found = frequency
         tried.append(found)
+    moduli = _scaled_moduli(job.case, factor)
     met = abs(found / wanted.measured - 1.0) <= settings.agrees
     if not met and len(tried) == settings.rounds:
         job.warnings.append(f"the calibrated frequency is {found:.4g} Hz instead of {wanted.measured:g} Hz")
@@ -189,25 +196,45 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
         "computed": computed,
         "factor": factor,
         "joints": _scaled(sim, factor),
+        **({"young": moduli} if moduli else {}),
         "frequencies_tried": tried,
         "met": met,
     }
 
 
 def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
-    """kn and ks [Pa/m] of each named joint, times a factor."""
+    """kn and ks [Pa/m] of each named joint that has them, times a factor; the others are as stiff as their blocks."""
     properties = sim.properties
+    free = np.zeros(len(properties.names), bool)
+    if properties.compliance is not None:
+        free = properties.compliance.free[:, 0] & ~properties.rigid
     return {
         name: {"kn": float(factor * kn), "ks": float(factor * ks)}
-        for name, kn, ks in zip(properties.names, properties.kn, properties.ks, strict=True)
+        for name, kn, ks, no in zip(properties.names, properties.kn, properties.ks, free, strict=True)
+        if not no
     }
+
+
+def _scaled_moduli(case: Case, factor: float) -> dict[str, float]:
+    """Young's modulus [Pa] of each material that deforms, times a factor."""
+    return {
+        name: factor * material.young
+        for name, material in case.materials.items()
+        if material.young is not None and math.isfinite(material.moduli[0])
+    }
+
+
+def _scaled_case(case: Case, sim: Simulation, factor: float) -> Case:
+    """The case with the stiffness of all joints and blocks times a factor."""
+    joints = {name: case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
+    moduli = {n: case.materials[n].model_copy(update={"young": e}) for n, e in _scaled_moduli(case, factor).items()}
+    return case.model_copy(update={"joints": case.joints | joints, "materials": case.materials | moduli})
 
 
 def _frequency_with(job: Job, sim: Simulation, factor: float) -> float | None:
     """The frequency of the measured mode [Hz] with stiffness scaled; None where the structure does not stand then."""
     wanted = job.case.analysis
-    tables = {name: job.case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
-    again = _simulation(replace(job, case=job.case.model_copy(update={"joints": tables})))
+    again = _simulation(replace(job, case=_scaled_case(job.case, sim, factor)))
     try:
         if stand(again, Budget(min(sim.settings.modes.most_steps, wanted.max_steps))).state != "equilibrium":
             return None

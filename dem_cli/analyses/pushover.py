@@ -139,8 +139,7 @@ def _bound_of_the_start(job: Job, search: FailureLoad) -> float | None:
 
 def _may_move(job: Job, sim: Simulation) -> bool:
     """Whether geometry may have to move because joints have a stiffness that the case gives."""
-    given = any(joint.kn != "auto" for joint in job.case.joints.values())
-    return given and sim.kinematics == "fixed" and job.case.analysis.kinematics == "auto"
+    return sim.properties.given and sim.kinematics == "fixed" and job.case.analysis.kinematics == "auto"
 
 
 def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:

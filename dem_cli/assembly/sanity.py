@@ -28,6 +28,7 @@ SINKS = 0.5  # of the smallest edge: a block that is so far in another one is ab
 HEAVY = 0.05  # dead loads over the weight: so much matters to what pushes
 SLIVER = 0.25 * (1.0 - 1e-6)  # of a full block of a wall: smaller pieces are most often not meant
 LIGHT = 1e-3  # live loads over the weight that are most likely in another unit
+MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
 STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # others than Pa/m, and one of them in it
 
 INSTEAD = {  # of a dead load that presses and does not push: what would
@@ -39,7 +40,7 @@ INSTEAD = {  # of a dead load that presses and does not push: what would
 
 def problems(case: Case, model: Model) -> list[CaseProblem]:
     """What can only be a mistake: point loads far outside the structure, joints that cannot carry it."""
-    return [*_far_loads(case, model), *_soft_joints(case, model)]
+    return [*_far_loads(case, model), *_soft_joints(case, model), *_soft_blocks(case, model)]
 
 
 def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[AppliedLoad]) -> list[CaseProblem]:
@@ -208,24 +209,42 @@ def _away(case: Case, model: Model, i: int) -> float:
 
 
 def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Joints of a given kn on which the blocks that have them sink too far under their own weight.
-
-    A lower estimate: their whole weight on joints as long as they are wide together, in median smallest edges.
-    """
+    """Joints of a given kn on which the blocks that have them sink too far under their own weight."""
     names, by_material = joint_table(case)
-    corners, d = undeformed(model), model.dimension
     for k, name in enumerate(names):
         kn = case.joints[name].kn
         having = (by_material == k).any(axis=1)[model.block_material] & ~model.fixed
-        if kn == "auto" or not having.any():
-            continue
-        plan = float(np.prod(np.ptp(corners[having[model.vertex_blocks], : d - 1], axis=0)))  # [m^(d-1)]
-        weight = float(np.hypot.reduce(model.dead_loads[having, :d].sum(axis=0)))
-        edge = float(np.median(model.shapes.edges[having]))
-        sinks = weight / (plan * float(model.thickness[having].mean()) * kn)
-        if sinks > SINKS * edge:
-            units = [unit for unit, factor in STIFFNESS_UNITS.items() if sinks <= 0.01 * SINKS * edge * factor]
-            hint = f"; did you mean {show(kn)} {' or '.join(units)}?" if units else ""
-            message = f"{show(kn)} Pa/m is too soft: blocks would sink {sinks:.3g} m into each other under their own "
-            message += f"weight, {sinks / edge:.2g} smallest edges (at most {SINKS:g}){hint}"
-            yield CaseProblem(("joints", name, "kn"), message)
+        if kn != "auto" and having.any():
+            edge = float(np.median(model.shapes.edges[having]))
+            if why := _sinking(model, having, kn, edge, f"{show(kn)} Pa/m", STIFFNESS_UNITS):
+                yield CaseProblem(("joints", name, "kn"), why)
+
+
+def _soft_blocks(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Materials of a Young's modulus so low that their blocks are squeezed flat by their own weight."""
+    for k, (name, material) in enumerate(case.materials.items()):
+        young, having = material.moduli[0], (model.block_material == k) & ~model.fixed
+        if math.isfinite(young) and having.any():
+            edge = float(np.median(model.shapes.edges[having]))
+            if why := _sinking(model, having, young / edge, edge, f"{show(young)} Pa", MODULUS_UNITS):
+                yield CaseProblem(("materials", name, "young"), why)
+
+
+def _sinking(
+    model: Model, having: np.ndarray, kn: float, edge: float, said: str, units: dict[str, float]
+) -> str | None:
+    """Why a stiffness [Pa/m] is too small for the weight of these blocks, (n_blocks,) bool; None: it is not.
+
+    A lower estimate: their whole weight on joints as long as they are wide together, in median smallest edges [m].
+    said: the value as users gave it; units: others that may have been meant, and one of them in that of the case.
+    """
+    corners, d = undeformed(model), model.dimension
+    plan = float(np.prod(np.ptp(corners[having[model.vertex_blocks], : d - 1], axis=0)))  # [m^(d-1)]
+    weight = float(np.hypot.reduce(model.dead_loads[having, :d].sum(axis=0)))
+    sinks = weight / (plan * float(model.thickness[having].mean()) * kn)
+    if sinks <= SINKS * edge:
+        return None
+    meant = [unit for unit, factor in units.items() if sinks <= 0.01 * SINKS * edge * factor]
+    hint = f"; did you mean {said.split()[0]} {' or '.join(meant)}?" if meant else ""
+    why = f"{said} is too soft: blocks would sink {sinks:.3g} m into each other under their own "
+    return why + f"weight, {sinks / edge:.2g} smallest edges (at most {SINKS:g}){hint}"

@@ -46,7 +46,7 @@ def stiffness(known: KnownStructure, ratio: float) -> list[str]:
     """A given kn with kn·h/W = ratio for a mean block of weight W and smallest edge h."""
     from dem_cli.model.scales import stiffness_scale
 
-    return [FINE, BUDGET, f"joints.dry.kn={ratio * stiffness_scale(known.build()[1])!r}"]
+    return [FINE, BUDGET, f"joints.dry.kn={ratio * stiffness_scale(known.build()[1])!r}", "joints.dry.points=2"]
 
 
 def fine(known: KnownStructure, value: Any) -> list[str]:

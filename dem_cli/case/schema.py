@@ -41,11 +41,30 @@ class Material(CaseModel):
 
     density: Positive = Field(description="mass per volume [kg/m3]", examples=[2400.0])
     young: Positive | None = Field(
-        default=None, description="Young's modulus [Pa]; not used by rigid blocks", examples=[5e9]
+        default=None, description="Young's modulus [Pa] of blocks that deform; default: they are rigid", examples=[5e9]
     )
-    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(
-        default=None, description="Poisson's ratio [-]; not used by rigid blocks", examples=[0.2]
+    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
+        default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
+    deformation: Literal["joints", "none"] | None = Field(
+        default=None,
+        description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'none' keeps blocks "
+        "rigid; default: joints where young is given. Fixed blocks do not deform",
+        examples=["joints"],
+    )
+
+    @model_validator(mode="after")
+    def _deforms_by_its_modulus(self) -> Material:
+        if self.deformation == "joints" and self.young is None:
+            raise KeyProblem("'joints' is not allowed without 'young', Young's modulus [Pa]", "deformation")
+        return self
+
+    @property
+    def moduli(self) -> tuple[float, float]:
+        """E and G = E / 2(1 + ν) of blocks that deform in their joints [Pa]; infinite: they are rigid."""
+        if self.young is None or self.deformation not in (None, "joints"):
+            return math.inf, math.inf
+        return self.young, self.young / (2.0 * (1.0 + self.poisson))
 
 
 class Interface(CaseModel):

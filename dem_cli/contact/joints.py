@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
+from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
 from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.model import Model
@@ -54,6 +55,10 @@ class DrawnFaces(NamedTuple):
 PressedLaw = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
+# Parameters of the law of joints, (n, n_parameters), by their named joint (n,) and their stiffness kn [Pa/m], (n,).
+LawRows = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
 class JointProperties(NamedTuple):
     """Properties of each named joint, by its number."""
 
@@ -64,13 +69,25 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
-    rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", (n_named,) bool
+    rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * overlaps
+    compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
+    rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
 
     @property
     def profiled(self) -> bool:
         """Whether any joint has points elsewhere than at its two ends."""
         return any(layout is not None for layout in self.layouts)
+
+    @property
+    def rough(self) -> bool:
+        """Whether any joint has a profile: points that are not in one plane."""
+        return any(layout is not None and layout.sides is not None for layout in self.layouts)
+
+    @property
+    def given(self) -> bool:
+        """Whether the stiffness of any joint is a property of the structure: kn of the case, or blocks that deform."""
+        return self.compliance is not None or not self.rigid.all()
 
     @property
     def centred(self) -> np.ndarray:
@@ -82,6 +99,26 @@ class JointProperties(NamedTuple):
         materials = model.block_material[blocks]
         return self.by_material[materials[:, 0], materials[:, 1]]
 
+    def rigid_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
+        rigid = self.rigid[self.between(model, blocks)]
+        return rigid if self.compliance is None else rigid & ~self.compliance.deforms[blocks].any(axis=1)
+
+    def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
+
+        faces: of both blocks, (n, 2), or of one that meets something rigid, (n, 1).
+        """
+        kn, ks = self.kn[named], self.ks[named]
+        if self.compliance is None:
+            return kn, ks
+        together = self.compliance.in_series(np.column_stack([kn, ks]), faces, named)
+        return together[:, 0], together[:, 1]
+
+    def law_of(self, named: np.ndarray, kn: np.ndarray) -> np.ndarray:
+        """Parameters of the law of joints by name and stiffness kn [Pa/m], (n, n_parameters)."""
+        return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn))
+
 
 class JointGeometry(Protocol):
     """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
@@ -89,6 +126,10 @@ class JointGeometry(Protocol):
     @property
     def keys(self) -> np.ndarray:
         """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
+
+    @property
+    def faces(self) -> np.ndarray:
+        """The two faces of each joint (model.topology), (n_joints, 2)."""
 
     @property
     def features(self) -> np.ndarray:
@@ -134,6 +175,7 @@ def joints_of(
     d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
+    kn, ks = properties.stiffness_of(named, faces.faces)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
     return MovingJoints(
         blocks=blocks,
@@ -141,9 +183,9 @@ def joints_of(
         frames=np.zeros((n_points, d * d)),
         levers=np.zeros((n_points, 2 * d * r)),
         points=np.zeros((n_points, d)),
-        kn=(properties.kn[named] * areas)[owners] * shares,
-        ks=(properties.ks[named] * areas)[owners] * shares,
-        law=np.ascontiguousarray(properties.law[named]),
+        kn=(kn * areas)[owners] * shares,
+        ks=(ks * areas)[owners] * shares,
+        law=properties.law_of(named, kn),
     )
 
 

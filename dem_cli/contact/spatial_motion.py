@@ -110,13 +110,14 @@ def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarr
     median, areas, shortest = _median_free_face(model), model.faces.areas, model.faces.shortest_sides
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
+    kn, ks = properties.stiffness_of(named, faces.faces)
     centred = properties.centred[named].astype(float)
     own = BEVEL * model.faces.typical_areas[faces.parts].min(axis=1)
     n, smaller = len(faces.parts), np.maximum(areas[faces.faces].min(axis=1), own)
     face = np.minimum(median, smaller)  # a small block on a large one has no pillars for corners, a bevel no needles
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
-        np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), properties.kn[named], properties.ks[named],
+        np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), kn, ks,
         LONE * face, FLOOR * face, np.full(n, reach), centred,
     ])  # fmt: skip
 

@@ -22,7 +22,7 @@ def landing(sim: Simulation) -> tuple[float, int]:
     """Highest frequency ω [rad/s] of the free blocks without a joint, each on one of its faces; and which block, or −1.
 
     On something that does not move, every corner of the face pressed: with its share of the area, and the stiffest
-    joint that its material has.
+    joint that its material has; where it deforms, with half of it.
     """
     model = sim.model
     held = np.unique(sim.joints.blocks[sim.joints.owners[sim.joints.kn > 0.0]])
@@ -46,7 +46,8 @@ def _stiffness(model: Model, properties: JointProperties, faces: np.ndarray) -> 
     blocks = model.part_blocks[topology.face_parts[faces]]
     owners = np.repeat(blocks, counts)
     named = properties.by_material[model.block_material[blocks]]  # the joints that the material of each block has
-    kn, ks = (of[named].max(axis=1) * _areas(model, faces) / counts for of in (properties.kn, properties.ks))
+    each = [properties.stiffness_of(joint, faces[:, None]) for joint in named.T]
+    kn, ks = (np.max(of, axis=0) * _areas(model, faces) / counts for of in zip(*each, strict=True))
     kn, ks = np.repeat(kn, counts), np.repeat(ks, counts)
     normals = np.repeat(shapes_of(model.vertices).normals(model.vertices, topology)[faces], counts, axis=0)
     springs = ks[:, None, None] * np.eye(d) + ((kn - ks)[:, None] * normals)[:, :, None] * normals[:, None, :]

@@ -61,10 +61,10 @@ def rocking_stiffness(case: Case, model: Model, settings: Settings = DEFAULT) ->
     but never softer than settings.stiffness.dynamics.
     """
     softest, rocking = settings.stiffness.dynamics, settings.rocking
-    automatic = [table.kn == "auto" for table in case.joints.values()]
-    if not any(automatic) or model.fixed.all():
-        return RockingStiffness(softest, 0.0, 0.0, any(automatic))
-    joints, mine = _joints(case, model, softest, np.array(automatic))
+    automatic = bool(joint_properties(case, model, softest).rigid.any())
+    if not automatic or model.fixed.all():
+        return RockingStiffness(softest, 0.0, 0.0, automatic)
+    joints, mine = _joints(case, model, softest)
     if not len(joints.kn):
         return RockingStiffness(softest, 0.0, 0.0, True)
     turn = turn_sideways(model, _rigid(joints, ~mine), settings)
@@ -117,12 +117,12 @@ def _solved(found: System, forces: np.ndarray) -> np.ndarray:
     return spsolve((matrix + shift * eye_array(len(forces))).tocsc(), forces)
 
 
-def _joints(case: Case, model: Model, ratio: float, automatic: np.ndarray) -> tuple[Joints, np.ndarray]:
+def _joints(case: Case, model: Model, ratio: float) -> tuple[Joints, np.ndarray]:
     """Joints of the start, and which of their points are of "auto" stiffness."""
     properties = joint_properties(case, model, ratio)
     rest = bodies_at_rest(model, origin_of(model))
     joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
-    return joints, automatic[properties.between(model, joints.blocks)][joints.owners]
+    return joints, properties.rigid_between(model, joints.blocks)[joints.owners]
 
 
 def _rigid(joints: Joints, points: np.ndarray) -> Joints:

@@ -129,7 +129,7 @@ def _rotational(sim: Simulation, axis: np.ndarray | None) -> tuple[np.ndarray, n
     if arms.shape[1] > 2:
         stiffness = stiffness - _along(kn[:, 0], arms, starts, axis)
         stiffness[stiffness <= 1e-9 * np.add.reduceat(kn[:, 0] * (arms**2).sum(axis=1), starts)] = 0.0
-    given = ~sim.properties.rigid[sim.properties.between(sim.model, joints.blocks)]
+    given = ~sim.properties.rigid_between(sim.model, joints.blocks)
     return np.where(given & (stiffness > 0.0), np.inf, stiffness), middle[:, y]
 
 

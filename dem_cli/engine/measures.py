@@ -189,6 +189,15 @@ def contact_record(sim: Simulation) -> ContactRecord:
     return record if used.all() else ContactRecord(*(values[used] for values in record))
 
 
+def shares_of_blocks(sim: Simulation) -> np.ndarray:
+    """Compliance of the blocks on either side of each joint over that of the joint alone, kn h/E [-], (n_joints,)."""
+    properties, joints = sim.properties, sim.joints
+    if properties.compliance is None:
+        return np.zeros(len(joints.blocks))
+    named = properties.between(sim.model, joints.blocks)
+    return properties.compliance.shares(properties.kn[named], sim.geometry.faces, named)
+
+
 def frame(sim: Simulation, stage: str) -> Frame:
     """A snapshot."""
     bodies = sim.bodies

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dem_cli.assembly.assemble import joint_table
-from dem_cli.contact.joints import JointProperties
+from dem_cli.contact.block_compliance import BlockCompliance, block_compliance
+from dem_cli.contact.joints import JointProperties, LawRows
 from dem_cli.contact.layout import PointLayout
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.laws.law import Law
@@ -37,12 +39,16 @@ def joint_properties(
 ) -> JointProperties:
     """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
+    Blocks of a material with a Young's modulus give way in their joints (contact/block_compliance.py).
+
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
     """
     names, by_material = joint_table(case)
     auto = ratio * stiffness_scale(model)
     laws = laws_of(case)
     tables = [case.joints[name] for name in names]
+    free = np.array([[table.kn == "auto", table.kn == table.ks == "auto"] for table in tables])
+    compliance = block_compliance(model, np.array([m.moduli for m in case.materials.values()]), free)
     kn = np.array([auto if table.kn == "auto" else table.kn for table in tables])
     ks = np.array([k if table.ks == "auto" else table.ks for table, k in zip(tables, kn, strict=True)])
     rows = [_columns(table, k, step) for table, k in zip(tables, kn, strict=True)]
@@ -52,20 +58,56 @@ def joint_properties(
         values = _law(table).intact
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
-    layouts = tuple(_layout(table, case.seed) for table in tables)
-    rigid = np.array([table.kn == "auto" for table in tables])
-    return JointProperties(names, by_material, kn, ks, columns, intact, layouts, rigid, mixed(tuple(laws)).pressed)
+    deforming = _with_deforming_blocks(model, by_material, compliance)
+    layouts = tuple(_layout(table, case, k in deforming) for k, table in enumerate(tables))
+    rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
+    own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
+    pressed = mixed(tuple(laws)).pressed
+    return JointProperties(
+        names, by_material, kn, ks, columns, intact, layouts, rigid, pressed, compliance, own_rows
+    )  # fmt: skip
 
 
 def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
 
 
-def _layout(table: StiffJoint, seed: int) -> PointLayout | None:
+def _layout(table: StiffJoint, case: Case, deforms: bool) -> PointLayout | None:
     """Where the contact points of a joint are; None: at its two ends."""
     if table.profile is not None:
-        return PointLayout(seed=seed, **table.profile.ranges)
-    return None if table.contact_points == 2 else PointLayout(table.contact_points)
+        return PointLayout(seed=case.seed, **table.profile.ranges)
+    points = table.contact_points(case.dimension, deforms, lands=hasattr(case.analysis, "margin"))
+    return None if points == 2 else PointLayout(points)
+
+
+def _with_deforming_blocks(model: Model, by_material: np.ndarray, compliance: BlockCompliance | None) -> set[int]:
+    """Named joints that deforming blocks may have."""
+    return set() if compliance is None else set(by_material[model.block_material[compliance.deforms]].ravel().tolist())
+
+
+def _with_rigid_blocks(
+    names: Sequence[str], model: Model, by_material: np.ndarray, compliance: BlockCompliance | None
+) -> np.ndarray:
+    """Whether each named joint may lie between two blocks neither of which deforms, (n_named,) bool."""
+    if compliance is None:
+        return np.ones(len(names), bool)
+    stiff, free = (np.unique(model.block_material[~compliance.deforms & among]) for among in (True, ~model.fixed))
+    return np.isin(np.arange(len(names)), by_material[np.ix_(stiff, free)])
+
+
+def _own_rows(tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, step: float) -> LawRows | None:
+    """Rows of joints whose kn is not that of their name; None: no law hangs on it."""
+    width = columns.shape[1] - (len(laws) > 1)
+    hangs = [_columns(table, 1.0, step) != _columns(table, 2.0, step) for table in tables]
+
+    def rows(named: np.ndarray, kn: np.ndarray) -> np.ndarray:
+        found = columns[named]
+        for k in np.flatnonzero(np.array(hangs)[named]):
+            table = tables[named[k]]
+            found[k] = row(laws, _law(table), _columns(table, float(kn[k]), step), width)
+        return found
+
+    return rows if any(hangs) else None
 
 
 def _columns(table: StiffJoint, kn: float, step: float) -> list[float]:

@@ -43,8 +43,8 @@ def rigid_points(sim: Simulation) -> np.ndarray:
     """Numbers of the points that press and whose stiffness is no property of theirs."""
     if not sim.takes_back:
         return np.zeros(0, int)
-    named = sim.properties.between(sim.model, sim.joints.blocks)
-    return np.flatnonzero(sim.properties.rigid[named][sim.joints.owners] & (sim.contacts.normal > 0.0))
+    rigid = sim.properties.rigid_between(sim.model, sim.joints.blocks)
+    return np.flatnonzero(rigid[sim.joints.owners] & (sim.contacts.normal > 0.0))
 
 
 def unrelieved(sim: Simulation, points: np.ndarray) -> float:

@@ -79,7 +79,7 @@ def decide(
     """
     job = Job.start(case, model, observer, settings)
     run = _decided(job, job.first_simulation(), value, hopeless)
-    given = any(joint.kn != "auto" for joint in case.joints.values())
+    given = run.sim.properties.given
     soft = run.result.displacement > settings.safety.soft * case.analysis.resolution * run.sim.smallest
     if run.result.stands and soft and given and run.sim.kinematics == "fixed" and case.analysis.kinematics == "auto":
         run = _decided(job, job.simulation("large"), value, hopeless)  # joints too soft to leave geometry as it was

@@ -52,6 +52,13 @@ class ExportedCase:
         return dead, np.zeros_like(dead) if self.leans else model.live_loads.copy()
 
     @property
+    def deforms(self) -> bool:
+        """Whether blocks of any material deform."""
+        return any(
+            material.young is not None and material.deformation != "none" for material in self.case.materials.values()
+        )
+
+    @property
     def leans(self) -> bool:
         """Whether the live load is a share of the weight along a direction: gravity that leans."""
         return getattr(self.case.analysis, "pattern", None) == "mass"

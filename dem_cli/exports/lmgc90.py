@@ -139,6 +139,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
     notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
+    notes += ["deformation of blocks (young)"] if exported.deforms else []
     turned = _turned(exported)
     more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""
     notes += [f"moments of forces beside the centroid of '{turned[0]}'{more}"] if turned else []

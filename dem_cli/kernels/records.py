@@ -81,6 +81,11 @@ class PlanarGeometry(NamedTuple):
     profile: np.ndarray  # place along the edge of b and rise above it [m], (n_points, 2); (0, 2): all joints are plane
     sunk: np.ndarray  # chains only: penetration that a joint had when it came to touch, its zero [m], (n_joints,)
 
+    @property
+    def faces(self) -> np.ndarray:
+        """The two faces of each joint (model.topology), (n_joints, 2)."""
+        return self.keys
+
     def settled(self) -> PlanarGeometry:
         """What is still asked for when points stay where they were placed: all of it."""
         return self
@@ -120,6 +125,11 @@ class SpatialGeometry(NamedTuple):
     places: np.ndarray  # of the points, in the coordinates in which they were found [m], (n_points, 3)
     gaps: np.ndarray  # along the normal, positive open [m], (n_points,)
     areas: np.ndarray  # of the joints [m²], (n_joints,)
+
+    @property
+    def faces(self) -> np.ndarray:
+        """The two faces of each joint (model.topology), (n_joints, 2)."""
+        return self.keys
 
     def settled(self) -> SpatialGeometry:
         """What is still asked for when points stay where they were placed; these are then with the joints."""

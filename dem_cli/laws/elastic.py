@@ -25,6 +25,11 @@ class ElasticJoint(StiffJoint):
 
     law: Literal["elastic"] = "elastic"
 
+    @property
+    def bends(self) -> bool:
+        """It does not: a joint that never opens has the bending stiffness of a rectangle with three points."""
+        return False
+
 
 @inline
 def elastic(gap, slide, shear, kn, ks, parameters, joint, memory, point):

@@ -20,6 +20,7 @@ from dem_cli.model.block_measures import (
     PartMeasures,
     block_measures,
     face_measures,
+    half_extents,
     part_measures,
 )
 
@@ -134,6 +135,11 @@ class Model(ModelArrays):
     def faces(self) -> FaceMeasures:
         """Areas, normals and sides of the faces of polyhedra."""
         return face_measures(self.vertices, self.topology)
+
+    @cached_property
+    def half_extents(self) -> np.ndarray:
+        """Half the extent of its block across each face [m], (n_faces,)."""
+        return half_extents(self.vertices, self.vertex_blocks, self.topology, self.part_blocks)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order, without links; fixed: which cannot move, (n,) bool."""

@@ -39,7 +39,7 @@ class RigidLimits:
         self.seconds: dict[str, float] = {}
         self.gaps = sim.first_gaps
         self.touching = sim.first_gaps <= 0.0
-        if sim.kinematics != "fixed" or sim.properties.profiled:
+        if sim.kinematics != "fixed" or sim.properties.rough:
             self.why_not = "geometry moves on the way to failure"
         elif not (sim.loads.dead[sim.free].any() and sim.loads.live[sim.free].any()):
             self.why_not = "there are no dead loads beside the live ones"

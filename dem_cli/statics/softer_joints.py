@@ -51,7 +51,7 @@ def checked(job: Job, sim: Simulation, search: FailureLoad, resolution: float) -
 
 def _checkable(sim: Simulation) -> bool:
     """Whether geometry moves over joints whose stiffness is the program's choice."""
-    return sim.kinematics == "large" and bool(sim.properties.rigid.all())
+    return sim.kinematics == "large" and not sim.properties.given
 
 
 def _held(sim: Simulation, loads: list[float], budget: Budget) -> float:

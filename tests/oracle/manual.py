@@ -75,9 +75,9 @@ def leaning_blocks(apart: float) -> Answers:
 
 
 def springs() -> dict[str, Answers]:
-    """A cube of 1 m on springs at both ends of a joint."""
+    """A cube of 1 m on springs: all over the joint; what only goes up and down does not ask where they are."""
     mass, kn, ks = 2000.0, 1e9, 4e8
-    stiffness = np.array([[ks, 0.5 * ks], [0.5 * ks, 0.25 * kn + 0.25 * ks - 0.5 * mass * G]])
+    stiffness = np.array([[ks, 0.5 * ks], [0.5 * ks, kn / 12.0 + 0.25 * ks - 0.5 * mass * G]])
     sideways = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(*2 * ([mass, mass / 6.0],))))
     squares = np.sort([*sideways, kn / mass])
     period, rest = 2.0 * pi * sqrt(mass / kn), mass * G / kn

@@ -1,9 +1,10 @@
-"""From the [joints] of a case to contact points: layouts of joints in space."""
+"""From the [joints] of a case to contact points: how many, by stiffness, law and analysis; layouts in space."""
 
 from __future__ import annotations
 
 import pytest
-from engine import scene
+from casefiles import CASES
+from engine import block, rectangle, scene, solve, tables
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.engine.properties import joint_properties
@@ -35,3 +36,54 @@ def test_points_of_a_joint_in_space(joint, points):
     built = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model))
     assert len(built.joints.kn) == points
     assert built.joints.kn.sum() == pytest.approx(properties.kn[0])
+
+
+FRICTION = {"friction": 0.6}
+GIVEN = FRICTION | {"kn": 1e9}
+SOFTENING = {"softening": {"residual": 0.8, "slip_start": 1e-3, "slip_length": 1e-4}}
+YOUNG = {"young": 1e9}
+
+
+@pytest.mark.parametrize(
+    ("joint", "stone", "points"),
+    [
+        (FRICTION, {}, 2),
+        (GIVEN, {}, 5),
+        (GIVEN | {"points": 2}, {}, 2),
+        (GIVEN | SOFTENING, {}, 2),
+        (GIVEN | {"law": "elastic", "friction": None}, {}, 3),
+        (GIVEN | {"law": "crushing", "compression": 1e7}, {}, 5),
+        (GIVEN | {"profile": {"sides": 3, "aperture": 1e-4}}, {}, 4),
+        (FRICTION, YOUNG, 5),
+        (FRICTION, YOUNG | {"deformation": "none"}, 2),
+        (FRICTION | {"points": 3}, YOUNG, 3),
+    ],
+)
+def test_points_follow_stiffness(joint, stone, points):
+    joint = {key: value for key, value in joint.items() if value is not None}
+    case = tables(
+        block("base", rectangle(0.0, -1.0, 1.0, 0.0), fixed=True), block("b", rectangle(0.0, 0.0, 1.0, 1.0)),
+        materials={"stone": {"density": 2000.0} | stone}, joints={"dry": joint},
+    )  # fmt: skip
+
+    def found(analysis):
+        made = scene(case | {"analysis": analysis})
+        properties = joint_properties(made.case, made.model)
+        bodies, smallest = bodies_at_rest(made.model), smallest_edge(made.model)
+        return len(joints_of_start(made.model, bodies, properties, smallest).joints.kn)
+
+    assert found({"kind": "gravity"}) == points
+    if points == 5:  # where blocks land on each other the ends alone take the blow
+        assert found({"kind": "time-history", "duration": 1.0}) == 2
+
+
+def test_points_between_the_ends_leave_limit_analysis_and_its_path():
+    """All points of a plane joint lie in one plane: the bound, the path and the load are those of its ends."""
+    wanted = ("analysis.follow=0", "analysis.limit=true", "analysis.start='path'")
+    two, five = (
+        solve(CASES / "verification" / "wall_21.toml", f"joints.dry.points={points}", *wanted)[0] for points in (2, 5)
+    )
+    assert five["start"]["kind"] == "path"
+    for name in ("associated", "non_associated"):
+        assert five["limit_analysis"][name] == pytest.approx(two["limit_analysis"][name], rel=1e-6)
+    assert five["failure_load"] == pytest.approx(two["failure_load"], rel=1e-3)

@@ -1,0 +1,1 @@
+"""Study of joints and blocks that deform."""
