@@ -46,6 +46,23 @@ class Material(CaseModel):
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(
         default=None, description="Poisson's ratio [-]; not used by rigid blocks", examples=[0.2]
     )
+    deformation: Literal["none", "uniform-strain"] = Field(
+        default="none",
+        description="how blocks deform [-]: none, rigid blocks; uniform-strain, linear elastic by young and poisson, each "
+        "block with one strain (in 2D in plane stress)",
+        examples=["uniform-strain"],
+    )
+
+    @property
+    def strains(self) -> bool:
+        """Whether its blocks have strains of their own."""
+        return self.deformation == "uniform-strain"
+
+    @model_validator(mode="after")
+    def _has_moduli(self) -> Material:
+        if self.strains and self.young is None:
+            raise KeyProblem('"uniform-strain" needs young, and poisson where it is not 0', "deformation")
+        return self
 
 
 class Interface(CaseModel):

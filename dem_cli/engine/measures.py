@@ -72,7 +72,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
     """Largest acceleration that its own loads alone can give each block [m per step²], (n_blocks,)."""
     loads, control, d = sim.loads, sim.control, sim.model.dimension
     force = control[slot.DEAD_FACTOR] * loads.dead[:, :d] + control[slot.LIVE_FACTOR] * loads.live[:, :d]
-    light = loads.inverse_masses.copy()
+    light = loads.inverse_masses[:, : sim.model.rotations.stop].copy()
     light[:, sim.model.rotations] *= sim.shape.radii[:, None] ** 2
     return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
 
@@ -184,5 +184,5 @@ def frame(sim: Simulation, stage: str) -> Frame:
     bodies = sim.bodies
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        quaternions(bodies.orientations), bodies.velocities.copy(), contact_record(sim), sim.time,
+        quaternions(bodies.orientations), sim.speeds.copy(), contact_record(sim), sim.time,
     )  # fmt: skip

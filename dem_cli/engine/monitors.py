@@ -150,7 +150,7 @@ class Monitors:
             return ()
         bodies, watched = sim.bodies, self.watched
         places = np.column_stack([bodies.positions[watched], rotation_vectors(bodies.orientations[watched])])
-        sample = np.stack([places, bodies.velocities[watched], sim.accelerations(watched)], axis=1)
+        sample = np.stack([places, sim.speeds[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
         return tuple(self.series(sample[np.newaxis], still)[0].tolist())
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from dem_cli.kernels.deformation.uniform_strain import resist, stretch
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
     CONTACT,
@@ -178,8 +179,11 @@ def _book(
     ledger[SUPPORT] += dt * support
 
 
-def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
-    """The compiled stepping loop for one contact loop and one way to move the blocks."""
+def make_advance(contact_forces: Callable, drift: Callable, strains: bool = False, moves: bool = False) -> Callable:
+    """The compiled stepping loop for one contact loop and one way to move the blocks.
+
+    strains: blocks deform; moves: on geometry that moves.
+    """
 
     @kernel
     def advance(
@@ -205,7 +209,11 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         done = 0
         for _ in range(n_steps):
             forces[:] = 0.0
+            if strains:
+                stretch(bodies, shape, like, moves)
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
+            if strains:
+                resist(bodies, shape, like, moves)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
@@ -242,5 +250,6 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         control[MEAN_LOAD] = mean_load / done
         return done
 
-    named(advance.py_func, contact_forces, drift)
+    flags = ("strains" if strains else "", "moves" if moves else "")
+    named(advance.py_func, contact_forces, drift, *(flag for flag in flags if flag))
     return advance

@@ -25,6 +25,7 @@ from dem_cli.model.block_measures import (
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
+NO_MODES = np.zeros((0, 0))
 
 
 class ModelArrays(NamedTuple):
@@ -51,9 +52,14 @@ class ModelArrays(NamedTuple):
     face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
     face_corners: np.ndarray = NONE  # corners around each face seen from outside, counter-clockwise, int64
     principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
+    # Of blocks that deform alone (model/uniform_strain.py), else empty:
+    mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
+    dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
+    live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
+OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads")  # empty where blocks are rigid
 
 
 class Model(ModelArrays):
@@ -72,6 +78,11 @@ class Model(ModelArrays):
     def rotations(self) -> slice:
         """Columns of generalised vectors that are rotations; what is behind them deforms the block."""
         return slice(self.dimension, self.dimension + self.inertias.shape[1])
+
+    @property
+    def n_modes(self) -> int:
+        """By how many modes blocks deform; 0: rigid blocks."""
+        return self.mode_stiffness.shape[1]
 
     @property
     def n_parts(self) -> int:
@@ -162,11 +173,13 @@ class Model(ModelArrays):
             face_starts=face_starts,
             face_corners=face_corners,
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
+            **{name: getattr(self, name)[pick] for name in OF_MODES if self.n_modes},
         )
 
     def parts_alone(self) -> Model:
         """Every part a block of its own that can move; for detection, masses and loads are not divided."""
-        return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool))
+        rigid = dict.fromkeys(OF_MODES, NO_MODES)
+        return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool), **rigid)
 
 
 def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

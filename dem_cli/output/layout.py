@@ -66,6 +66,12 @@ def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...])
     return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
 
 
+def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
+    """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
+    space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
+    return Described(meaning, unit, axes, ("even", "x - y", "xy"), space)
+
+
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
 _INERTIA, _AXIS = "moment of inertia about the centroid", ("block", "axis")
 MODEL = {
@@ -114,6 +120,9 @@ MODEL = {
         _QUATERNION,
         spatial=True,
     ),
+    "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
+    "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
+    "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
 }
 _TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
