@@ -178,7 +178,7 @@ def _with_modes(case: Case, model: Model) -> Model:
     if not any(table.strains for table in tables):
         return model
     young = np.array([table.young if table.strains else 0.0 for table in tables], float)[model.block_material]
-    poisson = np.array([table.poisson or 0.0 for table in tables])[model.block_material]
+    poisson = np.array([table.poisson for table in tables])[model.block_material]
     volumes = model.shapes.volumes * model.thickness
     stiffness = mode_stiffness(model.dimension, young, poisson, volumes, model.shapes.radii)
     return model._replace(mode_stiffness=np.where(model.fixed[:, None], 0.0, stiffness))

@@ -13,6 +13,7 @@ from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
 SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -59,9 +60,20 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
+    found += strained_blocks_in_time(data, analysis.get("kind"))
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
+
+
+def strained_blocks_in_time(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
+    """Materials whose blocks have strains, in analyses with real masses: these would vibrate far too fast."""
+    if kind not in WITH_REAL_MASSES or not isinstance(data.get("materials"), dict):
+        return
+    for name, table in data["materials"].items():
+        if isinstance(table, dict) and table.get("deformation") == "uniform-strain":
+            message = f"'uniform-strain' is not known in kind = {show(kind)}: strains need analyses without time"
+            yield CaseProblem(("materials", name, "deformation"), message)
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:

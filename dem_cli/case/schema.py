@@ -41,28 +41,28 @@ class Material(CaseModel):
 
     density: Positive = Field(description="mass per volume [kg/m3]", examples=[2400.0])
     young: Positive | None = Field(
-        default=None, description="Young's modulus [Pa]; not used by rigid blocks", examples=[5e9]
+        default=None, description="Young's modulus [Pa] of blocks that deform", examples=[5e9]
     )
-    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] | None = Field(
-        default=None, description="Poisson's ratio [-]; not used by rigid blocks", examples=[0.2]
+    poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
+        default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
-    deformation: Literal["none", "uniform-strain"] = Field(
-        default="none",
-        description="how blocks deform [-]: none, rigid blocks; uniform-strain, linear elastic by young and poisson, each "
-        "block with one strain (in 2D in plane stress)",
+    deformation: Literal["uniform-strain", "none"] | None = Field(
+        default=None,
+        description="how blocks deform: 'uniform-strain' gives each block one strain of its own, linear elastic (in 2D in "
+        "plane stress), 'none' keeps blocks rigid; default: none. Fixed blocks do not deform",
         examples=["uniform-strain"],
     )
 
+    @model_validator(mode="after")
+    def _deforms_by_its_modulus(self) -> Material:
+        if self.strains and self.young is None:
+            raise KeyProblem("'uniform-strain' is not allowed without 'young', Young's modulus [Pa]", "deformation")
+        return self
+
     @property
     def strains(self) -> bool:
-        """Whether its blocks have strains of their own."""
+        """Whether its blocks have a strain of their own."""
         return self.deformation == "uniform-strain"
-
-    @model_validator(mode="after")
-    def _has_moduli(self) -> Material:
-        if self.strains and self.young is None:
-            raise KeyProblem('"uniform-strain" needs young, and poisson where it is not 0', "deformation")
-        return self
 
 
 class Interface(CaseModel):

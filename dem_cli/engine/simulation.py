@@ -14,6 +14,7 @@ from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
+from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
@@ -42,6 +43,7 @@ class Simulation:
         tilting: bool = False,
         settings: Settings = DEFAULT,
     ):
+        _require_known(model, kinematics)
         self.settings, relaxation = settings, settings.relaxation
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
@@ -390,3 +392,13 @@ class Simulation:
         """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
         turned = rotation_vectors(self.bodies.orientations)
         return np.column_stack([self.bodies.positions, turned * self.shape.radii[:, None]])
+
+
+def _require_known(model: Model, kinematics: str) -> None:
+    """Raises CaseError where blocks in space deform while geometry moves: their faces would no longer be where they are."""
+    if model.n_modes and kinematics == "large" and model.dimension == 3:
+        message = (
+            "geometry that moves is not known in 3D where blocks deform (deformation = 'uniform-strain'); "
+            "give kinematics = 'fixed', without follow"
+        )
+        raise CaseError([CaseProblem(("analysis", "kinematics"), message)])

@@ -15,7 +15,7 @@ from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
-from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
+from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -51,6 +51,8 @@ def make_planar_forces(
             k, m = np.uint64(edges[joint, 2]), np.uint64(edges[joint, 3])
             a0, a1 = load(corners, i, 0, like), load(corners, j, 0, like)
             b0, b1 = load(corners, k, 0, like), load(corners, m, 0, like)
+            if strains:
+                refresh_lengths(scales, joint, a0, a1, b0, b1)
             overlap, gap_low, gap_high, share_low, share_high, ta, tb = overlap_of(
                 a0, a1, b0, b1, scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
             )

@@ -19,7 +19,7 @@ from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.planar_geometry import apart, place_end, share_of
+from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -91,6 +91,8 @@ def make_profiled_forces(
             a1 = load(corners, np.uint64(edges[joint, 1]), 0, like)
             b0 = load(corners, np.uint64(edges[joint, 2]), 0, like)
             b1 = load(corners, np.uint64(edges[joint, 3]), 0, like)
+            if strains:
+                refresh_lengths(scales, joint, a0, a1, b0, b1)
             length_a, per_a, per_b, blend = (
                 scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
             )  # fmt: skip
