@@ -159,9 +159,13 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
         return
     for i, table in enumerate(case.structure):
         if key := loose_ends(table):
-            message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
-            message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
-            yield CaseProblem(("structure", i, key), message)
+            value, path = table, tuple(int(part) if part.isdigit() else part for part in key.split("."))
+            for part in path:
+                value = value[part] if isinstance(part, int) else getattr(value, part)
+            where, held = ("jambs", "dressed ones") if "jambs" in path else ("free ends", "quoins")
+            message = f"{show(value)}: stones at {where} may slide out along inclined joints; see "
+            message += f"first whether they stand, with analysis.kind = 'gravity'; {held} hold them"
+            yield CaseProblem(("structure", i, *path), message)
 
 
 def _unspanned(case: Case) -> Iterator[CaseProblem]:
