@@ -12,6 +12,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
+from dem_cli.model import uniform_strain
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -185,4 +186,16 @@ def frame(sim: Simulation, stage: str) -> Frame:
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
         quaternions(bodies.orientations), sim.speeds.copy(), contact_record(sim), sim.time,
+        block_stresses(sim),
     )  # fmt: skip
+
+
+def block_stresses(sim: Simulation) -> np.ndarray | None:
+    """Stresses of blocks that deform, in their own axes [Pa], as Frame.stresses; None: all blocks are rigid."""
+    model, shape = sim.model, sim.shape
+    if not model.n_modes:
+        return None
+    volumes = model.shapes.volumes * model.thickness
+    found = uniform_strain.stresses(sim.bodies.modes, shape.mode_stiffness, volumes, shape.radii)
+    rows, columns = ([0, 1, 0], [0, 1, 1]) if model.dimension == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
+    return found[:, rows, columns]

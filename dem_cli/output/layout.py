@@ -66,6 +66,12 @@ def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...])
     return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
 
 
+def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "component")) -> Described:
+    """What has a component for each stress in a block."""
+    space = Described(meaning, "Pa", axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
+    return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space)
+
+
 def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
     """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
     space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
@@ -138,6 +144,7 @@ FRAMES = {
         "velocity and spin: per second in a time history, else per solver step", *PER_SECOND,
         ("frame", "block", "component"),
     ),
+    "stresses": _of_stress("stress of each block, in its own axes, tension positive; where blocks deform alone"),
     "step": Described("solver steps so far", PURE, ("frame",)),
     "load": Described("load multiplier λ", PURE, ("frame",)),
     "displacement": Described("control displacement: the largest of any block since the start", "m", ("frame",)),
@@ -320,7 +327,11 @@ BLOCK_FIELDS = {
     "CellData/angular_velocity": Described(
         "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
     ),
-}
+    "CellData/stress": Described(
+        FRAMES["stresses"].meaning + ": xx, yy, xy", "Pa",
+        in_space=Described(FRAMES["stresses"].meaning + ": xx, yy, zz, yz, zx, xy", "Pa"),
+    ),
+}  # fmt: skip
 CONTACT_FIELDS = {
     "PointData/joint": CONTACTS["joint"],
     "PointData/block_a": Described("number of the first block"),

@@ -229,6 +229,8 @@ class ResultWriter:
             contacts.append(name, values)
         for name in FRAME_ARRAYS:
             frames.append(name, getattr(frame, name)[np.newaxis])
+        if frame.stresses is not None:
+            frames.append("stresses", frame.stresses[np.newaxis])
         frames.append_one("step", frame.step)
         for name in FRAME_SCALARS[1:]:
             frames.append_one(name, getattr(frame, name), np.float64)
