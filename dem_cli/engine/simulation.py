@@ -22,8 +22,8 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.model.model import Model
-from dem_cli.model.uniform_strain import gradients_of
 from dem_cli.model.scales import depth, origin_of, smallest_edge
+from dem_cli.model.uniform_strain import gradients_of
 
 
 class Simulation:
@@ -174,9 +174,7 @@ class Simulation:
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
         model = self.model
-        loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, model.dimension, model.n_modes > 0
-        )
+        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled, model.dimension, model.n_modes > 0)
         done: int = loop(
             n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,

@@ -13,7 +13,6 @@ import numpy as np
 
 from dem_cli.kernels.deformation.matrices import inverse, load_matrix, product, store_matrix, transposed
 from dem_cli.kernels.jit import inline, overload
-from dem_cli.kernels.vec import scale
 
 
 def strain_of(amplitudes, row, first, per_radius, like):
