@@ -48,8 +48,8 @@ class Material(CaseModel):
     )
     deformation: Literal["uniform-strain", "none"] | None = Field(
         default=None,
-        description="how blocks deform: 'uniform-strain' gives each block one strain of its own, linear elastic (in 2D in "
-        "plane stress), 'none' keeps blocks rigid; default: none. Fixed blocks do not deform",
+        description="how blocks deform: 'uniform-strain' gives each block one strain of its own, linear elastic (in 2D "
+        "in plane stress), 'none' keeps blocks rigid; default: none. Fixed blocks do not deform",
         examples=["uniform-strain"],
     )
 

@@ -393,7 +393,7 @@ class Simulation:
 
 
 def _require_known(model: Model, kinematics: str) -> None:
-    """Raises CaseError where blocks in space deform while geometry moves: their faces would no longer be where they are."""
+    """Raises CaseError where blocks in space deform while geometry moves: faces that turn by strain are not known."""
     if model.n_modes and kinematics == "large" and model.dimension == 3:
         message = (
             "geometry that moves is not known in 3D where blocks deform (deformation = 'uniform-strain'); "

@@ -122,6 +122,5 @@ def make_planar_forces(
             push_apart(forces, a, b, force, torque_a, torque_b)
         return friction_work
 
-    flags = ("bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "", "rigid" if rigid else "")
-    flags += ("strains" if strains else "",)
-    return named(planar_forces, law, *flags)
+    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "strains": strains}
+    return named(planar_forces, law, *(name if on else "" for name, on in flags.items()))

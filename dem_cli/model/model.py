@@ -178,8 +178,13 @@ class Model(ModelArrays):
 
     def parts_alone(self) -> Model:
         """Every part a block of its own that can move; for detection, masses and loads are not divided."""
-        rigid = dict.fromkeys(OF_MODES, NO_MODES)
-        return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool), **rigid)
+        return self._replace(
+            part_blocks=np.arange(self.n_parts),
+            fixed=np.zeros(self.n_parts, bool),
+            mode_stiffness=NO_MODES,
+            dead_mode_loads=NO_MODES,
+            live_mode_loads=NO_MODES,
+        )
 
 
 def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Uniform strain of deformable blocks: modes, their elastic stiffness and loads, strains, stresses; 2D (plane stress) and 3D.
+"""Uniform strain of deformable blocks: modes, elastic stiffness, loads, strains, stresses; 2D (plane stress) and 3D.
 
 ε = Σ a_k B_k / radius: an amplitude a_k [m] is what a point as far from the centroid as the farthest corner moves by.
 With B_k = 1, diag(1, −1), shear in the plane, and 1, diag(1, −1, 0), diag(1, 1, −2), three shears in space, isotropic

@@ -1,4 +1,4 @@
-"""Spread of a joint whose blocks deform: motion of its places by strain, and the dyads of the forces at them; 2D and 3D.
+"""Spread of a joint whose blocks deform: motion of its places by strain, dyads of the forces at them; 2D and 3D.
 
 On geometry of the start a joint has one frame and one anchor; a place is counted along the tangents. By strain alone a
 place moves by what its anchor does and by ΔD t for each of its coordinates, ΔD: of b less of a.
