@@ -23,6 +23,7 @@ from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.model import Model
+from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
 
@@ -160,7 +161,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
     bodies = bodies_of(case.dimension, [block.parts for block in blocks], density, thickness)
     bodies = _weighed(bodies, blocks)
     n, n_dof = len(blocks), case.dimension + bodies.inertias.shape[1]
-    return Model(
+    model = Model(
         **bodies._asdict(),
         block_ids=tuple(block.id for block in blocks),
         material_names=tuple(materials),
@@ -171,6 +172,19 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
     )
+    return _with_modes(case, model)
+
+
+def _with_modes(case: Case, model: Model) -> Model:
+    """With the modes of blocks that deform; nothing where none does."""
+    tables = case.materials.values()
+    if not any(table.strains for table in tables):
+        return model
+    young = np.array([table.young if table.strains else 0.0 for table in tables], float)[model.block_material]
+    poisson = np.array([table.poisson for table in tables])[model.block_material]
+    volumes = model.shapes.volumes * model.thickness
+    stiffness = mode_stiffness(model.dimension, young, poisson, volumes, model.shapes.radii)
+    return model._replace(mode_stiffness=np.where(model.fixed[:, None], 0.0, stiffness))
 
 
 def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
@@ -191,19 +205,23 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
     weight = np.zeros_like(model.dead_loads)
     weight[:, d - 1] = -model.masses * case.gravity
     free = ~model.fixed[:, None]
-    live = np.zeros_like(model.live_loads)
+    live, applied = np.zeros_like(model.live_loads), list[AppliedLoad]()
     if pattern == "mass":
         live[:, :d] = -weight[:, d - 1 : d] * _direction(case)
         heavy = [load for load in dead if load.weights.any()]
-        live += _resultants(model, [load._replace(forces=np.outer(load.weights, _direction(case))) for load in heavy])
+        applied = [load._replace(forces=np.outer(load.weights, _direction(case))) for load in heavy]
     elif pattern == "tilt":
         turn = _quarter_turn(case, dead)
         live[:, :d] = weight[:, :d] @ turn.T
-        live += _resultants(model, [load._replace(forces=load.forces @ turn.T) for load in dead])
+        applied = [load._replace(forces=load.forces @ turn.T) for load in dead]
     elif pattern == "live":
-        live = _resultants(model, [load for load in loads if not load.dead])
+        applied = [load for load in loads if not load.dead]
+    live += _resultants(model, applied)
     dead_loads = weight + _resultants(model, dead)
-    return model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
+    model = model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
+    if not model.n_modes:
+        return model
+    return model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
 
 
 def _direction(case: Case) -> np.ndarray:
@@ -252,3 +270,12 @@ def _resultants(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
         arms = load.points - model.centroids[load.blocks]
         np.add.at(total, load.blocks, np.column_stack([load.forces, moments(arms, load.forces)]))
     return total
+
+
+def _on_modes(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
+    """What loads do to the modes of blocks that deform [N], (n_blocks, m); weight acts evenly and does nothing."""
+    total = np.zeros_like(model.mode_stiffness)
+    for load in loads:
+        arms = load.points - model.centroids[load.blocks]
+        np.add.at(total, load.blocks, mode_loads(arms, load.forces, model.shapes.radii[load.blocks]))
+    return np.where(model.mode_stiffness > 0.0, total, 0.0)

@@ -13,6 +13,7 @@ from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
 SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -59,9 +60,23 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
+    found += strained_blocks(data, analysis.get("kind"))
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
+
+
+def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
+    """Materials whose blocks have strains where that is not known: with real masses, which would vibrate far too
+    fast, and beside ties.
+    """
+    if not isinstance(data.get("materials"), dict):
+        return
+    reason = f"in kind = {show(kind)}: strains need analyses without time" if kind in WITH_REAL_MASSES else ""
+    reason = reason or ("beside [[tie]]: ties hold on to blocks that keep their shape" if data.get("tie") else "")
+    for name, table in data["materials"].items():
+        if reason and isinstance(table, dict) and table.get("deformation") == "uniform-strain":
+            yield CaseProblem(("materials", name, "deformation"), f"'uniform-strain' is not known {reason}")
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:

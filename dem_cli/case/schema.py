@@ -46,25 +46,32 @@ class Material(CaseModel):
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
         default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
-    deformation: Literal["joints", "none"] | None = Field(
+    deformation: Literal["joints", "uniform-strain", "none"] | None = Field(
         default=None,
-        description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'none' keeps blocks "
-        "rigid; default: joints where young is given. Fixed blocks do not deform",
+        description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'uniform-strain' "
+        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'none' keeps blocks rigid; "
+        "default: joints where young is given. Fixed blocks do not deform",
         examples=["joints"],
     )
 
     @model_validator(mode="after")
     def _deforms_by_its_modulus(self) -> Material:
-        if self.deformation == "joints" and self.young is None:
-            raise KeyProblem("'joints' is not allowed without 'young', Young's modulus [Pa]", "deformation")
+        if self.deformation in ("joints", "uniform-strain") and self.young is None:
+            message = f"'{self.deformation}' is not allowed without 'young', Young's modulus [Pa]"
+            raise KeyProblem(message, "deformation")
         return self
 
     @property
     def moduli(self) -> tuple[float, float]:
-        """E and G = E / 2(1 + ν) of blocks that deform in their joints [Pa]; infinite: they are rigid."""
+        """E and G = E / 2(1 + ν) of blocks that deform in their joints [Pa]; infinite: they do not."""
         if self.young is None or self.deformation not in (None, "joints"):
             return math.inf, math.inf
         return self.young, self.young / (2.0 * (1.0 + self.poisson))
+
+    @property
+    def strains(self) -> bool:
+        """Whether its blocks have a strain of their own."""
+        return self.deformation == "uniform-strain"
 
 
 class Interface(CaseModel):

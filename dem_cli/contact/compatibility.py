@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.geometry.rotation import frames
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import Bodies, Joints
 from dem_cli.model.model import Model
+from dem_cli.model.uniform_strain import rotated_basis
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -59,3 +60,13 @@ def compatibility(model: Model, joints: Joints) -> csr_matrix:
     matrix = csr_matrix((rows[used], columns[used], starts), shape=shape)
     matrix.sort_indices()
     return matrix
+
+
+def strain_motion(model: Model, joints: Joints, bodies: Bodies) -> np.ndarray:
+    """∂(motion of b against a)/∂(amplitudes of a, of b) where blocks deform, (n_points, d directions, 2 blocks, m)."""
+    d, blocks = model.dimension, joints.blocks[joints.owners]
+    arms = joints.points[:, None] - bodies.positions[blocks]
+    turned = rotated_basis(bodies.gradients.reshape(-1, d, d))[blocks]
+    moved = np.einsum("psmij,psj->psmi", turned, arms) / model.shapes.radii[blocks][:, :, None, None]
+    along = np.einsum("pki,psmi->pksm", directions(joints, d), moved)
+    return along * np.array([-1.0, 1.0])[:, None]

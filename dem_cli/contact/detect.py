@@ -7,7 +7,7 @@ import numpy as np
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import Faces
 from dem_cli.geometry.rotation import matrices
-from dem_cli.kernels.records import BlockShapes
+from dem_cli.kernels.records import BlockShapes, Bodies
 from dem_cli.model.model import Model
 
 
@@ -15,12 +15,22 @@ def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
     inertias = np.where(model.fixed[:, None], 0.0, model.inertias)
     axes = matrices(model.principal_axes).reshape(-1, 9)
-    return BlockShapes(model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii, inertias, axes)
+    stiffness = model.mode_stiffness if model.n_modes else np.zeros((model.n_blocks, 0))
+    return BlockShapes(
+        model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii, inertias, axes, stiffness
+    )
 
 
 def world_corners(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """Corners of all parts in place [m], (n_vertices, d)."""
     return geometry_of(positions.shape[1]).corners_of(shape, positions, orientations)
+
+
+def strained_corners(shape: BlockShapes, bodies: Bodies) -> np.ndarray:
+    """The same of blocks that deform, by their gradients, (n_vertices, d)."""
+    d = bodies.positions.shape[1]
+    gradients = bodies.gradients.reshape(-1, d, d)[shape.corner_blocks]
+    return bodies.positions[shape.corner_blocks] + np.einsum("vij,vj->vi", gradients, shape.corner_arms)
 
 
 def find_joints(model: Model, corners: np.ndarray, reach: float) -> Faces:

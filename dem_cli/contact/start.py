@@ -22,15 +22,25 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool =
 
     moves: whether geometry does; orientations in space are quaternions then, else rotation vectors that add up.
     """
-    n, n_dof = model.dead_loads.shape
+    n, n_modes = model.n_blocks, model.n_modes
+    n_dof = model.dead_loads.shape[1] + n_modes
     shape, positions = block_shape(model), model.centroids - origin
     orientations = unturned(n, model.dimension) if moves else np.zeros_like(model.inertias)
     turns = turns_of(orientations)
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)),
         world_corners(shape, positions, orientations), turns, mobilities(shape.inertias, shape.axes, turns),
-        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n), **_unstrained(model),
     )  # fmt: skip
+
+
+def _unstrained(model: Model) -> dict[str, np.ndarray]:
+    """Fields of blocks that deform, before they do; none where all blocks are rigid."""
+    if not model.n_modes:
+        return {}
+    n, d = model.n_blocks, model.dimension
+    one, zero = np.tile(np.eye(d).ravel(), (n, 1)), np.zeros((n, d * d))
+    return {"modes": np.zeros((n, model.n_modes)), "gradients": one, "stretchings": zero, "dyads": zero.copy()}
 
 
 def close_touching(contacts: Contacts, smallest: float) -> None:

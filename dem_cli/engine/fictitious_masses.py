@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.compatibility import relative_motion
+from dem_cli.contact.compatibility import relative_motion, strain_motion
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.kernels.records import BlockShapes, Bodies, Joints
 from dem_cli.links.link import Springs
@@ -26,16 +26,21 @@ def fictitious_masses(
 
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety). Where blocks turn in space, all three
-    rotations of one have the largest of their masses. links: springs beside those of the joints.
+    rotations of one have the largest of their masses. Modes of blocks that deform are further columns, with their own
+    stiffness; 0 where a block has none. links: springs beside those of the joints.
     """
-    rows = np.abs(relative_motion(joints, model.dimension))
+    rows = relative_motion(joints, model.dimension)
+    if model.n_modes:
+        rows = np.concatenate([rows, strain_motion(model, joints, bodies)], axis=3)
+    rows = np.abs(rows)
     blocks = joints.blocks[joints.owners]
     weights = np.ones(inverse_out.shape)
     weights[:, model.rotations] = 1.0 / shape.radii[:, None]
-    free = ~model.fixed
+    free = np.broadcast_to(~model.fixed[:, None], inverse_out.shape).copy()
+    free[:, model.rotations.stop :] &= shape.mode_stiffness > 0.0
     reach = np.zeros(rows.shape[:2])
     for side in (0, 1):
-        reach += (rows[:, :, side] * (weights * free[:, None])[blocks[:, side]][:, None, :]).sum(axis=2)
+        reach += (rows[:, :, side] * (weights * free)[blocks[:, side]][:, None, :]).sum(axis=2)
     stiffness = np.stack([joints.kn, *[joints.ks] * (model.dimension - 1)], axis=1)
     masses = np.zeros_like(inverse_out)
     for side in (0, 1):
@@ -45,6 +50,7 @@ def fictitious_masses(
         masses += gershgorin(links, weights, model.fixed)
     if bodies.orientations.shape[1] > model.inertias.shape[1]:  # quaternions: the block turns under its axes
         masses[:, model.rotations] = masses[:, model.rotations].max(axis=1, keepdims=True)
+    masses[:, model.rotations.stop :] += shape.mode_stiffness
     masses /= 4.0 * safety**2
     # Blocks that touch nothing now: as heavy as a typical block that does, or falling slowly.
     for k in range(masses.shape[1]):
@@ -55,4 +61,4 @@ def fictitious_masses(
         else:
             masses[lonely, k] = np.median(masses[~lonely, k])
     inverse_out[:] = 1.0 / masses
-    inverse_out[model.fixed] = 0.0
+    inverse_out[~free] = 0.0

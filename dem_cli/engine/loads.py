@@ -16,8 +16,8 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
     least width that a block's moments are compared with.
     """
     d = model.dimension
-    dead = model.dead_loads.copy()
-    live = model.live_loads * live_scale
+    dead = _with_modes(model.dead_loads, model.dead_mode_loads)
+    live = _with_modes(model.live_loads, model.live_mode_loads) * live_scale
     dead[model.fixed] = 0.0
     live[model.fixed] = 0.0
     force_scales = np.empty_like(dead)
@@ -31,3 +31,8 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
         force_scales=force_scales,
         speed_limits=np.full_like(dead, np.inf),
     )
+
+
+def _with_modes(loads: np.ndarray, on_modes: np.ndarray) -> np.ndarray:
+    """Loads of blocks, behind them those of their modes; a copy."""
+    return np.column_stack([loads, on_modes]) if on_modes.shape[1] else loads.copy()

@@ -8,7 +8,14 @@ from typing import NamedTuple
 
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.drift import drift_centroids, drift_corners, drift_solids, drift_tumbling
+from dem_cli.kernels.drift import (
+    drift_centroids,
+    drift_corners,
+    drift_solids,
+    drift_strained_centroids,
+    drift_strained_corners,
+    drift_tumbling,
+)
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.shake import make_shake
@@ -23,6 +30,7 @@ class Drifts(NamedTuple):
 
     in_pseudo_time: Callable
     in_time: Callable  # with real masses, in seconds
+    strained: Callable | None = None  # in pseudo-time, of blocks that deform
 
 
 def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
@@ -34,21 +42,36 @@ def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
 
 
 FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law
-DRIFTS = {2: Drifts(drift_corners, drift_corners), 3: Drifts(drift_solids, drift_tumbling)}
+DRIFTS = {2: Drifts(drift_corners, drift_corners, drift_strained_corners), 3: Drifts(drift_solids, drift_tumbling)}
 
 
 @cache
 def compiled_advance(
-    kinematics: str, law: Law, profiled: bool = False, dimension: int = 2, links: tuple[str, ...] = ()
+    kinematics: str,
+    law: Law,
+    profiled: bool = False,
+    dimension: int = 2,
+    links: tuple[str, ...] = (),
+    strains: bool = False,
 ):
     """The stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its first call.
 
-    links: kinds of links that the scene has (links/registry.py).
+    links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows.
     """
+    if strains:
+        return _strained_advance(kinematics, law, profiled, dimension)
     if kinematics == "fixed":
         return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids, _pull(links, False))
     forces = FORCES[dimension](law, profiled, rigid=True)
     return make_advance(forces, DRIFTS[dimension].in_pseudo_time, _pull(links, True))
+
+
+def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int):
+    if kinematics == "fixed":
+        return make_advance(make_contact_forces(law.function, law.bonded, True), drift_strained_centroids, strains=True)
+    forces, drift = FORCES[dimension](law, profiled, rigid=True, strains=True), DRIFTS[dimension].strained
+    assert drift is not None  # tables refuse what is not known
+    return make_advance(forces, drift, strains=True, moves=True)
 
 
 @cache

@@ -13,6 +13,7 @@ from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_sinc
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
 from dem_cli.links.matrices import softest
+from dem_cli.model import uniform_strain
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -82,7 +83,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
     """Largest acceleration that its own loads alone can give each block [m per step²], (n_blocks,)."""
     loads, control, d = sim.loads, sim.control, sim.model.dimension
     force = control[slot.DEAD_FACTOR] * loads.dead[:, :d] + control[slot.LIVE_FACTOR] * loads.live[:, :d]
-    light = loads.inverse_masses.copy()
+    light = loads.inverse_masses[:, : sim.model.rotations.stop].copy()
     light[:, sim.model.rotations] *= sim.shape.radii[:, None] ** 2
     return np.sqrt((force**2).sum(axis=1)) * light.max(axis=1)
 
@@ -203,5 +204,17 @@ def frame(sim: Simulation, stage: str) -> Frame:
     bodies = sim.bodies
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        quaternions(bodies.orientations), bodies.velocities.copy(), contact_record(sim), sim.time,
+        quaternions(bodies.orientations), sim.speeds.copy(), contact_record(sim), sim.time,
+        block_stresses(sim),
     )  # fmt: skip
+
+
+def block_stresses(sim: Simulation) -> np.ndarray | None:
+    """Stresses of blocks that deform, in their own axes [Pa], as Frame.stresses; None: all blocks are rigid."""
+    model, shape = sim.model, sim.shape
+    if not model.n_modes:
+        return None
+    volumes = model.shapes.volumes * model.thickness
+    found = uniform_strain.stresses(sim.bodies.modes, shape.mode_stiffness, volumes, shape.radii)
+    rows, columns = ([0, 1, 0], [0, 1, 1]) if model.dimension == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
+    return found[:, rows, columns]

@@ -156,7 +156,7 @@ class Monitors:
             return ()
         bodies, watched = sim.bodies, self.watched
         places = np.column_stack([bodies.positions[watched], rotation_vectors(bodies.orientations[watched])])
-        sample = np.stack([places, bodies.velocities[watched], sim.accelerations(watched)], axis=1)
+        sample = np.stack([places, sim.speeds[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
         links = np.concatenate([link.state for link in sim.links]) if sim.links else np.zeros((0, N_STATE))
         return tuple(self.series(sample[np.newaxis], still, links[np.newaxis])[0].tolist())

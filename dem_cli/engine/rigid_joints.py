@@ -86,5 +86,6 @@ def _motion_that_opens(sim: Simulation, by: np.ndarray) -> np.ndarray:
     diagonal = matrix.diagonal()
     matrix += diags(relief.singular * np.where(diagonal > 0.0, diagonal, diagonal.max(initial=0.0)))
     moved = np.zeros_like(sim.bodies.velocities)
-    moved[sim.free] = splu(matrix).solve(weighted @ wanted.ravel()).reshape(len(sim.free), -1)
+    columns = sim.model.rotations.stop
+    moved[sim.free, :columns] = splu(matrix).solve(weighted @ wanted.ravel()).reshape(-1, columns)
     return moved

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.contact.detect import block_shape, world_corners
+from dem_cli.contact.detect import block_shape, strained_corners, world_corners
 from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
@@ -14,6 +14,7 @@ from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
+from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
@@ -24,6 +25,7 @@ from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
+from dem_cli.model.uniform_strain import gradients_of
 
 
 class Simulation:
@@ -43,6 +45,7 @@ class Simulation:
         tilting: bool = False,
         settings: Settings = DEFAULT,
     ):
+        _require_known(model, kinematics)
         self.settings, relaxation = settings, settings.relaxation
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
@@ -194,8 +197,9 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        model = self.model
         loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, self.model.dimension, self.kinds_of_links
+            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links, model.n_modes > 0
         )
         done: int = loop(
             n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
@@ -203,9 +207,15 @@ class Simulation:
         )  # fmt: skip
         return done
 
+    @property
+    def speeds(self) -> np.ndarray:
+        """Velocities of the blocks without those of their modes, (n_blocks, d + r)."""
+        return self.bodies.velocities[:, : self.model.rotations.stop]
+
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
-        """Of the last step, per unit of the solver's time, (n, n_dof)."""
-        return self.bodies.unbalanced[blocks] * self.loads.inverse_masses[blocks]
+        """Of the last step, per unit of the solver's time, (n, d + r)."""
+        columns = slice(self.model.rotations.stop)
+        return self.bodies.unbalanced[blocks, columns] * self.loads.inverse_masses[blocks, columns]
 
     def rest(self) -> None:
         """Stop all free blocks; their kinetic energy goes to damping."""
@@ -288,7 +298,7 @@ class Simulation:
 
     def move_supports(self, velocities: np.ndarray) -> None:
         """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""
-        self.bodies.velocities[self.model.fixed] = velocities[self.model.fixed]
+        self.bodies.velocities[self.model.fixed, : velocities.shape[1]] = velocities[self.model.fixed]
 
     def displace(self, blocks: np.ndarray, displacement: np.ndarray) -> None:
         """Moves blocks where they are put [m], (d,); `find_faces` when all are in place."""
@@ -330,8 +340,12 @@ class Simulation:
     def _follow(self) -> None:
         """Takes along what goes with the blocks to where they were put: corners, turns, mobilities."""
         bodies, shape = self.bodies, self.shape
-        bodies.corners[:] = world_corners(shape, bodies.positions, bodies.orientations)
         bodies.turns[:] = turns_of(bodies.orientations)
+        if self.model.n_modes:
+            bodies.gradients[:] = gradients_of(bodies.modes, shape.radii, bodies.turns)
+            bodies.corners[:] = strained_corners(shape, bodies)
+        else:
+            bodies.corners[:] = world_corners(shape, bodies.positions, bodies.orientations)
         bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
 
     def place(self, normal: np.ndarray, shear: np.ndarray, gaps: np.ndarray, displacements: np.ndarray) -> None:
@@ -344,6 +358,7 @@ class Simulation:
         self.bodies.positions[:] = self.reference_positions + displacements[:, :d]
         self.bodies.orientations[:] = oriented_as(self.bodies.orientations, displacements[:, self.model.rotations])
         self.bodies.velocities[:] = 0.0
+        self.bodies.modes[:] = 0.0
         if self.kinematics == "large":
             self._follow()
 
@@ -396,11 +411,12 @@ class Simulation:
         return 0.5 * float((self.bodies.velocities[moving] ** 2 / inverse[moving]).sum())
 
     def elastic_energy(self) -> float:
-        """In the springs of the joints and of links [J]."""
+        """In the springs of the joints and of links, and in blocks that deform [J]."""
         contacts, joints = self.contacts, self.joints
         normal = (contacts.normal**2 / np.where(joints.kn > 0, joints.kn, 1.0)).sum()
         shear = ((contacts.shear**2).sum(axis=1) / np.where(joints.ks > 0, joints.ks, 1.0)).sum()
-        return 0.5 * float(normal + shear) + elastic_energy_of_links(self.links)
+        inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
+        return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
 
     def books(self) -> Books:
         """The energy ledger as it stands."""
@@ -410,3 +426,13 @@ class Simulation:
         """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
         turned = rotation_vectors(self.bodies.orientations)
         return np.column_stack([self.bodies.positions, turned * self.shape.radii[:, None]])
+
+
+def _require_known(model: Model, kinematics: str) -> None:
+    """Raises CaseError where blocks in space deform while geometry moves: faces that turn by strain are not known."""
+    if model.n_modes and kinematics == "large" and model.dimension == 3:
+        message = (
+            "geometry that moves is not known in 3D where blocks deform (deformation = 'uniform-strain'); "
+            "give kinematics = 'fixed', without follow"
+        )
+        raise CaseError([CaseProblem(("analysis", "kinematics"), message)])

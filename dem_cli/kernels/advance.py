@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from dem_cli.kernels.deformation.uniform_strain import resist, stretch
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
     CONTACT,
@@ -178,8 +179,17 @@ def _book(
     ledger[SUPPORT] += dt * support
 
 
-def make_advance(contact_forces: Callable, drift: Callable, link_forces: Callable | None = None) -> Callable:
-    """The compiled stepping loop for one contact loop, one way to move the blocks and the links that there are."""
+def make_advance(
+    contact_forces: Callable,
+    drift: Callable,
+    link_forces: Callable | None = None,
+    strains: bool = False,
+    moves: bool = False,
+) -> Callable:
+    """The compiled stepping loop for one contact loop, one way to move the blocks and the links that there are.
+
+    strains: blocks deform; moves: on geometry that moves.
+    """
     linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
     @kernel
@@ -207,9 +217,13 @@ def make_advance(contact_forces: Callable, drift: Callable, link_forces: Callabl
         done = 0
         for _ in range(n_steps):
             forces[:] = 0.0
+            if strains:
+                stretch(bodies, shape, like, moves)
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if linked:
                 ledger[FRICTION] += pull(links, bodies, like, like_rotation)
+            if strains:
+                resist(bodies, shape, like, moves)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
@@ -246,5 +260,6 @@ def make_advance(contact_forces: Callable, drift: Callable, link_forces: Callabl
         control[MEAN_LOAD] = mean_load / done
         return done
 
-    named(advance.py_func, contact_forces, drift, *filter(None, (link_forces,)))
+    named(advance.py_func, contact_forces, drift, *(part for part in (link_forces,) if part is not None),
+          *["strains"] * strains, *["moves"] * moves)  # fmt: skip
     return advance

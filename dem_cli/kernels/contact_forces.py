@@ -12,13 +12,19 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_point import make_press, push_apart
+from dem_cli.kernels.deformation.joint_spread import add_leverage, add_spread_dyads, no_leverage, spread_at, spread_of
+from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
-def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over."""
+def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = False) -> Callable:
+    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+
+    strains: blocks deform (kernels/deformation).
+    """
     press = make_press(law, bonded)
 
     @inline
@@ -26,7 +32,7 @@ def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
         """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
         blocks, starts, axes, arms, places = joints.blocks, joints.starts, joints.axes, joints.arms, joints.places
         gaps, normals, velocities, forces = contacts.gaps, contacts.normal, bodies.velocities, bodies.forces
-        d = len(like)
+        stretchings, d = bodies.stretchings, len(like)
         lost = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
@@ -37,6 +43,11 @@ def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
             spin_b = load(velocities, b, d, like_rotation)
             moved = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), moved)
+            if strains:
+                gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
+                moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
+                spread = spread_of(frame, gradient_a, gradient_b, dt)
+                leverage = no_leverage(like)
             opens, slides = components(frame, scale(dt, moved))
             spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
             push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
@@ -44,20 +55,29 @@ def make_contact_forces(law: Callable, bonded: bool = False) -> Callable:
                 point = np.uint64(p)
                 place = load(places, point, 0, like[1:])
                 opened = opens + opening_at(spin, place)
+                if strains:
+                    spread_open, spread_along = spread_at(spread, place)
+                    opened += spread_open
                 gap = gaps[point] + opened
                 gaps[point] = gap
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
-                normal, shear, work = press(
-                    gap, opened, sliding_at(slides, spin, place), joints, contacts, joint, point
-                )
+                slide = sliding_at(slides, spin, place)
+                if strains:
+                    slide = axpy(1.0, spread_along, slide)
+                normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 push += normal
                 rub = axpy(1.0, shear, rub)
                 twist = add_moment_at(place, normal, shear, twist)
+                if strains:
+                    leverage = add_leverage(leverage, place, normal, shear)
             force, couple = compose(frame, push, rub, scale(0.0, like)), seen_outside(frame, twist)
             torque_a, torque_b = axpy(1.0, moment(arm_a, force), couple), axpy(1.0, moment(arm_b, force), couple)
             push_apart(forces, a, b, force, torque_a, torque_b)
+            if strains:
+                stretch_apart(bodies.dyads, a, b, force, arm_a, arm_b)
+                add_spread_dyads(bodies.dyads, a, b, frame, leverage)
         return lost
 
-    return named(contact_forces, law, "bonded" if bonded else "")
+    return named(contact_forces, law, "bonded" if bonded else "", "strains" if strains else "")

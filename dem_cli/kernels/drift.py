@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from dem_cli.kernels.deformation.uniform_strain import deform, store_gradient, stretching_speed
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.spin import (
     along,
@@ -89,6 +90,43 @@ def drift_corners(bodies, shape, dt, like):
         x, y = arms[i, 0], arms[i, 1]
         corners[i, 0] = positions[block, 0] + c * x - s * y
         corners[i, 1] = positions[block, 1] + s * x + c * y
+    return largest
+
+
+@inline
+def drift_strained_centroids(bodies, shape, dt, like):
+    """As drift_centroids, of blocks that deform."""
+    deform(bodies, dt)
+    return drift_centroids(bodies, shape, dt, like)
+
+
+@inline
+def drift_strained_corners(bodies, shape, dt, like):
+    """As drift_corners, of blocks that deform: x = c + R (I + ε) X, so that edges stay straight."""
+    positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
+    corners, travel, turns, gradients = bodies.corners, bodies.travel, bodies.turns, bodies.gradients
+    corner_blocks, arms, radii = shape.corner_blocks, shape.corner_arms, shape.radii
+    deform(bodies, dt)
+    largest = 0.0
+    for number in range(positions.shape[0]):
+        i = np.uint64(number)
+        vx, vy, w = velocities[i, 0], velocities[i, 1], velocities[i, 2]
+        positions[i, 0] += dt * vx
+        positions[i, 1] += dt * vy
+        angle = orientations[i, 0] + dt * w
+        orientations[i, 0] = angle
+        turns[i, 0], turns[i, 1] = _turn(angle)
+        store_gradient(bodies, shape, i, like)
+        moved = travel[i] + dt * (math.sqrt(vx * vx + vy * vy) + radii[i] * abs(w) + stretching_speed(bodies, i, like))
+        travel[i] = moved
+        if moved > largest:
+            largest = moved
+    for number in range(corners.shape[0]):
+        i = np.uint64(number)
+        block = np.uint64(corner_blocks[i])
+        x, y = arms[i, 0], arms[i, 1]
+        corners[i, 0] = positions[block, 0] + gradients[block, 0] * x + gradients[block, 1] * y
+        corners[i, 1] = positions[block, 1] + gradients[block, 2] * x + gradients[block, 3] * y
     return largest
 
 

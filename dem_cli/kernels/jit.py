@@ -39,7 +39,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 def _source_hash() -> str:
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
     for folder in ("kernels", "laws", "links"):
-        for source in sorted((_ROOT / folder).glob("*.py")):
+        for source in sorted((_ROOT / folder).rglob("*.py")):
             digest.update(source.name.encode())
             digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

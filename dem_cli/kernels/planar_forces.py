@@ -11,19 +11,28 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
+from dem_cli.kernels.deformation.joint_spread import spread_between
+from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
-from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end
-from dem_cli.kernels.vec import axpy, load, scale, sliding
+from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
+from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
 def make_planar_forces(
-    law: Callable, bonded: bool = False, keeps: bool = False, meets: bool = False, rigid: bool = False
+    law: Callable,
+    bonded: bool = False,
+    keeps: bool = False,
+    meets: bool = False,
+    rigid: bool = False,
+    strains: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
     rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, in statics.
+    strains: blocks deform (kernels/deformation); their edges stay straight.
     """
     press = make_press(law, bonded)
 
@@ -34,7 +43,7 @@ def make_planar_forces(
         frames, levers = joints.frames, joints.levers
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
-        d = len(like)
+        stretchings, d = bodies.stretchings, len(like)
         friction_work = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
@@ -42,6 +51,8 @@ def make_planar_forces(
             k, m = np.uint64(edges[joint, 2]), np.uint64(edges[joint, 3])
             a0, a1 = load(corners, i, 0, like), load(corners, j, 0, like)
             b0, b1 = load(corners, k, 0, like), load(corners, m, 0, like)
+            if strains:
+                refresh_lengths(scales, joint, a0, a1, b0, b1)
             overlap, gap_low, gap_high, share_low, share_high, ta, tb = overlap_of(
                 a0, a1, b0, b1, scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
             )
@@ -71,33 +82,45 @@ def make_planar_forces(
             spin_b = load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
+            if strains:
+                gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             if on_low:
-                frame, levers_a, levers_b, _ = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
+                frame, levers_a, levers_b, place = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 if keeps:
                     frames[first, 0], frames[first, 1] = frame[0]
                     levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
                     levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                if strains:
+                    arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                    slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
                 )  # fmt: skip
+                if strains:
+                    stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
             if on_high:
-                frame, levers_a, levers_b, _ = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
+                frame, levers_a, levers_b, place = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
                 if keeps:
                     frames[second, 0], frames[second, 1] = frame[0]
                     levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
                     levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                if strains:
+                    arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                    slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
                 )  # fmt: skip
+                if strains:
+                    stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
             push_apart(forces, a, b, force, torque_a, torque_b)
         return friction_work
 
-    flags = ("bonded" if bonded else "", "keeps" if keeps else "", "meets" if meets else "", "rigid" if rigid else "")
-    return named(planar_forces, law, *flags)
+    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "strains": strains}
+    return named(planar_forces, law, *(name if on else "" for name, on in flags.items()))

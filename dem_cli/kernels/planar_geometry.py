@@ -61,6 +61,14 @@ def share_of(twice_inside, blend):
 
 
 @always_inline
+def refresh_lengths(scales, joint, a0, a1, b0, b1):
+    """Lengths of the two edges of blocks that deform, into the `scales` of their joint."""
+    length_a = math.sqrt((a1[0] - a0[0]) ** 2 + (a1[1] - a0[1]) ** 2)
+    scales[joint, 0], scales[joint, 1] = length_a, 1.0 / length_a
+    scales[joint, 2] = 1.0 / math.sqrt((b1[0] - b0[0]) ** 2 + (b1[1] - b0[1]) ** 2)
+
+
+@always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
     """The overlap of two edges: its length, the gaps of both ends, and what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)

@@ -15,9 +15,12 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
+from dem_cli.kernels.deformation.joint_spread import spread_between
+from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.planar_geometry import apart, place_end, share_of
-from dem_cli.kernels.vec import axpy, load, scale, sliding
+from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
+from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
 @always_inline
@@ -60,11 +63,13 @@ def make_profiled_forces(
     places: bool = False,
     meets: bool = False,
     rigid: bool = False,
+    strains: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
-    loop keeps gaps, frames, levers and points up to date, for detection and records. rigid: as in planar_forces.py.
+    loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
+    planar_forces.py.
     """
     press = make_press(law, bonded)
 
@@ -78,7 +83,7 @@ def make_profiled_forces(
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         sunk = geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
-        d = len(like)
+        stretchings, d = bodies.stretchings, len(like)
         lost = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
@@ -86,6 +91,8 @@ def make_profiled_forces(
             a1 = load(corners, np.uint64(edges[joint, 1]), 0, like)
             b0 = load(corners, np.uint64(edges[joint, 2]), 0, like)
             b1 = load(corners, np.uint64(edges[joint, 3]), 0, like)
+            if strains:
+                refresh_lengths(scales, joint, a0, a1, b0, b1)
             length_a, per_a, per_b, blend = (
                 scales[joint, 0], scales[joint, 1], scales[joint, 2], scales[joint, 3]
             )  # fmt: skip
@@ -134,6 +141,8 @@ def make_profiled_forces(
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
+            if strains:
+                gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -172,16 +181,21 @@ def make_profiled_forces(
                     continue
                 loaded = True
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
+                if strains:
+                    arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                    slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
                 )  # fmt: skip
+                if strains:
+                    stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
             if loaded:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
-    flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid}
+    flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}
     return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 

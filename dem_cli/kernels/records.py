@@ -1,6 +1,6 @@
 """The arrays that the kernels work on, each with its meaning, unit and shape.
 
-n_dof = d + r: d translations, then r rotations; room for more coordinates of a block is behind them. Time is the
+n_dof = d + r + m: d translations, r rotations, then m modes by which a block deforms (m = 0: rigid blocks). Time is the
 solver's: seconds in dynamics, one unit per step in quasi-static runs (with fictitious masses).
 """
 
@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.kernels.fixed_joints import FixedJoints
+
+NO_MODES = np.zeros((0, 0))
 
 
 class Bodies(NamedTuple):
@@ -32,6 +34,11 @@ class Bodies(NamedTuple):
     pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
     # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
+    # Of blocks that deform (model/uniform_strain.py), else empty:
+    modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
+    gradients: np.ndarray = NO_MODES  # deformation gradients R (I + ε), row by row, (n_blocks, d·d)
+    stretchings: np.ndarray = NO_MODES  # velocity gradients by deformation alone [1 per unit of time], (n_blocks, d·d)
+    dyads: np.ndarray = NO_MODES  # Σ contact force ⊗ arm from the centroid, axes of the world [N m], (n_blocks, d·d)
 
 
 class BlockShapes(NamedTuple):
@@ -42,6 +49,7 @@ class BlockShapes(NamedTuple):
     radii: np.ndarray  # largest distance of a corner from the centroid [m], (n_blocks,)
     inertias: np.ndarray  # moments of inertia, principal ones in space; 0 of supports [kg m²], (n_blocks, r)
     axes: np.ndarray  # from the principal axes to those of the block, matrices row by row, (n_blocks, 9); 2D (0, 9)
+    mode_stiffness: np.ndarray = NO_MODES  # of blocks that deform, 0: rigid ones among them [N/m], (n_blocks, m)
 
 
 class MovingJoints(NamedTuple):

@@ -26,6 +26,7 @@ from dem_cli.model.block_measures import (
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
+NO_MODES = np.zeros((0, 0))
 
 
 class ModelArrays(NamedTuple):
@@ -54,9 +55,14 @@ class ModelArrays(NamedTuple):
     principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
     links: tuple[Any, ...] = ()  # ties and the like, arrays of each kind that there is (links/link.py)
     link_names: tuple[str, ...] = ()  # of all of them, kind by kind
+    # Of blocks that deform alone (model/uniform_strain.py), else empty:
+    mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
+    dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
+    live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
+OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads")  # empty where blocks are rigid
 
 
 class Model(ModelArrays):
@@ -75,6 +81,11 @@ class Model(ModelArrays):
     def rotations(self) -> slice:
         """Columns of generalised vectors that are rotations; what is behind them deforms the block."""
         return slice(self.dimension, self.dimension + self.inertias.shape[1])
+
+    @property
+    def n_modes(self) -> int:
+        """By how many modes blocks deform; 0: rigid blocks."""
+        return self.mode_stiffness.shape[1]
 
     @property
     def n_parts(self) -> int:
@@ -172,11 +183,18 @@ class Model(ModelArrays):
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
             links=(),
             link_names=(),
+            **{name: getattr(self, name)[pick] for name in OF_MODES if self.n_modes},
         )
 
     def parts_alone(self) -> Model:
         """Every part a block of its own that can move; for detection, masses and loads are not divided."""
-        return self._replace(part_blocks=np.arange(self.n_parts), fixed=np.zeros(self.n_parts, bool))
+        return self._replace(
+            part_blocks=np.arange(self.n_parts),
+            fixed=np.zeros(self.n_parts, bool),
+            mode_stiffness=NO_MODES,
+            dead_mode_loads=NO_MODES,
+            live_mode_loads=NO_MODES,
+        )
 
 
 def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

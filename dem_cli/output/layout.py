@@ -66,6 +66,18 @@ def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...])
     return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
 
 
+def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "component")) -> Described:
+    """What has a component for each stress in a block."""
+    space = Described(meaning, "Pa", axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
+    return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space)
+
+
+def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
+    """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
+    space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
+    return Described(meaning, unit, axes, ("even", "x - y", "xy"), space)
+
+
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
 _INERTIA, _AXIS = "moment of inertia about the centroid", ("block", "axis")
 MODEL = {
@@ -114,6 +126,9 @@ MODEL = {
         _QUATERNION,
         spatial=True,
     ),
+    "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
+    "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
+    "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
 }
 _TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
@@ -129,6 +144,7 @@ FRAMES = {
         "velocity and spin: per second in a time history, else per solver step", *PER_SECOND,
         ("frame", "block", "component"),
     ),
+    "stresses": _of_stress("stress of each block, in its own axes, tension positive; where blocks deform alone"),
     "step": Described("solver steps so far", PURE, ("frame",)),
     "load": Described("load multiplier λ", PURE, ("frame",)),
     "displacement": Described("control displacement: the largest of any block since the start", "m", ("frame",)),
@@ -311,7 +327,11 @@ BLOCK_FIELDS = {
     "CellData/angular_velocity": Described(
         "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
     ),
-}
+    "CellData/stress": Described(
+        FRAMES["stresses"].meaning + ": xx, yy, xy", "Pa",
+        in_space=Described(FRAMES["stresses"].meaning + ": xx, yy, zz, yz, zx, xy", "Pa"),
+    ),
+}  # fmt: skip
 CONTACT_FIELDS = {
     "PointData/joint": CONTACTS["joint"],
     "PointData/block_a": Described("number of the first block"),

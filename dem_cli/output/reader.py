@@ -22,6 +22,8 @@ from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_F
 
 Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
 
+LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read when they are asked for
+
 
 @dataclass(frozen=True)
 class Results:
@@ -90,6 +92,7 @@ class Frames(Sequence[Frame]):
             velocities=columns["velocities"][i],
             contacts=contacts,
             time=float(columns["time"][i]),
+            stresses=columns["stresses"][i] if "stresses" in columns else None,
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -167,9 +170,9 @@ def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
     if "n_contacts" not in group:
         return Frames({}, {})
     n_frames = len(group["n_contacts"])
-    names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stage", "n_contacts")
+    names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stresses", "stage", "n_contacts")
     held = {name: group[name] for name in names if name in group}
-    columns = {name: data if lazy and name in FRAME_ARRAYS else data[:n_frames] for name, data in held.items()}
+    columns = {name: data if lazy and name in LAZY else data[:n_frames] for name, data in held.items()}
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
     contacts = dem["contacts"]
     return Frames(columns, {name: data if lazy else data[:] for name, data in contacts.items()})

@@ -108,6 +108,9 @@ class Frame(NamedTuple):
     velocities: np.ndarray  # per unit of the solver's time, (n_blocks, n_dof)
     contacts: ContactRecord
     time: float = 0.0  # since the start of a time history [s]; places and velocities are relative to its base
+    # Stresses of blocks that deform, in their own axes, tension positive [Pa]: xx, yy, xy, in 3D xx, yy, zz,
+    # yz, zx, xy, (n_blocks, 3 or 6); None: all blocks are rigid
+    stresses: np.ndarray | None = None
 
     def moved(self, motion: np.ndarray) -> Frame:
         """The same with blocks moved, and turned along the axes of the world [m, rad], (n_blocks, n_dof)."""

@@ -21,11 +21,13 @@ def block_fields(model: Model) -> dict[str, np.ndarray]:
 
 
 def turning_fields(model: Model, frame: Frame) -> dict[str, np.ndarray]:
-    """How blocks have turned, and in space how fast they turn; a value per convex part."""
+    """How blocks have turned, in space how fast they turn, and the stress of those that deform; per convex part."""
     parts, d = model.part_blocks, model.dimension
     found = {"rotation": angles_of(frame.orientations)}
     if frame.orientations.shape[1] == 4:
         found |= {"orientation": frame.orientations, "angular_velocity": frame.velocities[:, d:]}
+    if frame.stresses is not None:
+        found["stress"] = frame.stresses
     return {name: values[parts].astype(np.float32) for name, values in found.items()}
 
 

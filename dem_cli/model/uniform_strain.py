@@ -1,0 +1,73 @@
+"""Uniform strain of deformable blocks: modes, elastic stiffness, loads, strains, stresses; 2D (plane stress) and 3D.
+
+ε = Σ a_k B_k / radius: an amplitude a_k [m] is what a point as far from the centroid as the farthest corner moves by.
+With B_k = 1, diag(1, −1), shear in the plane, and 1, diag(1, −1, 0), diag(1, 1, −2), three shears in space, isotropic
+elasticity couples no two modes (bulk and shear moduli alone): energy ½ Σ K_k a_k², V σ : B_k = K_k a_k radius.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+_PLANAR = np.array([[[1.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, -1.0]], [[0.0, 1.0], [1.0, 0.0]]])
+_SPATIAL = np.array(
+    [
+        np.eye(3),
+        np.diag([1.0, -1.0, 0.0]),
+        np.diag([1.0, 1.0, -2.0]),
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
+        [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+        [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    ]
+)
+BASIS = {2: _PLANAR, 3: _SPATIAL}  # B_k by dimension, (m, d, d)
+
+
+def mode_stiffness(
+    dimension: int, young: np.ndarray, poisson: np.ndarray, volumes: np.ndarray, radii: np.ndarray
+) -> np.ndarray:
+    """Stiffness of the modes of blocks [N/m], (n_blocks, m); in the plane of blocks in plane stress.
+
+    young [Pa], poisson [-], volumes [m³], radii [m]: (n_blocks,); young 0: a rigid block, whose modes have none.
+    """
+    basis = BASIS[dimension]
+    squares = (basis**2).sum(axis=(1, 2))
+    moduli = np.repeat((young / (1.0 + poisson))[:, None], len(basis), axis=1)  # 2 G
+    moduli[:, 0] = young / (1.0 - (dimension - 1) * poisson)
+    return moduli * squares * (volumes / radii**2)[:, None]
+
+
+def mode_loads(arms: np.ndarray, forces: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """What forces (n, d) [N] at arms (n, d) from the centroids do to the modes [N], (n, m); radii [m], (n,)."""
+    return np.einsum("ni,mij,nj->nm", forces, BASIS[arms.shape[1]], arms) / radii[:, None]
+
+
+def strains(modes: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """Strains of blocks in their own axes [-], (n_blocks, d, d); modes [m], (n_blocks, m)."""
+    return np.einsum("nm,mij->nij", modes / radii[:, None], BASIS[2 if modes.shape[1] == 3 else 3])
+
+
+def stresses(modes: np.ndarray, stiffness: np.ndarray, volumes: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """Stresses of blocks in their own axes, tension positive [Pa], (n_blocks, d, d); 0: rigid blocks."""
+    basis = BASIS[2 if modes.shape[1] == 3 else 3]
+    parts = stiffness * modes * (radii / volumes)[:, None] / (basis**2).sum(axis=(1, 2))
+    return np.einsum("nm,mij->nij", parts, basis)
+
+
+def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    """Deformation gradients R (I + ε), row by row, (n_blocks, d·d); turns: as kernels.records.Bodies."""
+    d = 2 if modes.shape[1] == 3 else 3
+    rotations = turns.reshape(-1, 3, 3) if d == 3 else _planar_rotations(turns)
+    return (rotations @ (np.eye(d) + strains(modes, radii))).reshape(-1, d * d)
+
+
+def rotated_basis(gradients: np.ndarray) -> np.ndarray:
+    """R B_k F⁻¹ of blocks with gradients F (n_blocks, d, d): velocity gradients of their modes, (n_blocks, m, d, d)."""
+    left, _, right = np.linalg.svd(gradients)
+    rotations, basis = left @ right, BASIS[gradients.shape[1]]
+    return np.einsum("nij,mjk,nkl->nmil", rotations, basis, np.linalg.inv(gradients))
+
+
+def _planar_rotations(turns: np.ndarray) -> np.ndarray:
+    c, s = turns.T
+    return np.stack([np.stack([c, -s], axis=1), np.stack([s, c], axis=1)], axis=1)
