@@ -53,6 +53,11 @@ def live_displacement(sim: Simulation) -> float:
     return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
+def live_force(sim: Simulation) -> float:
+    """Sum of the forces of the live load at an internal multiplier of 1 [N]."""
+    return float(np.sqrt((sim.loads.live[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+
+
 def dead_scale(sim: Simulation) -> float:
     """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
     joints = sim.joints

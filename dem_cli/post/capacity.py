@@ -1,4 +1,4 @@
-"""capacity.png: load multiplier against control displacement, up to failure and over the whole collapse."""
+"""capacity.png: load multiplier against displacement, up to failure and over the whole collapse; idealisation, tests."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ import numpy as np
 from dem_cli.output.reader import Results
 from dem_cli.output.reference import from_summary
 from dem_cli.post import style
+from dem_cli.post.capacity_axis import CapacityAxis, capacity_axis
 
 _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farther than failure
 
 
 def draw_capacity(results: Results, path: Path) -> None:
     """Draw the capacity curve; one panel more where the way to failure would be invisible."""
-    history, summary = results.history, results.summary
-    farthest = float(history["displacement"].max(initial=0.0))
-    to_failure = _failure_displacement(results)
+    summary, along = results.summary, capacity_axis(results)
+    farthest, to_failure = along.farthest, along.failure
     panels = [farthest]
-    if to_failure and farthest > _ZOOM_FROM * to_failure:
+    if to_failure and farthest > _ZOOM_FROM * to_failure and not summary.get("capacity_curve"):
         panels = [2.0 * to_failure, farthest]
     with style.figure(path, figsize=(7.4 if len(panels) == 1 else 11.0, 4.3)) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
         for i, (axis, limit) in enumerate(zip(axes, panels, strict=True)):
-            _draw_curve(axis, results, limit)
+            _draw_curve(axis, results, along, limit)
             _draw_answers(axis, summary, labelled=i == len(axes) - 1)
             if title := _title(summary, i, len(panels)):
                 axis.set_title(title, fontweight="normal", color=style.GREY, fontsize=10)
@@ -77,19 +77,10 @@ def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:
         legend.remove()
 
 
-def _failure_displacement(results: Results) -> float | None:
-    """Where failure is, from the summary or the end of loading."""
-    given = results.summary.get("displacement_at_failure")
-    if given:
-        return float(given)
-    loading = results.history["displacement"][results.history["stage"] == "loading"]
-    return float(loading.max()) if len(loading) and loading.max() > 0 else None
-
-
-def _draw_curve(axis: Any, results: Results, limit: float) -> None:
+def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) -> None:
     history = results.history
     factor, unit = style.length_unit(limit)
-    x, y = factor * history["displacement"], history["load"]
+    x, y = factor * along.values, history["load"]
     for stage, colour in style.STAGE_COLOURS.items():
         rows = np.flatnonzero(history["stage"] == stage)
         if len(rows):
@@ -98,9 +89,33 @@ def _draw_curve(axis: Any, results: Results, limit: float) -> None:
                 rows = np.concatenate(([before], rows))  # joined to the stage before
             places, loads = with_breaks(history["step"][rows], x[rows], y[rows])
             axis.plot(places, loads, color=colour, label=stage)
-    axis.set_xlim(-0.02 * factor * limit, 1.03 * factor * limit or 1.0)
+    lowest = min(float(x.min(initial=0.0)), 0.0) if along.signed else 0.0
+    axis.set_xlim(1.03 * lowest - 0.02 * factor * limit, 1.03 * max(factor * limit if lowest == 0.0 else x.max(), 0.0) or 1.0)
     axis.locator_params(axis="x", nbins=6)
-    axis.set_xlabel(f"control displacement [{unit}]")
+    axis.set_xlabel(f"{along.label} [{unit}]")
+    if lowest < 0.0:  # cycles
+        for line in (axis.axhline, axis.axvline):
+            line(0.0, color=style.GREY, lw=0.8, zorder=0.5)
+    _draw_system(axis, results.summary.get("capacity_curve") or {}, factor)
+    _draw_tests(axis, results.summary, factor)
+
+
+def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
+    """The bilinear system over its curve."""
+    system = curve.get("bilinear")
+    if system:
+        ends = [0.0, factor * system["yield_displacement"], factor * system["ultimate_displacement"]]
+        loads = [0.0, system["yield_load"], system["yield_load"]]
+        axis.plot(ends, loads, color=style.THRUST, lw=1.1, ls=(0, (5, 2)), label="bilinear system")
+
+
+def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
+    """Curves that the case is compared with."""
+    curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
+    for i, one in enumerate(curves):
+        x = factor * np.array(one["displacements"])
+        name = f"reference curve{f' {i + 1}' if len(curves) > 1 else ''}, {one['kind']}"
+        axis.plot(x, one["value"], color=style.REFERENCE, lw=0.9, marker="os^D"[i % 4], ms=3, label=name)
 
 
 def with_breaks(steps: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
@@ -150,5 +165,7 @@ def _limit_loads(axis: Any, results: Results) -> None:
     loads = [results.history["load"].max(initial=0.0), results.summary.get("failure_load") or 0.0]
     limits = results.summary.get("limit_analysis") or {}
     loads += [limits.get(name) or 0.0 for name in ("associated", "non_associated")]
+    for one in from_summary(results.summary.get("reference")):
+        loads += one["value"] if one.get("displacements") else []
     top = max(loads) or 1.0
     axis.set_ylim(min(0.0, 1.1 * results.history["load"].min(initial=0.0)) - 0.02 * top, 1.12 * top)

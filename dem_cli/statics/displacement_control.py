@@ -32,8 +32,7 @@ class DisplacementControl:
 
     def __init__(self, sim: Simulation, budget: Budget, compliance: float) -> None:
         self.sim, self.budget, self.settings = sim, budget, sim.settings.displacement_control
-        d = sim.model.dimension
-        self.forces = float(np.sqrt((sim.loads.live[sim.free, :d] ** 2).sum(axis=1)).sum())  # of the live load [N]
+        self.forces = measures.live_force(sim)  # of the live load [N]
         self.origin = measures.live_displacement(sim)
         self.first = self.settings.first * compliance / self.forces
 
@@ -100,15 +99,18 @@ class CapacityCurve:
 
     def __init__(self) -> None:
         self.points: list[CurvePoint] = []
-        self.peak, self.at_peak, self.whole = 0, None, False
+        self.peak, self.at_peak, self.at_first, self.whole = 0, None, None, False
 
     peak: int
     at_peak: SavedState | None
+    at_first: SavedState | None  # after the first increment
     whole: bool
 
     def add(self, point: CurvePoint, sim: Simulation) -> None:
         """One more point; its state is kept where it is the highest so far."""
         self.points.append(point)
+        if len(self.points) == 2:
+            self.at_first = sim.save()
         if self.at_peak is None or point.load > self.points[self.peak].load:
             self.peak, self.at_peak = len(self.points) - 1, sim.save()
 
