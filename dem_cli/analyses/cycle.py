@@ -74,6 +74,7 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
         point = {"load": load, "displacement": measures.largest_displacement(sim)}
+        point["live_displacement"] = states[-1][0]
         found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
         turns.append(len(states) - 1)
         displacements, loads = np.array(states).T

@@ -88,7 +88,7 @@ def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) 
             if history["step"][before] <= history["step"][rows[0]]:
                 rows = np.concatenate(([before], rows))  # joined to the stage before
             places, loads = with_breaks(history["step"][rows], x[rows], y[rows])
-            axis.plot(places, loads, color=colour, label=stage)
+            axis.plot(places, loads, color=colour, lw=1.2 if along.signed else None, label=stage)
     lowest = min(float(x.min(initial=0.0)), 0.0) if along.signed else 0.0
     axis.set_xlim(1.03 * lowest - 0.02 * factor * limit, 1.03 * max(factor * limit if lowest == 0.0 else x.max(), 0.0) or 1.0)
     axis.locator_params(axis="x", nbins=6)
@@ -106,7 +106,7 @@ def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
     if system:
         ends = [0.0, factor * system["yield_displacement"], factor * system["ultimate_displacement"]]
         loads = [0.0, system["yield_load"], system["yield_load"]]
-        axis.plot(ends, loads, color=style.THRUST, lw=1.1, ls=(0, (5, 2)), label="bilinear system")
+        axis.plot(ends, loads, color=style.SYSTEM, lw=1.4, ls=(0, (5, 2)), label="bilinear system")
 
 
 def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
@@ -151,6 +151,8 @@ def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None
     factor = {"m": 1.0, "mm": 1e3, "µm": 1e6}[axis.get_xlabel().split("[")[1].rstrip("]")]
     place = (factor * displacement, load)
     axis.plot(*place, "o", ms=7, mfc="white", mec=style.FAILURE, mew=1.6, zorder=5)
+    if summary.get("capacity_curve"):  # what is drawn over it leaves no room for words
+        return
     bracket = summary.get("failure_load_bracket")
     text = f"λ = {load:.4g}"
     if bracket and None not in bracket:

@@ -72,7 +72,7 @@ def _beside(summary: Mapping[str, Any], factor: float) -> list[dict[str, Any]]:
     lines = []
     if system := (summary.get("capacity_curve") or {}).get("bilinear"):
         x = factor * np.array([0.0, system["yield_displacement"], system["ultimate_displacement"]])
-        lines.append(line("bilinear system", x, np.array([0.0, *[system["yield_load"]] * 2]), "0", width=1))
+        lines.append(line("bilinear system", x, np.array([0.0, *[system["yield_load"]] * 2]), "1", width=1))
     curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
     for i, one in enumerate(curves):
         x = factor * np.array(one["displacements"])

@@ -1,6 +1,6 @@
 """Hysteresis loops of a load path: energy dissipated in each cycle, and the viscous damping of as much.
 
-A loop goes from a value of the path to the next one that is the same, 0 at the start included. Its damping is that of a
+A loop goes from a turning point of the path to one at the same value, the start, 0, included. Its damping is that of a
 linear oscillator of the same amplitudes F, u that loses as much energy E in a cycle:
 
     ζ = E / (2π F u)
@@ -29,14 +29,15 @@ class HysteresisLoop(NamedTuple):
 
 
 def pairs_of(path: Sequence[float]) -> list[tuple[int, int]]:
-    """Turning points between which a path makes loops; 0 is its start, at the value 0."""
-    values, found, since = [0.0, *path], [], 0
-    while since < len(values) - 2:
-        again = [k for k in range(since + 2, len(values)) if np.isclose(values[k], values[since], rtol=1e-9, atol=0.0)]
-        if again:
-            found.append((since, again[0]))
-        since = again[0] if again else since + 1
-    return found
+    """Turning points between which a path makes loops, none over another, short ones first; 0 is its start, at 0."""
+    values = [0.0, *path]
+    found: list[tuple[int, int]] = []
+    for span in range(2, len(values)):
+        for first in range(len(values) - span):
+            free = all(first + span <= one or first >= other for one, other in found)
+            if free and np.isclose(values[first], values[first + span], rtol=1e-9, atol=0.0):
+                found.append((first, first + span))
+    return sorted(found)
 
 
 def loops(

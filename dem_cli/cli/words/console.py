@@ -148,7 +148,8 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:
-        text = ", ".join(f"{metres(turn['displacement'])} at {load_text(turn['load'])}" for turn in turns[:MOST_TURNS])
+        shown = [(turn.get("live_displacement", turn["displacement"]), turn["load"]) for turn in turns[:MOST_TURNS]]
+        text = ", ".join(f"{metres(moved)} at {load_text(load)}" for moved, load in shown)
         rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")
     if reached:
