@@ -81,6 +81,8 @@ def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) 
     history = results.history
     factor, unit = style.length_unit(limit)
     x, y = factor * along.values, history["load"]
+    lowest = min(float(x.min(initial=0.0)), 0.0) if along.signed else 0.0
+    highest = float(x.max(initial=0.0)) if lowest < 0.0 else factor * limit  # of cycles, or of the panel
     for stage, colour in style.STAGE_COLOURS.items():
         rows = np.flatnonzero(history["stage"] == stage)
         if len(rows):
@@ -88,9 +90,8 @@ def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) 
             if history["step"][before] <= history["step"][rows[0]]:
                 rows = np.concatenate(([before], rows))  # joined to the stage before
             places, loads = with_breaks(history["step"][rows], x[rows], y[rows])
-            axis.plot(places, loads, color=colour, lw=1.2 if along.signed else None, label=stage)
-    lowest = min(float(x.min(initial=0.0)), 0.0) if along.signed else 0.0
-    axis.set_xlim(1.03 * lowest - 0.02 * factor * limit, 1.03 * max(factor * limit if lowest == 0.0 else x.max(), 0.0) or 1.0)
+            axis.plot(places, loads, color=colour, lw=1.2 if lowest < 0.0 else None, label=stage)
+    axis.set_xlim(1.03 * lowest - 0.02 * factor * limit, 1.03 * highest or 1.0)
     axis.locator_params(axis="x", nbins=6)
     axis.set_xlabel(f"{along.label} [{unit}]")
     if lowest < 0.0:  # cycles
