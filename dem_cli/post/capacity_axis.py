@@ -34,7 +34,7 @@ def capacity_axis(results: Results) -> CapacityAxis:
     """What the loads of a run are drawn against."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
-    if "live_displacement" in history and (curve or "turning_points" in summary):
+    if (curve or "turning_points" in summary) and "live_displacement" in history:
         return CapacityAxis(history["live_displacement"], LIVE, curve["peak_displacement"] if curve else None)
     values, given = history["displacement"], summary.get("displacement_at_failure")
     if given:
