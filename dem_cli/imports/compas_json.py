@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.imports.contents import Contents, FileBody, FileProblem, finite
 
 MESH, ELEMENTS = "compas.datastructures/Mesh", "elements"
+COMPOUND = "compound_parts"  # attribute of a mesh that dem writes: how many of this name are one block
 POLYHEDRON, BOX = "compas.geometry/Polyhedron", "compas.geometry/Box"
 
 
@@ -81,7 +82,8 @@ def _body(found: tuple[dict[str, Any], dict[str, Any]], materials: dict[str, str
         raise FileProblem(f"mesh '{name}' is not as compas writes it ({type(error).__name__}: {error})") from None
     material = said.get("material") or attributes.get("material") or ""
     fixed = bool(said.get("is_support") or attributes.get("is_support"))
-    return FileBody(name, finite(points, f"mesh '{name}'"), faces, materials.get(material, str(material)), fixed)
+    places, layer = finite(points, f"mesh '{name}'"), materials.get(material, str(material))
+    return FileBody(name, places, faces, layer, fixed, compound=bool(attributes.get(COMPOUND)))
 
 
 def _corners_and_faces(dtype: Any, data: dict[str, Any]) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:

@@ -28,6 +28,7 @@ class FileBody(NamedTuple):
     fixed: bool = False
     indexed: bool = True
     said: str = ""  # how a drawing calls it: kind and handle of an entity (DXF), id (SVG)
+    compound: bool = False  # the file says that its solids, and those of the same name, are parts of one block
 
 
 class Contents(NamedTuple):

@@ -81,9 +81,10 @@ class Import(StructureBase):
     names: Literal["file", "numbers"] = Field(
         "file", description="of blocks: those in the file, or numbers in its order", examples=["numbers"]
     )
-    shells: Literal["blocks", "parts"] = Field(
-        "blocks",
-        description="what several solids of one name are: blocks, or convex parts of one block",
+    shells: Literal["blocks", "parts"] | None = Field(
+        None,
+        description="what several solids of one name are: blocks, or convex parts of one block; default: parts where "
+        "`dem build` wrote them as such (OBJ, compas JSON), else blocks",
         examples=["parts"],
     )
     concave: Literal["refuse", "decompose"] = Field(
@@ -130,6 +131,7 @@ class ImportedStructure(NamedTuple):
 
     blocks: list[Block]
     notes: list[str]
+    divided: dict[str, int]  # names in the file with several solids that nobody said what they are, and how many
 
 
 _KEPT: dict[tuple[str, str], ImportedStructure] = {}  # by the table, and what its file holds
@@ -157,6 +159,17 @@ def imported(table: Import) -> ImportedStructure:
     return _KEPT[key]
 
 
+def unsaid(table: Import) -> list[tuple[str, str]]:
+    """`shells`, where names of the file have several solids each and nobody said what they are."""
+    found = imported(table).divided
+    if not found:
+        return []
+    name, count = next(iter(found.items()))
+    more = f" (so do {len(found) - 1} more names)" if len(found) > 1 else ""
+    message = f"'{name}' has {count} solids{more}: they are blocks of their own; shells = 'parts' makes one block of "
+    return [("shells", message + "those of a name, shells = 'blocks' says that they are meant")]
+
+
 def _read(table: Import) -> ImportedStructure:
     from dem_cli.imports.solids import solids_of
 
@@ -170,7 +183,7 @@ def _read(table: Import) -> ImportedStructure:
     notes = [_counts(table, contents, blocks), *notes]
     notes += [f"left out: {', '.join(contents.left_out)}"] if contents.left_out else []
     notes += [f"the file says {name or 'a material'}: {rho:g} kg/m3" for name, rho in contents.densities.items()]
-    return ImportedStructure(blocks, notes)
+    return ImportedStructure(blocks, notes, _divided(table, solids))
 
 
 def _named(bodies: Sequence[FileBody]) -> list[FileBody]:
@@ -205,14 +218,12 @@ def _kept(table: Import, contents: Contents) -> Contents:
 def _blocks(table: Import, solids: Sequence[Any]) -> list[Block]:
     names = local_names(table, [solid.name for solid in solids])
     fixed = _fixed(table, solids, names)
-    if table.shells == "parts":
-        groups: dict[str, list[int]] = {}
-        for k, solid in enumerate(solids):
-            groups.setdefault(solid.name or f"\0{k}", []).append(k)
-        chosen = list(groups.values())
-        names = local_names(table, [solids[own[0]].name for own in chosen])
-    else:
-        chosen = [[k] for k in range(len(solids))]
+    groups: dict[str, list[int]] = {}
+    for k, solid in enumerate(solids):
+        together = table.shells == "parts" or (table.shells is None and solid.compound)
+        groups.setdefault(solid.name if together and solid.name else f"\0{k}", []).append(k)
+    chosen = list(groups.values())
+    names = local_names(table, [solids[own[0]].name for own in chosen])
     blocks = []
     for name, own in zip(names, chosen, strict=True):
         layer = table.layers.get(solids[own[0]].layer, PLAIN)
@@ -221,6 +232,14 @@ def _blocks(table: Import, solids: Sequence[Any]) -> list[Block]:
         parts = tuple(part for k in own for part in solids[k].parts)
         blocks.append(Block(name, parts, material, thickness, fixed=any(fixed[k] for k in own)))
     return blocks
+
+
+def _divided(table: Import, solids: Sequence[Any]) -> dict[str, int]:
+    """Names of several solids that are blocks of their own; one name for all in the file says nothing."""
+    counts = Counter(solid.name for solid in solids if not solid.compound)
+    if table.shells is not None or (len(counts) == 1 and not any(solid.compound for solid in solids)):
+        return {}
+    return {name: count for name, count in counts.items() if name and count > 1}
 
 
 def local_names(table: Import, given: Sequence[str]) -> list[str]:
