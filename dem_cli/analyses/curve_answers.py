@@ -1,4 +1,4 @@
-"""Answers of a capacity curve: peak, residual, loads at displacements, bilinear system, and the check of analysis.check."""
+"""Answers of a capacity curve: peak, residual, loads at displacements, bilinear system, check against a spectrum."""
 
 from __future__ import annotations
 
@@ -115,8 +115,8 @@ class CurveCheck:
         force = float(np.sqrt((others**2).sum(axis=1)).sum())
         if force > LEAST_FORCE * float(weights.sum()):
             self.job.warnings.append(
-                f"the check leaves out the masses of dead loads, {force:.3g} N beside {weights.sum():.3g} N of weights: "
-                "draw what they stand for as blocks"
+                f"the check leaves out the masses of dead loads, {force:.3g} N beside {weights.sum():.3g} N of "
+                "weights: draw what they stand for as blocks"
             )
 
     def _nothing(self, why: str) -> dict[str, Any]:

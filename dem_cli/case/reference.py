@@ -93,7 +93,9 @@ class Reference(CaseModel):
         if (places is not None) != (self.quantity == CURVE):
             if places is not None:
                 raise KeyProblem(f"only allowed with quantity = '{CURVE}'", "displacements")
-            raise KeyProblem("missing; must be a list of numbers: where the loads of the curve are [m]", "displacements")
+            raise KeyProblem(
+                "missing; must be a list of numbers: where the loads of the curve are [m]", "displacements"
+            )
         if places is None:
             if isinstance(loads, tuple) and len(loads) != 2:
                 raise KeyProblem(f"{len(loads)} numbers are not allowed; must be [lowest, highest]", "value")
@@ -110,9 +112,9 @@ class Reference(CaseModel):
         given = [key for key in ("tolerance", "relative") if getattr(self, key) is not None]
         if len(given) == 2:
             raise KeyProblem(f"{show(self.relative)} is not allowed beside 'tolerance'", "relative")
-        interval = isinstance(self.expected, tuple) and self.displacements is None
-        if interval and self.expected[0] >= self.expected[1]:
-            raise KeyProblem(f"{show(self.expected)} is not allowed; must be [lowest, highest]", "value")
+        value = self.expected
+        if isinstance(value, tuple) and self.displacements is None and value[0] >= value[1]:
+            raise KeyProblem(f"{show(value)} is not allowed; must be [lowest, highest]", "value")
         if isinstance(self.expected, (bool, str)):
             extra = [*given, *(("scatter",) if self.scatter is not None else ())]
             if extra:

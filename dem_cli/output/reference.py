@@ -24,8 +24,8 @@ class ReferenceTable(Protocol):
         """Key of the summary that is compared."""
 
     @property
-    def expected(self) -> bool | float | tuple[float, float] | str:
-        """Value, or ends of the interval, that it should have."""
+    def expected(self) -> bool | float | tuple[float, ...] | str:
+        """Value, ends of the interval, or loads of the curve, that it should have."""
 
     @property
     def displacements(self) -> tuple[float, ...] | None:
@@ -100,7 +100,7 @@ def curve_verdict(curve: Any, reference: ReferenceTable) -> dict[str, Any]:
     return answer | {"found": found.tolist(), "passed": mean <= (reference.allowance or 0.0)}
 
 
-def passes(found: Value, expected: bool | float | tuple[float, float] | str, allowance: float | None) -> bool:
+def passes(found: Value, expected: bool | float | tuple[float, ...] | str, allowance: float | None) -> bool:
     """Whether what was found is what was expected; nothing found never is, nor a truth for a number."""
     if isinstance(expected, (bool, str)):
         return type(found) is type(expected) and found == expected
@@ -113,7 +113,7 @@ def error_of(answer: Mapping[str, Any]) -> float | None:
     return answer.get("mean_error") if "displacements" in answer else error(answer["found"], answer["value"])
 
 
-def error(found: Value, expected: bool | float | tuple[float, float] | list[float] | str) -> float | None:
+def error(found: Value, expected: bool | float | tuple[float, ...] | list[float] | str) -> float | None:
     """How far a number is above (+) or below (−) the expected one, or outside the interval; None of anything else."""
     if isinstance(expected, (bool, str)) or isinstance(found, (bool, str)) or found is None:
         return None

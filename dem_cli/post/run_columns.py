@@ -11,7 +11,7 @@ from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.series import BASE, MONITOR_UNITS, HistorySeries
 from dem_cli.output.store import IN_SECONDS
-from dem_cli.post.capacity_axis import capacity_axis
+from dem_cli.post.capacity import capacity_axis
 from dem_cli.post.labels import KNOWN_QUANTITIES, Quantity, nearest, unknown
 
 SPECTRUM_DAMPING = 0.05  # of response spectra

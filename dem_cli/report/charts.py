@@ -12,8 +12,7 @@ from dem_cli.output.reference import from_summary
 from dem_cli.output.series import BASE, MONITOR_UNITS
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
-from dem_cli.post.capacity import off_the_load, with_breaks
-from dem_cli.post.capacity_axis import capacity_axis, of_frames
+from dem_cli.post.capacity import capacity_axis, of_frames, off_the_load, with_breaks
 from dem_cli.post.energy import across
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import curve, of_quantity, thinned
@@ -60,7 +59,9 @@ def _capacity(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
         "y": "load multiplier λ",
         "lines": lines,
         "levels": _answers(results.summary),
-        "marks": [[factor * at, frame["load"]] for at, frame in zip(of_frames(results, along, frames), frames, strict=True)],
+        "marks": [
+            [factor * at, frame["load"]] for at, frame in zip(of_frames(results, along, frames), frames, strict=True)
+        ],
     }
     if along.failure and along.farthest > _ZOOM_FROM * along.failure and not results.summary.get("capacity_curve"):
         chart["zooms"] = [{"name": "up to failure", "to": 2.0 * factor * along.failure}]

@@ -1,4 +1,4 @@
-"""analysis.idealise and analysis.check: what a capacity curve is made into, and the demand that it is checked against."""
+"""analysis.idealise and analysis.check: what a capacity curve is made into, and the demand it is checked against."""
 
 from __future__ import annotations
 

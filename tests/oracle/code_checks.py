@@ -30,7 +30,7 @@ def sliding(ag: float = 3.5) -> dict[str, float]:
     displacement = elastic * (period / (2.0 * math.pi)) ** 2
     q = elastic / at
     target = displacement / q * (1.0 + (q - 1.0) * tc / period)
-    assert 1.0 < q
+    assert q > 1.0
     assert displacement < target < 3.0 * displacement
     return {
         "check.period": period, "check.yield_acceleration": at, "check.yield_displacement": mass * at / stiffness,

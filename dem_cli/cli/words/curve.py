@@ -24,7 +24,9 @@ def curve_rows(summary: Mapping[str, Any]) -> Rows:
         rows += _system(curve.get("bilinear"))
         listed = curve.get("loads_at") or []
         if listed:
-            text = ", ".join(f"{load_text(one['load'])} at {metres(one['displacement'])}" for one in listed[:MOST_LOADS])
+            text = ", ".join(
+                f"{load_text(one['load'])} at {metres(one['displacement'])}" for one in listed[:MOST_LOADS]
+            )
             rows.append(("loads", text + (", …" if len(listed) > MOST_LOADS else "")))
     rows += _check(summary.get("check") or {})
     return rows + _loops(summary.get("loops") or [])
@@ -49,7 +51,9 @@ def _check(found: Mapping[str, Any]) -> Rows:
     text += f"capacity at a ground acceleration of {found['ground_acceleration_at_capacity']:.3g} m/s²"
     if found["method"] == "n2":
         return [("N2", f"T* {found['period']:.3g} s, q {found['force_ratio']:.3g}: {text}")]
-    first = f"activated at {found['activation_acceleration']:.3g} m/s², {found['required_acceleration']:.3g} m/s² needed"
+    first = (
+        f"activated at {found['activation_acceleration']:.3g} m/s², {found['required_acceleration']:.3g} m/s² needed"
+    )
     return [("mechanism", f"{first}, {100 * found['linear_demand_over_capacity']:.3g} %"),
             ("", f"T_s {found['period']:.3g} s: {text}")]  # fmt: skip
 
