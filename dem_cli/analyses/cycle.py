@@ -17,10 +17,9 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
-from dem_cli.statics.compliance import compliance
+from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
-from dem_cli.statics.failure_load import AGAINST
 from dem_cli.statics.hysteresis import loops
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
     job = Job.start(case, model, observer, settings)
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
-    sim = job.first_simulation()
+    sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
     track = job.track(sim)
     found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": [], "loops": []}
     try:
@@ -58,7 +57,7 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     analysis = job.case.analysis
     go = WAYS[analysis.control](job, sim)
     value, states, turns = 0.0, [(0.0, 0.0)], [0]
-    force, at_rest = measures.live_force(sim), measures.live_displacement(sim)
+    at_rest = measures.live_travel(sim)
     for turn, target in enumerate(analysis.path):
         for next_value in values_between(value, target, analysis.step):
             share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
@@ -69,7 +68,7 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
                 track.frame("collapse")
                 return
             track.write("loading")
-            states.append(((measures.live_displacement(sim) - at_rest) / force, sim.load * sim.live_scale))
+            states.append((measures.live_travel(sim) - at_rest, sim.load * sim.live_scale))
             value = next_value
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
@@ -78,7 +77,7 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
         found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
         turns.append(len(states) - 1)
         displacements, loads = np.array(states).T
-        made = loops(analysis.path, turns, displacements, loads, force / sim.live_scale)
+        made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
         found["loops"] = [loop._asdict() for loop in made]
     found["status"] = "ok"
 
@@ -98,8 +97,7 @@ def _by_load(job: Job, sim: Simulation) -> Callable[[float], bool]:
 def _by_displacement(job: Job, sim: Simulation) -> Callable[[float], bool]:
     """Goes to a displacement of the live load [m], to rest."""
     elastic = compliance(sim)[0]
-    if elastic <= 0.0:
-        raise SolverError(AGAINST)
+    check_moves(sim, elastic)
     control = DisplacementControl(sim, job.budget, elastic)
     return lambda displacement: control.go(displacement - control.displacement)
 

@@ -260,7 +260,7 @@ class Fill(Selection):
 class GroundTable(CaseModel):
     """[ground]: one fixed block named "ground" under all structures, which then have no bases of their own.
 
-    A structure has one with base = true; springings of an arch without piers stay fixed.
+    A structure has one with base = true, beside the ground or above it; springings without piers stay fixed.
     """
 
     level: float | None = Field(

@@ -33,13 +33,13 @@ class DisplacementControl:
     def __init__(self, sim: Simulation, budget: Budget, compliance: float) -> None:
         self.sim, self.budget, self.settings = sim, budget, sim.settings.displacement_control
         self.forces = measures.live_force(sim)  # of the live load [N]
-        self.origin = measures.live_displacement(sim)
+        self.origin = measures.live_travel(sim)
         self.first = self.settings.first * compliance / self.forces
 
     @property
     def displacement(self) -> float:
         """Of the live load since gravity [m]."""
-        return (measures.live_displacement(self.sim) - self.origin) / self.forces
+        return measures.live_travel(self.sim) - self.origin
 
     def go(self, distance: float) -> bool:
         """On by a distance [m], to rest: in parts where that is not found. Whether all forces balance there."""

@@ -21,7 +21,6 @@ from dem_cli.structures.openings import Opening
 from dem_cli.structures.voids import Void
 
 CORE_LEAF = "b"
-WELD = 1e-10  # of a block: round-off of corners that are the same
 SMALL = 1e-6  # of a block's smaller side: what is narrower is not made
 
 

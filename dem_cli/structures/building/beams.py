@@ -110,11 +110,11 @@ def _moved(bed: Bed, sides: tuple[RoomSide, RoomSide], n: int, middle: float, sp
 def _fits(bed: Bed, side: RoomSide, outline: np.ndarray) -> bool:
     """Whether a pocket keeps a quarter of a block from openings and walls beside it."""
     wall, least = bed.wall(side), SHORTEST * bed.building.block[0]
-    axis = bed.plan.axes[wall]
+    axis, small = bed.plan.axes[wall], SMALL * bed.building.block[1]
     low, high = np.sort(axis.local(outline)[:, 0])[[0, -1]]
     zones = [bed.plan.zone(wall, junction) for junction in bed.plan.met(wall)]
     for opening in bed.building.walls[wall].openings:
         void = opening.void
         boxes = [void.reach] if len(void.joints) else void.boxes
-        zones += [(x0, x1) for x0, y0, x1, y1 in boxes if y0 < bed.high - SMALL and y1 > bed.low + SMALL]
+        zones += [(x0, x1) for x0, y0, x1, y1 in boxes if y0 < bed.high - small and y1 > bed.low + small]
     return all(low >= stop + least or high <= start - least for start, stop in zones)

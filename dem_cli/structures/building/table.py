@@ -112,6 +112,7 @@ class Building(BondKeys, RandomStructure):
     """
 
     only_in: ClassVar[int | None] = 3
+    no_base: ClassVar[bool | str] = "none"
 
     kind: Literal["building"] = "building"
     block: tuple[Positive, Positive] = Field(
@@ -162,6 +163,8 @@ class Building(BondKeys, RandomStructure):
         if self.course_heights and len(self.course_heights) != self.courses:
             given = len(self.course_heights)
             raise KeyProblem(f"{given} values; must be one for each of the {self.courses} courses", "course_heights")
+        if "seed" in self.model_fields_set and not (self.pattern or any(wall.pattern for wall in self.walls)):
+            raise KeyProblem("not used without a pattern: nothing is drawn at random", "seed")
         names = [wall.id for wall in self.walls] + [floor.id for floor in self.floors]
         for i, name in enumerate(names):
             if name in names[:i] or name == "base":
