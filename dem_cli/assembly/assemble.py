@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.assembly import selection_checks
 from dem_cli.assembly.applied_loads import applied_loads
 from dem_cli.assembly.drawn_blocks import drawn_block
+from dem_cli.assembly.drawn_links import drawn_links, names_of
 from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
@@ -56,11 +57,13 @@ def assembly(case: Case) -> Assembly:
     problems = selections.problems or list(selection_checks.problems(case, body))
     if problems:
         raise CaseError(list(dict.fromkeys(problems)))
+    drawn = drawn_links(case, body)
     doubts: list[CaseProblem] = []
     if case.imperfection:  # names and numbers are those of the blocks as drawn
         blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
         body = _bodies(case, blocks, names)._replace(selections=selections.several())
     loads = applied_loads(case, body)
+    body = body._replace(links=tuple(link.laid(body.centroids) for link in drawn), link_names=names_of(case))
     return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts), tuple(loads))
 
 

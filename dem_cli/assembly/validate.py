@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.assembly.place_notes import NOTES
-from dem_cli.case.wording import show
+from dem_cli.case.wording import show, unknown_name
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
 from dem_cli.contact.gaps import CLOSING_GAP, joined, joint_reach
 from dem_cli.contact.geometry import geometry_of
@@ -66,16 +66,31 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 
 
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors at a point where there is no block, or of blocks that share no joint."""
+    """Monitors at a point where there is no block, of blocks that share no joint, or of a tie that there is not."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
-    return shared_problems(case, model) + [
-        CaseProblem(
-            ("monitor", i, "point"),
-            f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
-        )
+    return (
+        tie_problems(case, model)
+        + shared_problems(case, model)
+        + [
+            CaseProblem(
+                ("monitor", i, "point"),
+                f"there is no block at {list(monitor.point)}; the structure lies between {low} and {high}",
+            )
+            for i, monitor in enumerate(case.monitor)
+            if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
+        ]
+    )
+
+
+def tie_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors of ties that the case has not, and names of ties that are used twice."""
+    names = model.link_names
+    twice = [i for i, name in enumerate(names) if name in names[:i]]
+    return [
+        CaseProblem(("monitor", i, "tie"), unknown_name("tie", monitor.tie, list(names)))
         for i, monitor in enumerate(case.monitor)
-        if monitor.point is not None and block_at(model, np.array(monitor.point)) is None
-    ]
+        if monitor.tie is not None and monitor.tie not in names
+    ] + [CaseProblem(("tie", i, "id"), f"{show(names[i])} is used twice; give another") for i in twice]
 
 
 def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
@@ -241,7 +256,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
 def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
     """Groups of blocks from which no chain of touching blocks leads to a fixed one."""
     touching = joined(near.separation, near.scale)
-    group = _components(model.n_blocks, near.blocks[touching])
+    group = _components(model.n_blocks, np.concatenate([near.blocks[touching], *_tied(model)]))
     held = np.zeros(model.n_blocks, bool)
     held[group[model.fixed]] = True
     found = []
@@ -254,6 +269,12 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
         message += f"; the nearest other block is '{blocks[j].id}', about {gap:.3g} m away"
         found.append((blocks[i].path, message))
     return _first_few(found)
+
+
+def _tied(model: Model) -> list[np.ndarray]:
+    """Pairs of blocks that links hold together; a fixed point holds as any support does, (n, 2) each."""
+    support = int(np.flatnonzero(model.fixed)[0])
+    return [np.where(link.blocks < 0, support, link.blocks) for link in model.links]
 
 
 def _neighbours(model: Model) -> Neighbours:

@@ -16,7 +16,8 @@ def make_bare(contact_forces: Callable, drift: Callable, ledger_on: bool) -> Cal
 
     @kernel
     def advance(
-        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, like, like_rotation,
+        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, links, loads, control, ledger, like,
+        like_rotation,
     ):  # fmt: skip
         """Advance by n_steps at constant load with local damping; returns the steps done."""
         velocities, forces, residuals = bodies.velocities.ravel(), bodies.forces.ravel(), bodies.unbalanced.ravel()

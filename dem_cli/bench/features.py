@@ -139,8 +139,8 @@ def _stepping(sim: Simulation, loop: Callable, steps: int) -> Callable[[], Any]:
     from dem_cli.kernels import records as slot
 
     return lambda: loop(
-        steps, slot.HOLD_LOAD, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
-        sim.control, sim.ledger, sim.like, sim.like_rotation,
+        steps, slot.HOLD_LOAD, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.links,
+        sim.loads, sim.control, sim.ledger, sim.like, sim.like_rotation,
     )  # fmt: skip
 
 

@@ -25,8 +25,8 @@ NAME_PLACEHOLDER = "NAME"  # stands for a name of the user's choice: [materials.
 EMPTY_VALUES: tuple[Any, ...] = (None, (), {}, "")
 TAGS = ("kind", "law")  # keys that say which kind of table it is
 KNOWN_UNITS = (
-    "-", "m", "s", "kg", "N", "N/m", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3", "Pa/m",
-    "J/m2", "deg per decade of stress", "unit of the key", "unit of the quantity",
+    "-", "m", "m2", "s", "kg", "N", "N/m", "Pa", "J", "Hz", "rad", "deg", "1/s", "m/s", "m/s2", "rad/s", "kg/m3",
+    "Pa/m", "J/m2", "deg per decade of stress", "unit of the key", "unit of the quantity",
 )  # fmt: skip
 BRACKETS = re.compile(r" ?\[(" + "|".join(map(re.escape, KNOWN_UNITS)) + r")\]")
 # Of a docstring: `[materials.NAME]`, `[analysis] with kind = "modes": `, `damping.rayleigh: `.

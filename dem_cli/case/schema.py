@@ -75,7 +75,8 @@ class Settlement(Selection):
         return tuple(math.radians(angle) for angle in degrees)
 
 
-PLACES = ("block", "structure", "point", "between")  # where a monitor may be
+PLACES = ("block", "structure", "point", "between", "tie")  # where a monitor may be
+OF_LINKS = ("force", "elongation")
 AT_JOINTS = ("opening", "slip")
 OF_POINTS = ("displacement", "velocity", "acceleration")
 
@@ -101,11 +102,15 @@ class Monitor(Selection):
         description="for opening and slip: ids of two blocks that share a joint at the start",
         examples=[["arch-3", "arch-4"]],
     )
-    quantity: Literal["displacement", "rotation", "velocity", "acceleration", "opening", "slip"] = Field(
+    tie: str | None = Field(default=None, description="for force and elongation: id of a [[tie]]", examples=["north"])
+    quantity: Literal[
+        "displacement", "rotation", "velocity", "acceleration", "opening", "slip", "force", "elongation"
+    ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
-        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length",
+        "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length; "
+        "of a tie: force [N], tension positive, or elongation [m] since it was drawn",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
@@ -122,13 +127,13 @@ class Monitor(Selection):
         given = [key for key in PLACES if getattr(self, key) is not None]
         if len(given) != 1:
             found = " and ".join(f"'{key}'" for key in given) + " are" if given else "none of them is"
-            raise ValueError(f"{found} given; a monitor has one of 'block', 'structure', 'point' and 'between'")
-        if (self.quantity in AT_JOINTS) != (self.between is not None):
-            allowed = AT_JOINTS if self.between is not None else (*OF_POINTS, "rotation")
+            raise ValueError(f"{found} given; a monitor has one of 'block', 'structure', 'point', 'between' and 'tie'")
+        allowed = {"between": AT_JOINTS, "tie": OF_LINKS}.get(given[0], (*OF_POINTS, "rotation"))
+        if self.quantity not in allowed:
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
             listed = ", ".join(f"'{name}'" for name in allowed)
             raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
-        if self.quantity in AT_JOINTS and self.component is not None:
+        if self.quantity in (*AT_JOINTS, *OF_LINKS) and self.component is not None:
             article = "an" if self.quantity[0] in "aeiou" else "a"
             raise KeyProblem(
                 f"'{self.component}' is not allowed; {article} {self.quantity} has no component", "component"
@@ -143,6 +148,8 @@ class Monitor(Selection):
         """Where it is, in words."""
         if self.between is not None:
             return " | ".join(self.between)
+        if self.tie is not None:
+            return self.tie
         return self.selected or f"({', '.join(f'{x:g}' for x in self.point or ())})"
 
 
@@ -200,6 +207,7 @@ class Case(CaseModel):
     initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
+    tie: tuple[Any, ...] = Field(default=(), description="rods and cables between points of blocks")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
     reference: Annotated[tuple[Reference, ...], OneOrMoreSchema()] = Field(
         default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
@@ -257,11 +265,12 @@ def case_model(
     damping: type[CaseModel] | None = None,
     initial: type[CaseModel] | None = None,
     motions: Mapping[str, type[CaseModel]] | None = None,
+    links: Mapping[str, type[CaseModel]] | None = None,
 ) -> type[Case]:
     """The class of case files in which these kinds exist: kind -> class of its parameters.
 
     calibration, damping, initial: classes of the tables of these names; None: there is no such table.
-    motions: kinds of the [motion] tables.
+    motions: kinds of the [motion] tables; links: tables of links by their key.
     """
     structure = one_of(structures, "kind")
     joint = one_of(laws, "law", default="coulomb")
@@ -282,6 +291,8 @@ def case_model(
             Field(default=(), description=fields["initial"].description),
         ),
     }
+    for key, table in (links or {}).items():
+        narrowed[key] = (sequence_of(table), Field(default=(), description=fields[key].description))
     return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
 
 

@@ -20,6 +20,9 @@ from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
+from dem_cli.links.link import FORCE
+from dem_cli.links.matrices import elongations
+from dem_cli.links.matrices import geometric as geometric_of_links
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -35,7 +38,8 @@ class System(NamedTuple):
     L: M = Lᵀ L, a square root of the mass matrix, which turns rotations into principal axes.
     """
 
-    rows: csr_array  # √k B L⁻¹, (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]
+    rows: csr_array  # √k B L⁻¹, (n_points·d, n_free): without G, its Gram matrix has the eigenvalues ω² [1/s2]; a row
+    # for each link is below these
     geometric: csr_array | None  # L⁻ᵀ G L⁻¹ [1/s2], (n_free, n_free); None: left out
     masses: np.ndarray  # and principal moments of inertia [kg, kg m2], (n_free_blocks, n_dof)
     axes: np.ndarray  # from principal axes to those of the world, (n_free_blocks, r, r)
@@ -94,11 +98,30 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     contacts = sim.measured()  # and frames and levers of this instant
     model, joints = sim.model, sim.joints
     found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies.orientations)
+    found = found._replace(rows=_with_links(found, sim, closed is not None))
     if not geometric:
         return found
     per_mass = _per_mass(found.masses, found.axes)
     turning = geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies)
+    if sim.links:
+        turning = turning + geometric_of_links(sim.links, sim.bodies, model.fixed, sim.bodies.velocities.shape[1])
     return found._replace(geometric=(per_mass.T @ turning @ per_mass).tocsr())
+
+
+def _with_links(found: System, sim: Simulation, acting: bool) -> csr_array:
+    """Rows of the joints, below them √k T L⁻¹ of links; acting: of those that carry a force now."""
+    from scipy.sparse import diags_array, vstack
+
+    springs = sim.link_springs(along=True)
+    if springs is None:
+        return found.rows
+    stiffness = springs.stiffness
+    if acting:
+        stiffness = stiffness * np.concatenate([link.state[:, FORCE] != 0.0 for link in sim.links])
+    stretch = diags_array(np.sqrt(stiffness)) @ elongations(springs, sim.model.fixed)
+    rows = vstack([found.rows, stretch @ _per_mass(found.masses, found.axes)]).tocsr()
+    rows.eliminate_zeros()
+    return rows
 
 
 def springs_of(
@@ -188,11 +211,13 @@ def limiting(sim: Simulation) -> Highest:
         vector = np.zeros(found.masses.size)
         vector[_gershgorin(found.matrix).argmax()] = 1.0
     block = found.blocks[_first_largest((vector.reshape(len(found.blocks), -1) ** 2).sum(axis=1), found.settings.equal)]
-    owner = sim.joints.owners
-    energy = ((found.rows @ vector).reshape(len(owner), -1) ** 2).sum(axis=1)
+    d, owner = sim.model.dimension, sim.joints.owners
+    energy = ((found.rows @ vector)[: d * len(owner)].reshape(len(owner), d) ** 2).sum(axis=1)
     strained = np.bincount(owner, energy, len(sim.joints.blocks))
     strained[~(sim.joints.blocks == block).any(axis=1)] = -1.0
-    return Highest(frequency, exact, int(block), _first_largest(strained, found.settings.equal))
+    held = not sim.links or (strained > 0.0).any()  # by a joint, not by links alone
+    joint = _first_largest(strained, found.settings.equal) if held else -1
+    return Highest(frequency, exact, int(block), joint)
 
 
 def _largest(found: System) -> tuple[float, np.ndarray | None]:

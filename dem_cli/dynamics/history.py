@@ -19,7 +19,7 @@ from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation
+from dem_cli.engine.dynamic import DynamicSimulation, no_watch
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.measures import closure
@@ -27,7 +27,6 @@ from dem_cli.engine.properties import joint_properties, law_of, laws_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
-from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.output.record import COLLAPSED, FALLS, MOVES, Energy, Samples
@@ -165,7 +164,7 @@ class TimeHistory:
         """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
         history = sim.settings.history
-        nothing = Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))
+        nothing = no_watch(sim)
 
         def advance(n_steps: int) -> None:
             sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)
@@ -186,8 +185,7 @@ class TimeHistory:
         done = round(sim.time / dt)
         since = done % every  # steps since the last sample was due, which the stretch begins with
         n_samples = -(-(since + n_steps) // every)
-        n_dof = sim.bodies.velocities.shape[1]
-        watch = Watch(monitors.watched, every, np.zeros((n_samples, len(monitors.watched), 3, n_dof)))
+        watch = sim.watch(monitors.watched, every, n_samples)
         ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
         sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
         check_finite(sim)
@@ -196,7 +194,7 @@ class TimeHistory:
         values = np.zeros((0, len(self.peaks)))
         if len(times):
             base = self.ground.of_base(times)
-            values = monitors.series(watch.samples[new], base)
+            values = monitors.series(watch.samples[new], base, watch.links[new])
             self.track.observer.samples(Samples(times, base, values))
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
         return values

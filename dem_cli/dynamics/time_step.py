@@ -50,8 +50,9 @@ def time_step(
     if loose > highest.frequency:
         names = (sim.model.block_ids[pebble],)
     elif highest.block >= 0:
-        a, b = sim.joints.blocks[highest.joint].tolist()
-        names = tuple(sim.model.block_ids[i] for i in (highest.block, b if a == highest.block else a))
+        a, b = sim.joints.blocks[highest.joint].tolist() if highest.joint >= 0 else (highest.block, -1)
+        other = b if a == highest.block else a
+        names = tuple(sim.model.block_ids[i] if i >= 0 else "a tie" for i in (highest.block, other))
     frequency = max(highest.frequency, loose)
     limit = 2.0 / (stiffer * frequency) if frequency > 0.0 else math.inf
     exact = highest.exact or loose > highest.frequency

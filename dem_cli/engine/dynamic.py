@@ -18,6 +18,7 @@ from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
 from dem_cli.kernels.records import Dampers, Ground, Watch
 from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
+from dem_cli.links.link import N_STATE
 from dem_cli.model.model import Model
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ class DynamicSimulation(Simulation):
     def start_moving(self) -> None:
         """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
-        self._run(0, 1, self._still(1), _no_watch(self))
+        self._run(0, 1, self._still(1), no_watch(self))
         kicked = self.bodies.pulled.reshape(before.shape)
         change, elastic = (kicked - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
@@ -134,7 +135,7 @@ class DynamicSimulation(Simulation):
         super().compile()
         self._new_dampers()
         control = self.control.copy()
-        self._run(0, 0, self._still(0), _no_watch(self))
+        self._run(0, 0, self._still(0), no_watch(self))
         self.control[:] = control
 
     def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None) -> None:
@@ -165,16 +166,24 @@ class DynamicSimulation(Simulation):
             if looker is not None and (done + step) % looker.every == 0:
                 looker.look()
 
+    def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
+        """Room for so many samples of blocks and of all links, every so many steps."""
+        samples = np.zeros((n_samples, len(blocks), 3, self.bodies.velocities.shape[1]))
+        n_links = sum(len(link.blocks) for link in self.links)
+        return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
+
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""
         d, n_dof = self.model.dimension, self.bodies.velocities.shape[1]
         return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
 
     def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
-        run = compiled_shake(self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension)
+        run = compiled_shake(
+            self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links
+        )
         return run(
             first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.geometry,
-            self.contacts, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,
+            self.contacts, self.links, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,
             self.like_rotation,
         )  # fmt: skip
 
@@ -245,5 +254,6 @@ def _masses(model: Model) -> np.ndarray:
     return np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
 
 
-def _no_watch(sim: Simulation) -> Watch:
+def no_watch(sim: Simulation) -> Watch:
+    """Nobody looks: room for no sample, however long the stretch."""
     return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))

@@ -7,6 +7,8 @@ import numpy as np
 from dem_cli.contact.compatibility import relative_motion
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.kernels.records import BlockShapes, Bodies, Joints
+from dem_cli.links.link import Springs
+from dem_cli.links.matrices import gershgorin
 from dem_cli.model.model import Model
 
 
@@ -18,12 +20,13 @@ def fictitious_masses(
     safety: float,
     inverse_out: np.ndarray,
     free_fall: float = DEFAULT.relaxation.free_fall,
+    links: Springs | None = None,
 ) -> None:
     """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks.
 
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety). Where blocks turn in space, all three
-    rotations of one have the largest of their masses.
+    rotations of one have the largest of their masses. links: springs beside those of the joints.
     """
     rows = np.abs(relative_motion(joints, model.dimension))
     blocks = joints.blocks[joints.owners]
@@ -38,6 +41,8 @@ def fictitious_masses(
     for side in (0, 1):
         share = (rows[:, :, side] * (stiffness * reach)[:, :, None]).sum(axis=1)
         np.add.at(masses, blocks[:, side], share / weights[blocks[:, side]])
+    if links is not None:
+        masses += gershgorin(links, weights, model.fixed)
     if bodies.orientations.shape[1] > model.inertias.shape[1]:  # quaternions: the block turns under its axes
         masses[:, model.rotations] = masses[:, model.rotations].max(axis=1, keepdims=True)
     masses /= 4.0 * safety**2

@@ -17,20 +17,32 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
     """Joints as they were drawn, now; instant: in words. With the two blocks of each largest value."""
     joints = DrawnJoints(sim.model)
     positions = sim.bodies.positions + sim.origin
-    states = joints.at(positions, sim.bodies.orientations, measures.contact_record(sim)).states
     ids = sim.model.block_ids
+    if not len(joints.places.area):
+        return {"at": instant, "joints": 0, "open": 0} | _ties(sim)
+    states = joints.at(positions, sim.bodies.orientations, measures.contact_record(sim)).states
 
     def largest(values: np.ndarray) -> dict[str, Any]:
         k = int(values.argmax())
         return {"value": float(values[k]), "between": [ids[block] for block in joints.places.blocks[k]]}
 
     found: dict[str, Any] = {"at": instant, "joints": len(states.state), "open": int((states.state == OPEN).sum())}
-    if len(states.state):
-        shear = np.abs(states.shear_stress)
-        found |= {
-            "crack_width": largest(states.crack_width),
-            "slip": largest(np.abs(states.slip)),
-            "normal_stress": largest(states.normal_stress),
-            "shear_stress": largest(shear),
-        }
-    return found
+    return found | {
+        "crack_width": largest(states.crack_width),
+        "slip": largest(np.abs(states.slip)),
+        "normal_stress": largest(states.normal_stress),
+        "shear_stress": largest(np.abs(states.shear_stress)),
+        **_ties(sim),
+    }
+
+
+def _ties(sim: Simulation) -> dict[str, Any]:
+    """Force, elongation and whether it yielded, of each link by its name; nothing where there are none."""
+    if not sim.links:
+        return {}
+    state = np.concatenate([link.state for link in sim.links])
+    said = {
+        name: {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
+        for name, (plastic, stretch, force) in zip(sim.model.link_names, state.tolist(), strict=True)
+    }
+    return {"ties": said}

@@ -12,6 +12,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
+from dem_cli.links.matrices import softest
 from dem_cli.output.record import ContactRecord, Energy, Frame
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -65,13 +66,22 @@ def live_travel(sim: Simulation) -> float:
 
 
 def dead_scale(sim: Simulation) -> float:
-    """What all dead loads would do to the softest joint [m]: no elastic displacement is larger by much."""
+    """What all dead loads would do to the softest joint or link [m]: no elastic displacement is larger by much."""
     joints = sim.joints
     total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
     if not len(joints.kn):
-        return sim.smallest
+        return link_scale(sim) if sim.links else sim.smallest
     stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
-    return float(total / stiffness[stiffness > 0.0].min())
+    return max(float(total / stiffness[stiffness > 0.0].min()), link_scale(sim))
+
+
+def link_scale(sim: Simulation) -> float:
+    """What all present loads would do to the softest link, at most a smallest edge [m]; 0: there are no links."""
+    if not sim.links:
+        return 0.0
+    d, control, loads = sim.model.dimension, sim.control, sim.loads
+    total = control[slot.DEAD_FACTOR] * loads.dead[sim.free, :d] + control[slot.LIVE_FACTOR] * loads.live[sim.free, :d]
+    return min(float(np.sqrt((total**2).sum(axis=1)).sum() / softest(sim.links)), sim.smallest)
 
 
 def largest_overlap(sim: Simulation) -> float:

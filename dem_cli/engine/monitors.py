@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
+from dem_cli.kernels.records import NO_LINKS
+from dem_cli.links.link import FORCE, N_STATE, STRETCH
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.contact.between import StartJoints
     from dem_cli.engine.simulation import Simulation
 
+OF_LINKS = {"force": FORCE, "elongation": STRETCH}  # quantity: column of the state of a link
 OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
 
 
@@ -130,9 +133,12 @@ class Monitors:
         self._joints: StartJoints | None = None
         self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
         self._at_points: list[PointMonitor] = []
+        self._of_links: list[tuple[int, int, int]] = []  # monitor, number of the link, column of its state
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
-            if table.between is None:
+            if table.tie is not None:
+                self._of_links.append((column, model.link_names.index(table.tie), OF_LINKS[table.quantity]))
+            elif table.between is None:
                 self._at_points.append(self._point_monitor(column, table, found))
             else:
                 pairs += self._pairs(column, table.quantity, *found)
@@ -152,13 +158,14 @@ class Monitors:
         places = np.column_stack([bodies.positions[watched], rotation_vectors(bodies.orientations[watched])])
         sample = np.stack([places, bodies.velocities[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
-        return tuple(self.series(sample[np.newaxis], still)[0].tolist())
+        links = np.concatenate([link.state for link in sim.links]) if sim.links else np.zeros((0, N_STATE))
+        return tuple(self.series(sample[np.newaxis], still, links[np.newaxis])[0].tolist())
 
-    def series(self, samples: np.ndarray, base: np.ndarray) -> np.ndarray:
+    def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
         """Over time, (n, n_monitors).
 
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
-        of the base at the same instants [m, s], (n, 3, d).
+        of the base at the same instants [m, s], (n, 3, d); links: state of all links, (n, n_links, 3).
         """
         out = np.zeros((len(samples), len(self.tables)))
         if self.tables:
@@ -167,13 +174,17 @@ class Monitors:
                 monitor.fill(out, motion, base)
             if self._at_joints is not None:
                 self._at_joints.fill(out, motion)
+            for column, link, what in self._of_links:
+                out[:, column] = links[:, link, what]
         return out
 
     def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
         found = list[tuple[int, ...]]()
         for monitor in self.tables:
-            if monitor.point is None:
+            if monitor.tie is not None:
+                found.append(())
+            elif monitor.point is None:
                 chosen = [self.model.chosen(name, False) for name in monitor.between or (monitor.selected,)]
                 found.append(tuple(np.concatenate(chosen).tolist()))
             else:

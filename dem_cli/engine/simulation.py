@@ -20,6 +20,8 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
+from dem_cli.links.link import Springs
+from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 
@@ -50,6 +52,7 @@ class Simulation:
         self.shape = block_shape(model)
         self.origin = origin_of(model)
         self.bodies = bodies_at_rest(model, self.origin, kinematics == "large")
+        self.links = tuple(link.started(self.origin) for link in model.links)
         self.smallest = smallest_edge(model)
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
@@ -59,6 +62,7 @@ class Simulation:
         self.control[slot.DAMP] = relaxation.local_damping
         self.control[slot.FIRE_START] = relaxation.fire_mix
         self.ledger = np.zeros(slot.N_LEDGER)
+        self.ledger[slot.EXTERNAL] = elastic_energy_of_links(self.links)  # prestress was put in before
         self.steps = 0
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
@@ -144,8 +148,28 @@ class Simulation:
             self.safety,
             self.loads.inverse_masses,
             self.settings.relaxation.free_fall,
+            self.link_springs(),
         )
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
+
+    # -- links -------------------------------------------------------------------------------------
+
+    @property
+    def kinds_of_links(self) -> tuple[str, ...]:
+        """Kinds of links that the scene has (links/registry.py)."""
+        return tuple(link.kind for link in self.links)
+
+    def link_springs(self, along: bool = False) -> Springs | None:
+        """Springs that links are where the blocks are now, with what holds them back across; None: there are no links.
+
+        along: the former alone.
+        """
+        if not self.links:
+            return None
+        bodies = self.bodies if self.kinematics == "large" else None
+        springs = [link.axial(bodies) for link in self.links]
+        springs += [] if along else [link.across(bodies) for link in self.links]
+        return joined(springs, self.bodies.velocities.shape[1])
 
     # -- stepping ----------------------------------------------------------------------------------
 
@@ -170,9 +194,11 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        loop = compiled_advance(self.kinematics, self.law, self.properties.profiled, self.model.dimension)
+        loop = compiled_advance(
+            self.kinematics, self.law, self.properties.profiled, self.model.dimension, self.kinds_of_links
+        )
         done: int = loop(
-            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts,
+            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
         return done
@@ -275,7 +301,14 @@ class Simulation:
         bodies.orientations[blocks] = turned_further(bodies.orientations[blocks], rotation)
 
     def shift(self, motion: np.ndarray) -> None:
-        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces stay."""
+        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces of joints stay.
+
+        Links become shorter or longer by it: that changes their forces, and what they store comes from outside.
+        """
+        before = elastic_energy_of_links(self.links)
+        for link in self.links:
+            follow(link, motion, self.bodies)
+        self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
         bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
         bodies.orientations[:] = turned_further(bodies.orientations, spins)
@@ -339,6 +372,7 @@ class Simulation:
             self.ledger.copy(),
             self.loads.inverse_masses.copy(),
             self.safety,
+            tuple(link.state.copy() for link in self.links),
         )
 
     def restore(self, saved: SavedState) -> None:
@@ -350,6 +384,8 @@ class Simulation:
         self.control[:], self.ledger[:] = saved.control, saved.ledger
         self.loads.inverse_masses[:] = saved.inverse_masses
         self.safety = saved.safety
+        for link, state in zip(self.links, saved.links, strict=True):
+            link.state[:] = state
 
     # -- energy ------------------------------------------------------------------------------------
 
@@ -360,11 +396,11 @@ class Simulation:
         return 0.5 * float((self.bodies.velocities[moving] ** 2 / inverse[moving]).sum())
 
     def elastic_energy(self) -> float:
-        """In the springs of the joints [J]."""
+        """In the springs of the joints and of links [J]."""
         contacts, joints = self.contacts, self.joints
         normal = (contacts.normal**2 / np.where(joints.kn > 0, joints.kn, 1.0)).sum()
         shear = ((contacts.shear**2).sum(axis=1) / np.where(joints.ks > 0, joints.ks, 1.0)).sum()
-        return 0.5 * float(normal + shear)
+        return 0.5 * float(normal + shear) + elastic_energy_of_links(self.links)
 
     def books(self) -> Books:
         """The energy ledger as it stands."""

@@ -21,6 +21,7 @@ class SavedState(NamedTuple):
     ledger: np.ndarray  # as kernels.records
     inverse_masses: np.ndarray  # as Loads.inverse_masses
     safety: float  # of the fictitious masses
+    links: tuple[np.ndarray, ...] = ()  # state of the links of each kind
 
 
 class Books(NamedTuple):
@@ -28,6 +29,6 @@ class Books(NamedTuple):
 
     ledger: np.ndarray  # as kernels.records
     kinetic: float
-    elastic: float  # in the springs of the joints
+    elastic: float  # in the springs of the joints and of links
     in_dampers: float = 0.0  # in the springs of Maxwell elements
     lag: float = 0.0  # how far the positions are ahead of it [s]

@@ -17,7 +17,6 @@ from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
-from dem_cli.kernels.records import Watch
 from dem_cli.output.record import COLLAPSED, Observer
 
 if TYPE_CHECKING:
@@ -120,10 +119,10 @@ class RestedStructure:
     def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: np.ndarray) -> None:
         """n_steps of motion, with the peaks of the monitors."""
         start, d = sim.time, sim.model.dimension
-        blocks, n_dof = self.monitors.watched, sim.bodies.velocities.shape[1]
-        samples = np.zeros((-(-n_steps // self.every), len(blocks), 3, n_dof))
-        sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, Watch(blocks, self.every, samples))
+        watch = sim.watch(self.monitors.watched, self.every, -(-n_steps // self.every))
+        sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, watch)
         if len(peaks):
-            times = start + self.step.step * self.every * np.arange(len(samples))
-            base = ground.of_base(times) if self.absolute else np.zeros((len(samples), 3, d))
-            np.maximum(peaks, np.abs(self.monitors.series(samples, base)).max(axis=0), out=peaks)
+            times = start + self.step.step * self.every * np.arange(len(watch.samples))
+            base = ground.of_base(times) if self.absolute else np.zeros((len(times), 3, d))
+            values = self.monitors.series(watch.samples, base, watch.links)
+            np.maximum(peaks, np.abs(values).max(axis=0), out=peaks)

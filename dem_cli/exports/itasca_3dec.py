@@ -44,7 +44,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
     compound = [block.name for block in exported.solids if len(block.parts) > 1]
     more = f" and {len(compound) - 1} more" if len(compound) > 1 else ""
     notes += [f"that the parts of '{compound[0]}'{more} move as one (block join)"] if compound else []
-    return notes + [f"[[{key}]]" for key in ("settlement", "motion", "imperfection") if getattr(case, key, None)]
+    return notes + [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
 
 
 def _block(block: ExportedBlock) -> list[str]:

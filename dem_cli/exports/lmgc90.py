@@ -138,7 +138,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
         f"joint '{name}': of law '{joint.law}' only its friction" for name, joint in case.joints.items()
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
-    notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection") if getattr(case, key, None)]
+    notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
     turned = _turned(exported)
     more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""
     notes += [f"moments of forces beside the centroid of '{turned[0]}'{more}"] if turned else []

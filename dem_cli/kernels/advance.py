@@ -178,12 +178,14 @@ def _book(
     ledger[SUPPORT] += dt * support
 
 
-def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
-    """The compiled stepping loop for one contact loop and one way to move the blocks."""
+def make_advance(contact_forces: Callable, drift: Callable, link_forces: Callable | None = None) -> Callable:
+    """The compiled stepping loop for one contact loop, one way to move the blocks and the links that there are."""
+    linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
     @kernel
     def advance(
-        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, like, like_rotation,
+        n_steps, mode, dt, bodies, shape, joints, geometry, contacts, links, loads, control, ledger, like,
+        like_rotation,
     ):  # fmt: skip
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
         velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
@@ -206,6 +208,8 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         for _ in range(n_steps):
             forces[:] = 0.0
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
+            if linked:
+                ledger[FRICTION] += pull(links, bodies, like, like_rotation)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
@@ -242,5 +246,5 @@ def make_advance(contact_forces: Callable, drift: Callable) -> Callable:
         control[MEAN_LOAD] = mean_load / done
         return done
 
-    named(advance.py_func, contact_forces, drift)
+    named(advance.py_func, contact_forces, drift, *filter(None, (link_forces,)))
     return advance

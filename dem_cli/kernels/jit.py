@@ -22,13 +22,15 @@ from types import CodeType, FunctionType
 from typing import Any, Protocol, cast
 
 import numba
+from numba import literal_unroll
 from numba.core import event
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload, register_jitable
 
 __all__ = [
-    "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "named", "overload",
+    "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "literal_unroll",
+    "named", "overload",
 ]  # fmt: skip
 
 _ROOT = Path(__file__).resolve().parent.parent
@@ -36,7 +38,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 
 def _source_hash() -> str:
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
-    for folder in ("kernels", "laws"):
+    for folder in ("kernels", "laws", "links"):
         for source in sorted((_ROOT / folder).glob("*.py")):
             digest.update(source.name.encode())
             digest.update(source.read_bytes())

@@ -243,12 +243,16 @@ class Dampers(NamedTuple):
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
 
 
+NO_LINKS = np.zeros((0, 0, 3))
+
+
 class Watch(NamedTuple):
     """Blocks whose motion is sampled: place, velocity and acceleration at one instant, relative to the base."""
 
     blocks: np.ndarray  # (n_watched,)
     every: int  # steps from one sample to the next
     samples: np.ndarray  # out: of the steps 0, every, 2 every ... of a stretch, (n_samples, n_watched, 3, n_dof)
+    links: np.ndarray = NO_LINKS  # out: state of all links at these steps (links/link.py), (n_samples, n_links, 3)
 
 
 # Slots of the vector `ledger`: sums over steps [J].

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from dem_cli.kernels.advance import local_drag
 from dem_cli.kernels.dashpots import book_elements, book_supports
-from dem_cli.kernels.jit import always_inline, inline, kernel, named
+from dem_cli.kernels.jit import always_inline, inline, kernel, literal_unroll, named
 from dem_cli.kernels.records import (
     CONTACT,
     DAMP,
@@ -109,13 +109,31 @@ def _sample(step, dt, bodies, shape, watch, like_rotation):
         add_gyration(samples, row, j, shape, bodies.turns, block, like_rotation)
 
 
-def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Callable:
-    """The compiled loop for one contact loop; damped: with dashpots or Maxwell elements in the joints."""
+@inline
+def _sample_links(step, links, watch):
+    """State of the links of every kind at this step."""
+    row, place = step // watch.every, 0
+    for link in literal_unroll(links):
+        state = link.state
+        for i in range(min(state.shape[0], watch.links.shape[1] - place)):  # nobody may look
+            for k in range(state.shape[1]):
+                watch.links[row, place + i, k] = state[i, k]
+        place += state.shape[0]
+
+
+def make_shake(
+    contact_forces: Callable, drift: Callable, damped: bool, link_forces: Callable | None = None
+) -> Callable:
+    """The compiled loop for one contact loop and the links that there are.
+
+    damped: with dashpots or Maxwell elements in the joints.
+    """
+    linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
     @kernel
     def shake(
-        first, n_steps, dt, bodies, shape, joints, geometry, contacts, loads, control, ledger, ground, dampers,
-        watch, like, like_rotation,
+        first, n_steps, dt, bodies, shape, joints, geometry, contacts, links, loads, control, ledger, ground,
+        dampers, watch, like, like_rotation,
     ):  # fmt: skip
         """Steps first, first + 1 ... of a stretch, up to n_steps; returns those done (fewer when detection is due)."""
         velocities, forces, unbalanced = bodies.velocities, bodies.forces, bodies.unbalanced
@@ -127,6 +145,8 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
         for step in range(first, first + n_steps):
             forces[:] = 0.0
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
+            if linked:
+                ledger[FRICTION] += pull(links, bodies, like, like_rotation)
             if damped:
                 met = meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
@@ -152,6 +172,8 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
             )  # fmt: skip
             if step % watch.every == 0:
                 _sample(step, dt, bodies, shape, watch, like_rotation)
+                if linked:
+                    _sample_links(step, links, watch)
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
@@ -164,5 +186,11 @@ def make_shake(contact_forces: Callable, drift: Callable, damped: bool) -> Calla
         control[UNBALANCED] = largest
         return done
 
-    named(shake.py_func, contact_forces, drift, "damped" if damped else "")
+    named(
+        shake.py_func,
+        contact_forces,
+        drift,
+        "damped" if damped else "",
+        *((link_forces,) if link_forces is not None else ()),
+    )
     return shake

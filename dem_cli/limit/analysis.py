@@ -16,7 +16,7 @@ from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides, work_of_friction
 from dem_cli.limit.cone import envelope_of, friction_of, steep
-from dem_cli.limit.matrices import Structure, structure_of
+from dem_cli.limit.matrices import NO_LINKS, Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
@@ -123,6 +123,8 @@ def limit_loads(
         friction = None
         if not associated_only:
             found = found._replace(no_path=f"not looked for: the path knows friction alone, and law '{law.name}' more")
+    if structure.links:
+        friction, found = None, found._replace(no_path=None if associated_only else f"not looked for: {NO_LINKS}")
     if associated.status == FALLS:
         return found
     settled = associated.status == LOCKED and model.dimension in SETTLED
@@ -136,9 +138,10 @@ def limit_loads(
 
 def _require_known(model: Model, bounds: Collection[str]) -> None:
     """Bounds of joints that do not dilate have one shear force per joint: in space its points slide each their way."""
-    if bounds and model.dimension not in BOUNDED:
+    if bounds and (model.dimension not in BOUNDED or model.links):
         asked = " and ".join(f"--{name}" for name in sorted(bounds, reverse=True))
-        raise UsageError(f"{asked}: bounds of joints that do not dilate are known in 2D only; leave it out here")
+        known = "in 2D only" if model.dimension not in BOUNDED else "without ties only"
+        raise UsageError(f"{asked}: bounds of joints that do not dilate are known {known}; leave it out here")
 
 
 def _path(
@@ -194,6 +197,11 @@ def require_scalable(model: Model, properties: JointProperties, law: Law) -> Non
         raise UsageError(
             f"limit analysis keeps the dead loads, and those of a tilting table fall: strengths of law '{law.name}' "
             "would count for too little; use analysis.pattern = 'mass'"
+        )
+    if structure.links:
+        raise UsageError(
+            "limit analysis keeps the dead loads, and those of a tilting table fall: largest forces of ties would "
+            "count for too little; use analysis.pattern = 'mass'"
         )
 
 

@@ -49,6 +49,9 @@ TRIES: tuple[dict[str, Any], ...] = (
 )  # fmt: skip
 
 
+NO_LINKS = np.zeros(0)
+
+
 class LimitLoad(NamedTuple):
     """An associated failure load, with what is needed to trust it."""
 
@@ -62,6 +65,7 @@ class LimitLoad(NamedTuple):
     velocities: np.ndarray  # mechanism; its live power is one, (n_blocks, n_dof)
     gap: float | None  # distance of the bounds, relative to the load
     iterations: int  # of the solver
+    links: np.ndarray = NO_LINKS  # axial forces of the links, tension positive [N], (n_links,)
 
 
 def slides(
@@ -142,8 +146,8 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
         return _refusal(program, *_falls(program, found))
     s = program.structure
     amounts = program.cone.admissible(found.amounts)
-    forces = program.cone.forces(amounts)
-    imbalance = s.imbalance(forces.ravel(), found.multiplier)
+    forces, axial = program.split(program.cone.forces(amounts))
+    imbalance = s.imbalance(forces.ravel(), found.multiplier, axial)
     power = float(s.live @ found.velocities)
     if not (np.isfinite(imbalance).all() and power > 0.0):
         return _refusal(program, f"{GIVEN_UP}: the solver says {found.said}")
@@ -154,7 +158,9 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     settings = program.settings
     gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
     normal, shear = forces[:, 0].copy(), forces[:, 1:].copy()
-    made = LimitLoad(OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0)
+    made = LimitLoad(
+        OK, found.multiplier, lower, upper, residual, normal, shear, s.on_blocks(velocities), gap, 0, axial
+    )
     if residual <= settings.residual and -settings.residual <= gap <= settings.gap:
         return made
     reason = f"{GIVEN_UP}: residual {residual:.1e} of own weights, bounds {gap:.1e} apart ({found.said})"
@@ -165,8 +171,8 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
     """Do the dead loads have forces that carry them?"""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
-    forces = program.cone.forces(program.cone.admissible(found.amounts))
-    imbalance = program.structure.imbalance(forces.ravel(), 0.0)
+    forces, axial = program.split(program.cone.forces(program.cone.admissible(found.amounts)))
+    imbalance = program.structure.imbalance(forces.ravel(), 0.0, axial)
     residual = float(np.abs(imbalance).max(initial=0.0))
     if found.kind == ANSWERED and residual <= program.settings.residual:
         return _refusal(program, OK, residual)
@@ -214,6 +220,6 @@ def _refusal(program: Program, status: str, residual: float = 0.0) -> LimitLoad:
     """An answer without a multiplier."""
     nothing, forces = (
         np.zeros((program.structure.model.n_blocks, program.structure.n_dof)),
-        np.zeros_like(program.cone.first),
+        np.zeros_like(program.split(program.cone.first)[0]),
     )
     return LimitLoad(status, None, None, None, residual, forces[:, 0], forces[:, 1:], nothing, None, 0)

@@ -20,8 +20,30 @@ from scipy.sparse import csr_matrix
 
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.kernels.records import Joints
+from dem_cli.laws.envelope import Envelope, envelope
+from dem_cli.links.matrices import elongations, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
+
+NO_LINKS = "the path of joints that do not dilate knows no ties"
+
+
+class Links(NamedTuple):
+    """Links of a structure as bounded axial forces; what prestress there was is no matter to a failure load."""
+
+    elongation: csr_matrix  # of each per degree of freedom that is free, (n_links, n_free)
+    limits: np.ndarray  # least and largest axial force, tension positive [N], (n_links, 2)
+
+    def __bool__(self) -> bool:
+        return len(self.limits) > 0
+
+    def as_points(self, dimension: int) -> tuple[csr_matrix, Envelope]:
+        """They as contact points without friction that hold tension: rows as of `compatibility`, and their strength."""
+        n = len(self.limits)
+        rows = np.arange(n) * dimension
+        place = csr_matrix((np.ones(n), (rows, np.arange(n))), (n * dimension, n))
+        least, most = self.limits.T
+        return csr_matrix(place @ self.elongation), envelope(n, tension=most, compression=-least)
 
 
 class Structure(NamedTuple):
@@ -35,6 +57,7 @@ class Structure(NamedTuple):
     live: np.ndarray  # per unit of the user's multiplier [N, N m], (n_free,)
     scales: np.ndarray  # own weight of the block, times its radius for moments [N, N m], (n_free,)
     bonds: np.ndarray  # points of faces that lie on each other, which a bond can hold, (n_points,) bool
+    links: Links  # ties and the like: axial forces that have limits
 
     @property
     def n_dof(self) -> int:
@@ -47,12 +70,15 @@ class Structure(NamedTuple):
         whole[self.free] = values
         return whole.reshape(-1, self.n_dof)
 
-    def imbalance(self, reactions: np.ndarray, multiplier: float) -> np.ndarray:
+    def imbalance(self, reactions: np.ndarray, multiplier: float, axial: np.ndarray | None = None) -> np.ndarray:
         """What is missing to equilibrium, over the own weight of the block (times its radius), (n_free,).
 
-        reactions: N and T at every point [N], (n_points·d,).
+        reactions: N and T at every point [N], (n_points·d,); axial: forces of the links [N], (n_links,).
         """
-        return (self.compatibility.T @ reactions + self.dead + multiplier * self.live) / self.scales
+        forces = self.compatibility.T @ reactions + self.dead + multiplier * self.live
+        if axial is not None and self.links:
+            forces = forces - self.links.elongation.T @ axial
+        return forces / self.scales
 
 
 def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) -> Structure:
@@ -69,5 +95,12 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
     bonds = np.ones(len(joints.kn), bool) if bonds is None else bonds
     return Structure(
         model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel(),
-        bonds,
+        bonds, links_of(model),
     )  # fmt: skip
+
+
+def links_of(model: Model) -> Links:
+    """The links of a model as they were drawn."""
+    springs = joined((link.axial() for link in model.links), model.dead_loads.shape[1])
+    limits = np.concatenate([np.zeros((0, 2)), *(link.limits for link in model.links)])
+    return Links(csr_matrix(elongations(springs, model.fixed)), limits)

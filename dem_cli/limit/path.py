@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.errors import UsageError
 from dem_cli.limit.elastic import Elastic, State
 from dem_cli.limit.interior import Increment
-from dem_cli.limit.matrices import Structure
+from dem_cli.limit.matrices import NO_LINKS, Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 
 OK = "ok"
@@ -89,7 +90,11 @@ def trace(
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
     effort    factorisations × points after which what was reached is returned (None: as the settings)
     progress  told the load and the displacement of every increment
+
+    Raises UsageError where the structure has links.
     """
+    if structure.links:
+        raise UsageError(NO_LINKS)
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
     longest = settings.longest_path(structure.model.dimension) * max(problem.n_points, 1)

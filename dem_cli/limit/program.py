@@ -49,6 +49,11 @@ class Program(NamedTuple):
     load: float  # multiplier that makes the live loads as large as the dead ones
     settings: AssociatedSettings
 
+    def split(self, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """N and T of the contact points (n_points, d), and the axial forces of the links, (n_links,)."""
+        n_points = len(forces) - len(self.structure.links.limits)
+        return forces[:n_points], -forces[n_points:, 0]
+
 
 class ProgramSolution(NamedTuple):
     """What the solver came up with; where it says that something is impossible, its proof."""
@@ -64,12 +69,17 @@ class ProgramSolution(NamedTuple):
 def program_of(
     structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> Program:
-    """The program of a structure with live loads."""
-    cone = cone_of(strength, structure.model.dimension)
+    """The program of a structure with live loads; its links are points behind those of `strength`."""
+    d, compatibility = structure.model.dimension, structure.compatibility
+    if structure.links:
+        more, bounds = structure.links.as_points(d)
+        compatibility = vstack([compatibility, more]).tocsr()
+        strength = Envelope(*(np.concatenate(both) for both in zip(strength, bounds, strict=True)))
+    cone = cone_of(strength, d)
     n_blocks, (weight, load) = len(structure.free) // structure.n_dof, units(structure)
-    motion, constant = cone.motion(structure.compatibility), structure.dead
+    motion, constant = cone.motion(compatibility), structure.dead
     if cone.first.any():
-        constant = constant + structure.compatibility.T @ cone.first.ravel()
+        constant = constant + compatibility.T @ cone.first.ravel()
     return Program(structure, cone, motion, constant, n_blocks, weight, load, settings)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,6 +51,8 @@ class ModelArrays(NamedTuple):
     face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
     face_corners: np.ndarray = NONE  # corners around each face seen from outside, counter-clockwise, int64
     principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
+    links: tuple[Any, ...] = ()  # ties and the like, arrays of each kind that there is (links/link.py)
+    link_names: tuple[str, ...] = ()  # of all of them, kind by kind
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
@@ -134,7 +136,7 @@ class Model(ModelArrays):
         return face_measures(self.vertices, self.topology)
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
-        """The model with these blocks alone, in this order; fixed: which of them cannot move, (n,) bool."""
+        """The model with these blocks alone, in this order, without links; fixed: which cannot move, (n,) bool."""
         of_blocks = [np.flatnonzero(self.part_blocks == block) for block in blocks]
         pick, parts = np.array(blocks), np.concatenate(of_blocks)
         part_starts, corners = _rows(self.part_starts, parts)
@@ -162,6 +164,8 @@ class Model(ModelArrays):
             face_starts=face_starts,
             face_corners=face_corners,
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
+            links=(),
+            link_names=(),
         )
 
     def parts_alone(self) -> Model:

@@ -22,6 +22,8 @@ MONITOR_UNITS = {
     "slip": "m",
     "velocity": "m/s",
     "acceleration": "m/s2",
+    "force": "N",
+    "elongation": "m",
 }
 MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base

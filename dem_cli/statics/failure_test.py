@@ -38,11 +38,12 @@ class FailureTest:
     def __init__(self, sim: Simulation, scale: float, plateau: bool = False, reach: float = 0.0) -> None:
         proof = sim.settings.proof
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
+        linked = measures.link_scale(sim)  # ties may take over only when blocks have gone as far as they stretch
         far = proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2, proof.beyond * reach)
-        self.far = far * scale
+        self.far = max(far * scale, proof.not_elastic * linked)
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             width = float(np.median(sim.widths[sim.free]))
-            self.far = min(self.far, max(proof.not_elastic * scale, proof.gross * width))
+            self.far = min(self.far, max(proof.not_elastic * max(scale, linked), proof.gross * width))
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]

@@ -109,7 +109,7 @@ class RigidLimits:
     @cached_property
     def path(self) -> Path | None:
         """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
-        if self._matrices is None:
+        if self._matrices is None or self.sim.links:  # which the path does not know
             return None
         from dem_cli.limit.path import trace
 

@@ -200,7 +200,7 @@ def closure(kinematics: str, fraction: float, slide: float) -> float:
     for _ in range(round(60 / fraction)):
         heights, before = sim.bodies.positions[:, 1].copy(), sim.kinetic_energy()
         compiled_advance(kinematics, sim.law)(
-            1, slot.HOLD_LOAD, dt, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
+            1, slot.HOLD_LOAD, dt, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.links, sim.loads,
             sim.control, sim.ledger, sim.like, sim.like_rotation,
         )  # fmt: skip
         kinetic = 0.5 * (before + sim.kinetic_energy())

@@ -202,8 +202,8 @@ def test_compiled_is_what_is_written(mode, kinematics):
         sim.control[slot.RATE] = 1e-5
         loop = compiled_advance(kinematics, sim.law)
         (loop.py_func if plain else loop)(
-            60, MODES[mode], 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.loads,
-            sim.control, sim.ledger, sim.like, sim.like_rotation,
+            60, MODES[mode], 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.links,
+            sim.loads, sim.control, sim.ledger, sim.like, sim.like_rotation,
         )  # fmt: skip
         results.append((sim.bodies.velocities, sim.bodies.forces, sim.ledger, sim.control))
     for compiled, written in zip(*results):

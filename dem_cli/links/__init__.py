@@ -1,0 +1,1 @@
+"""One-dimensional elements between points of blocks: ties, anchors; one kind, one file."""

@@ -1,0 +1,97 @@
+"""The contract of a kind of link: elements between material points of blocks, whose forces follow those of the joints.
+
+A kind is a table of the case file, a record of arrays, and a compiled function:
+
+    forces(arrays, bodies, like, like_rotation) -> work lost [J]
+
+which adds its forces to bodies.forces and leaves in `state` what each element has. A new kind: one file with these and
+a `Link` record, one line in the registry. Scenes without links compile none of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from dem_cli.case.base import CaseModel
+from dem_cli.kernels.jit import always_inline, inline, named
+
+FIXED_POINT = -1  # in place of a block: a point that moves with the base alone
+PLASTIC, STRETCH, FORCE = 0, 1, 2  # columns of LinkArrays.state
+N_STATE = 3
+
+
+class LinkEnds(NamedTuple):
+    """Where a link was drawn: its two blocks, the second one maybe FIXED_POINT, and its ends."""
+
+    blocks: tuple[int, int]
+    points: np.ndarray  # [m], (2, d)
+
+
+class Springs(NamedTuple):
+    """Springs that links are for small motions of their blocks, one behind another."""
+
+    blocks: np.ndarray  # the second one may be FIXED_POINT, (n, 2) int64
+    motion: np.ndarray  # how much longer each becomes per motion of either block, (n, 2, n_dof)
+    stiffness: np.ndarray  # [N/m], (n,)
+
+
+class LinkArrays(Protocol):
+    """The elements of one kind, as its compiled function sees them; a NamedTuple of arrays."""
+
+    blocks: np.ndarray  # as LinkEnds.blocks, (n, 2) int64
+    state: np.ndarray  # what changes: plastic elongation [m], elongation [m], axial force, tension positive [N], (n, 3)
+    limits: np.ndarray  # least and largest axial force [N], (n, 2)
+    stiffness: np.ndarray  # [N/m], (n,)
+    lengths: np.ndarray  # as they were drawn [m], (n,)
+
+    @property
+    def kind(self) -> str:
+        """Name in the registry."""
+
+    def started(self, origin: np.ndarray) -> LinkArrays:
+        """A copy for a simulation that counts places from `origin`, with the forces of the start."""
+
+    def axial(self, bodies: Any = None) -> Springs:
+        """Springs along the elements where the blocks are now; None: where they were drawn."""
+
+    def across(self, bodies: Any = None) -> Springs:
+        """Springs at least as stiff as what their forces make of them when they turn."""
+
+    def turning(self, bodies: Any) -> np.ndarray:
+        """Geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof)."""
+
+
+class Link(NamedTuple):
+    """A registered kind of link."""
+
+    key: str  # [[key]] in the case file
+    parameters: type[CaseModel]  # that table
+    made: Callable[[Sequence[Any], Sequence[LinkEnds], np.ndarray], Any]  # (tables, ends, centroids) -> LinkArrays
+    forces: dict[bool, Callable]  # where geometry is that of the start, and where it moves
+
+
+def all_forces(kinds: Sequence[Callable]) -> Callable:
+    """One function for the links of a scene, of several kinds one after the other; () for none."""
+    if not kinds:
+        return no_forces
+    first, others = kinds[0], all_forces(kinds[1:])
+    more = len(kinds) > 1
+
+    @inline
+    def link_forces(links, bodies, like, like_rotation):
+        """Adds the forces of all links on their blocks to `forces`; returns the work lost [J]."""
+        lost = first(links[0], bodies, like, like_rotation)
+        if more:
+            lost += others(links[1:], bodies, like, like_rotation)
+        return lost
+
+    return named(link_forces, *kinds)
+
+
+@always_inline
+def no_forces(links, bodies, like, like_rotation):
+    """Of a scene without links."""
+    return 0.0

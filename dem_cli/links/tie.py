@@ -1,0 +1,291 @@
+"""[[tie]]: ties and anchors: rods and cables between points of two blocks, or of a block and a fixed point.
+
+    N = k (ΔL + N0/k − p),   0 ≤ N ≤ Ny   (−Ny ≤ N where the rod also takes compression)
+
+k = EA/L or given, ΔL the elongation since it was drawn, N0 its prestress, p what has yielded, which stays. A tie that
+is slack carries nothing. It goes from point to point straight, wherever its blocks move, and rubs on nothing between.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
+from dem_cli.case.wording import show
+from dem_cli.kernels.contact_point import push_apart
+from dem_cli.kernels.jit import inline, named
+from dem_cli.kernels.joint_plane import moment, sweep
+from dem_cli.kernels.vec import axpy, dot, load, norm, scale
+from dem_cli.links.link import FIXED_POINT, FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Springs
+from dem_cli.links.material_points import cross_rows, turned_arm, turned_arms
+
+
+class Tie(CaseModel):
+    """[[tie]]: a rod or cable between points of two blocks, or from a block to a fixed point.
+
+    Its ends are points of the structure as it was drawn; blocks take them along.
+    """
+
+    id: Name | None = Field(default=None, description="name; default: tie-1, tie-2 ...", examples=["north"])
+    ends: tuple[Vector, Vector] = Field(
+        description="where it begins and ends, in or on its blocks as they were drawn [m]",
+        examples=[[[0.1, 2.0], [3.9, 2.0]]],
+    )
+    block: str | None = Field(
+        default=None,
+        description="id of the block that holds its first end; default: the one in which that lies",
+        examples=["left-3"],
+    )
+    other: str | None = Field(
+        default=None,
+        description="id of the block that holds its second end; default: the one in which that lies",
+        examples=["right-3"],
+    )
+    anchored: bool = Field(
+        default=False,
+        description="true: the second end is a fixed point, such as rock, which moves with the base alone",
+        examples=[True],
+    )
+    area: Positive | None = Field(default=None, description="cross-section [m2]", examples=[3.14e-4])
+    young: Positive | None = Field(default=None, description="Young's modulus, with area [Pa]", examples=[2.0e11])
+    stiffness: Positive | None = Field(
+        default=None, description="instead of area and young: force per elongation [N/m]", examples=[1e7]
+    )
+    prestress: NonNegative = Field(default=0.0, description="its force as it was drawn, before any load [N]")
+    yield_force: Positive | None = Field(
+        default=None, description="largest force, perfectly plastic [N]; default: no limit", examples=[5e4]
+    )
+    yield_stress: Positive | None = Field(
+        default=None, description="instead of yield_force, with area: largest stress [Pa]", examples=[2.35e8]
+    )
+    compression: bool = Field(
+        default=False, description="true: a rod that also takes compression, up to the same limit", examples=[True]
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Tie:
+        if self.stiffness is None and (self.area is None or self.young is None):
+            missing = "area" if self.area is None else "young"
+            raise KeyProblem("missing; a tie has area and young, or stiffness", missing)
+        if self.stiffness is not None and self.young is not None:
+            raise KeyProblem("'stiffness' and 'young' are both given; give one of them", "young")
+        if self.yield_stress is not None and self.yield_force is not None:
+            raise KeyProblem("'yield_force' and 'yield_stress' are both given; give one of them", "yield_stress")
+        if self.yield_stress is not None and self.area is None:
+            raise KeyProblem("not used without area", "yield_stress")
+        if self.stiffness is not None and self.area is not None and self.yield_stress is None:
+            raise KeyProblem("not used with stiffness, unless yield_stress is given", "area")
+        if self.anchored and self.other is not None:
+            raise KeyProblem("not used with anchored = true, whose second end is a fixed point", "other")
+        if self.prestress > self.largest:
+            said = "yield_force" if self.yield_stress is None else "yield_stress × area"
+            message = f"{show(self.prestress)} is not allowed; must be at most {said} ({self.largest:g} N)"
+            raise KeyProblem(message, "prestress")
+        if math.dist(*self.ends) == 0.0:
+            raise KeyProblem(f"{show(self.ends)} is not allowed; both ends are the same point", "ends")
+        return self
+
+    @property
+    def largest(self) -> float:
+        """Its largest force [N]."""
+        if self.yield_stress is not None and self.area is not None:
+            return self.yield_stress * self.area
+        return math.inf if self.yield_force is None else self.yield_force
+
+    def stiffness_over(self, length: float) -> float:
+        """Force per elongation [N/m]."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.area is not None
+        assert self.young is not None
+        return self.area * self.young / length
+
+
+class Ties(NamedTuple):
+    """All ties of a scene, as the stepping loop sees them."""
+
+    blocks: np.ndarray  # the second one may be FIXED_POINT, (n, 2) int64
+    arms: np.ndarray  # of both ends from the centroids, undeformed; of a fixed point its place [m], (n, 2·d)
+    axes: np.ndarray  # unit, from the first end to the second, at the start, (n, d)
+    starts: np.ndarray  # centroids of both blocks at the start; 0 of a fixed point [m], (n, 2·d)
+    lengths: np.ndarray  # at the start [m], (n,)
+    stiffness: np.ndarray  # [N/m], (n,)
+    prestress: np.ndarray  # [N], (n,)
+    limits: np.ndarray  # least and largest axial force [N], (n, 2)
+    state: np.ndarray  # plastic elongation [m], elongation [m], axial force, tension positive [N], (n, 3)
+
+    @property
+    def kind(self) -> str:
+        """Name in the registry."""
+        return TIE.key
+
+    def started(self, origin: np.ndarray) -> Ties:
+        """A copy for a simulation that counts places from `origin`, with the forces of the start."""
+        d, held = self.axes.shape[1], self.blocks[:, 1] == FIXED_POINT
+        arms, starts, state = self.arms.copy(), self.starts.copy(), np.zeros((len(self.blocks), N_STATE))
+        arms[held, d:] -= origin
+        starts[:, :d] -= origin
+        starts[~held, d:] -= origin
+        state[:, FORCE] = self.prestress
+        return self._replace(arms=arms, starts=starts, state=state)
+
+    def axial(self, bodies: Any = None) -> Springs:
+        """Springs along the ties where the blocks are now; None, and with geometry of the start: as they were drawn."""
+        axes, _, arms = self._lines(bodies)
+        return Springs(self.blocks, self._motion(axes, arms), self.stiffness)
+
+    def across(self, bodies: Any = None) -> Springs:
+        """Springs across the ties: a taut tie of force N that turns holds back with N/L at its ends, and with the
+        moment N times the arm of each."""
+        axes, lengths, arms = self._lines(bodies)
+        taut = np.maximum(np.maximum(self.prestress, self.state[:, FORCE]), 0.0)
+        inverse = 1.0 / lengths
+        for side in (0, 1):
+            far = np.sqrt((arms[:, side] ** 2).sum(axis=1))
+            inverse = inverse + np.divide(1.0, far, out=np.zeros_like(far), where=far > 1e-9 * lengths)
+        d = axes.shape[1]
+        # d − 1 directions across an axis: those of the unit vectors that are left when the axis is taken out, all of
+        # them, as more stiffness than there is does no harm.
+        sides = [np.eye(d)[k] - axes * axes[:, k : k + 1] for k in range(d)]
+        return Springs(
+            np.concatenate([self.blocks] * d),
+            np.concatenate([self._motion(side, arms) for side in sides]),
+            np.concatenate([taut * inverse] * d),
+        )
+
+    def turning(self, bodies: Any) -> np.ndarray:
+        """Geometric stiffness of the present forces: N times the second derivatives of the lengths.
+
+        Across: (1 − n nᵀ)/L of the relative motion of the ends; a block that turns by θ takes the end at its arm r
+        back by θ × (θ × r)/2. (n, 2·n_dof, 2·n_dof), first block first.
+        """
+        axes, lengths, arms = self._lines(bodies)
+        (n, d), force = axes.shape, self.state[:, FORCE]
+        n_dof = d + (1 if d == 2 else 3)
+        across = [np.eye(d)[k] - axes * axes[:, k : k + 1] for k in range(d)]
+        rows = np.stack([self._motion(side, arms).reshape(n, 2 * n_dof) for side in across], axis=1)
+        found = rows.swapaxes(1, 2) @ rows / lengths[:, None, None]
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            arm, held = arms[:, side], self.blocks[:, side] != FIXED_POINT
+            along = (axes * arm).sum(axis=1)[:, None, None]
+            both = axes[:, :, None] * arm[:, None, :]
+            turns = 0.5 * (both + both.swapaxes(1, 2)) - along * np.eye(d) if d == 3 else -along
+            own = slice(side * n_dof + d, (side + 1) * n_dof)
+            found[:, own, own] += sign * held[:, None, None] * turns
+        return force[:, None, None] * found
+
+    def _lines(self, bodies: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Unit vectors (n, d), lengths (n,) and arms (n, 2, d) now, or of the start."""
+        n, d = self.axes.shape
+        arms = self.arms.reshape(n, 2, d)
+        if bodies is None or not n:
+            return self.axes, self.lengths, arms
+        held = self.blocks[:, 1] == FIXED_POINT
+        now = arms.copy()
+        for side in (0, 1):
+            of = ~held if side else np.ones(n, bool)
+            now[of, side] = turned_arms(bodies.turns[self.blocks[of, side]], arms[of, side])
+        ends = now.copy()
+        ends[:, 0] += bodies.positions[self.blocks[:, 0]]
+        ends[~held, 1] += bodies.positions[self.blocks[~held, 1]]
+        between = ends[:, 1] - ends[:, 0]
+        lengths = np.sqrt((between**2).sum(axis=1))
+        return between / lengths[:, None], lengths, now
+
+    def _motion(self, along: np.ndarray, arms: np.ndarray) -> np.ndarray:
+        """How far the second end goes along a direction against the first, per motion of the blocks, (n, 2, n_dof)."""
+        sides = []
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            row = sign * np.column_stack([along, cross_rows(arms[:, side], along)])
+            row[self.blocks[:, side] == FIXED_POINT] = 0.0
+            sides.append(row)
+        return np.stack(sides, axis=1)
+
+
+def ties(tables: Sequence[Tie], ends: Sequence[LinkEnds], centroids: np.ndarray) -> Ties:
+    """The ties of a case whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d).
+
+    The points of `ends` are counted from the centroids of their blocks, that of a fixed point from nowhere.
+    """
+    n, d = len(tables), centroids.shape[1]
+    blocks = np.array([end.blocks for end in ends], np.int64).reshape(n, 2)
+    arms = np.array([end.points for end in ends], float).reshape(n, 2, d)
+    starts = np.where((blocks == FIXED_POINT)[:, :, None], 0.0, centroids[blocks])
+    between = (starts[:, 1] + arms[:, 1]) - (starts[:, 0] + arms[:, 0])
+    lengths = np.sqrt((between**2).sum(axis=1))
+    most = np.array([table.largest for table in tables])
+    least = np.array([-table.largest if table.compression else 0.0 for table in tables])
+    prestress = np.array([table.prestress for table in tables])
+    state = np.zeros((n, N_STATE))
+    state[:, FORCE] = prestress
+    return Ties(
+        blocks, arms.reshape(n, 2 * d), between / lengths[:, None], starts.reshape(n, 2 * d), lengths,
+        np.array([table.stiffness_over(length) for table, length in zip(tables, lengths.tolist(), strict=True)]),
+        prestress, np.column_stack([least, most]), state,
+    )  # fmt: skip
+
+
+def make_tie_forces(moves: bool) -> Callable:
+    """The loop over ties; moves: along the line through their ends now, else along that of the start."""
+
+    @inline
+    def tie_forces(ties, bodies, like, like_rotation):
+        """Adds the forces of all ties on their blocks to `forces`; returns the work lost by yielding [J]."""
+        blocks, arms, starts, axes, state = ties.blocks, ties.arms, ties.starts, ties.axes, ties.state
+        positions, orientations, forces = bodies.positions, bodies.orientations, bodies.forces
+        d = len(like)
+        lost = 0.0
+        for number in range(blocks.shape[0]):
+            tie = np.uint64(number)
+            a, held = np.uint64(blocks[tie, 0]), blocks[tie, 1] < 0
+            b = a if held else np.uint64(blocks[tie, 1])
+            arm_a, arm_b = load(arms, tie, 0, like), load(arms, tie, d, like)
+            zero = scale(0.0, arm_a)
+            if moves:
+                arm_a = turned_arm(bodies.turns, a, arm_a)
+                arm_b = arm_b if held else turned_arm(bodies.turns, b, arm_b)
+                tip_b = arm_b if held else axpy(1.0, arm_b, load(positions, b, 0, like))
+                between = axpy(-1.0, axpy(1.0, arm_a, load(positions, a, 0, like)), tip_b)
+                length = norm(between)
+                axis = scale(1.0 / length, between)
+                stretch = length - ties.lengths[tie]
+            else:
+                axis = load(axes, tie, 0, like)
+                moved_a = axpy(-1.0, load(starts, tie, 0, like), load(positions, a, 0, like))
+                moved_a = axpy(1.0, sweep(load(orientations, a, 0, like_rotation), arm_a), moved_a)
+                moved_b = axpy(-1.0, load(starts, tie, d, like), load(positions, b, 0, like))
+                moved_b = axpy(1.0, sweep(load(orientations, b, 0, like_rotation), arm_b), moved_b)
+                moved_b = zero if held else moved_b
+                stretch = dot(axis, axpy(-1.0, moved_a, moved_b))
+            stiffness, before, plastic = ties.stiffness[tie], state[tie, FORCE], state[tie, PLASTIC]
+            force = stiffness * (stretch - plastic) + ties.prestress[tie]
+            least, most = ties.limits[tie, 0], ties.limits[tie, 1]
+            if force > most or (force < least and least < 0.0):
+                limit = most if force > most else least
+                yielded = (force - limit) / stiffness
+                state[tie, PLASTIC] = plastic + yielded
+                lost += 0.5 * (before + limit) * yielded  # mean of the forces really applied
+                force = limit
+            elif force < least:
+                force = least  # slack
+            state[tie, STRETCH], state[tie, FORCE] = stretch, force
+            pull = scale(-force, axis)  # on b
+            if held:
+                for k in range(d):
+                    forces[a, k] -= pull[k]
+                torque = moment(arm_a, pull)
+                for k in range(len(like_rotation)):
+                    forces[a, d + k] -= torque[k]
+            elif force != 0.0:
+                push_apart(forces, a, b, pull, moment(arm_a, pull), moment(arm_b, pull))
+        return lost
+
+    return named(tie_forces, "moving" if moves else "still")
+
+
+TIE = Link(key="tie", parameters=Tie, made=ties, forces={moves: make_tie_forces(moves) for moves in (False, True)})
