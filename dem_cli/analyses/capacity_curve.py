@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.analyses import curve_answers
 from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
@@ -31,6 +32,7 @@ from dem_cli.statics.warm_start import CURVE, CurveStart
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.engine.track import Track
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -42,7 +44,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     try:
         if settle(sim, track, job.budget).state == "equilibrium":
             track.flush()
-            found |= _curve_and_peak(job, sim, search)
+            found |= _curve_and_peak(job, sim, search, track)
         else:
             search.status = FALLS
             track.flush()
@@ -63,7 +65,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], answer(search, sim, resolution) | found)
 
 
-def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad) -> dict[str, Any]:
+def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
     """The curve, then the bracket around its peak; what is found of the load goes to `search` as it is found."""
     analysis, settings = job.case.analysis, job.settings.displacement_control
     at_rest = sim.save()
@@ -72,10 +74,14 @@ def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad) -> dict[str,
     control = DisplacementControl(sim, job.budget, elastic)
     coarse = trace(control, analysis.follow, analysis.increments, coarser=settings.coarser)
     sim.restore(at_rest)
-    curve = trace(control, analysis.follow, analysis.increments, _Shown(job, sim, coarse, settings.past))
+    curve = trace(control, analysis.follow, analysis.increments, _Shown(job, track, coarse, settings.past))
     end = sim.save()
-    found = {"capacity_curve": _summary(curve, coarse, sim), "displacement_at_failure": curve.highest.largest}
+    told = curve_answers.summary(job, curve, control.forces, sim.live_scale)
+    told["peak_load_of_coarser_increments"] = coarse.highest.load * sim.live_scale
+    found: dict[str, Any] = {"capacity_curve": told, "displacement_at_failure": curve.highest.largest}
     job.warnings += _words(curve, coarse, analysis.resolution)
+    if analysis.check is not None:
+        found |= curve_answers.CurveCheck(job, sim, analysis.check).run(told, curve, (at_rest, end))
     sim.restore(at_rest)
     search.limits, search.start = RigidLimits(job, sim), {"kind": CURVE, "load": curve.highest.load * sim.live_scale}
     wanted = SearchRange(analysis.resolution, analysis.max_load)
@@ -98,8 +104,8 @@ def _start(curve: CapacityCurve, sim: Simulation) -> CurveStart:
 class _Shown:
     """Rows and frames of a curve as it grows; a first, coarser one says how far it goes and where its peak is."""
 
-    def __init__(self, job: Job, sim: Simulation, first: CapacityCurve, past: float) -> None:
-        self.track, self.sim, self.past = job.track(sim), sim, past
+    def __init__(self, job: Job, track: Track, first: CapacityCurve, past: float) -> None:
+        self.track, self.sim, self.past = track, track.sim, past
         self.until, self.highest = job.case.analysis.follow, first.highest.load
         self.every = self.until / max(job.case.output.snapshots - 2, 1)
         self.next_frame, self.stage, self.peaked = self.every, "loading", False
@@ -117,21 +123,6 @@ class _Shown:
         share = min(point.largest / self.until, 1.0)
         load = point.load * self.sim.live_scale
         self.track.observer.progress("following the capacity curve", load, point.largest, share)
-
-
-def _summary(curve: CapacityCurve, coarse: CapacityCurve, sim: Simulation) -> dict[str, Any]:
-    """What summary.json says of the curve; multipliers as users know them, displacements in m."""
-    displacements, loads = curve.arrays()
-    return {
-        "displacements": displacements.tolist(),
-        "loads": (loads * sim.live_scale).tolist(),
-        "peak_load": curve.highest.load * sim.live_scale,
-        "peak_displacement": curve.highest.displacement,
-        "last_load": curve.points[-1].load * sim.live_scale,
-        "last_displacement": curve.points[-1].displacement,
-        "whole": curve.whole,
-        "peak_load_of_coarser_increments": coarse.highest.load * sim.live_scale,
-    }
 
 
 def _words(curve: CapacityCurve, coarse: CapacityCurve, resolution: float) -> list[str]:

@@ -20,6 +20,7 @@ from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
+from dem_cli.statics.hysteresis import loops
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -33,7 +34,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
     sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
     track = job.track(sim)
-    found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": []}
+    found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": [], "loops": []}
     try:
         if settle(sim, track, job.budget).state == "equilibrium":
             track.flush()
@@ -55,7 +56,8 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     """Every value of the path, after each of whose steps all forces balance; what is found goes to `found` at once."""
     analysis = job.case.analysis
     go = WAYS[analysis.control](job, sim)
-    value = 0.0
+    value, states, turns = 0.0, [(0.0, 0.0)], [0]
+    at_rest = measures.live_travel(sim)
     for turn, target in enumerate(analysis.path):
         for next_value in values_between(value, target, analysis.step):
             share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
@@ -66,11 +68,17 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
                 track.frame("collapse")
                 return
             track.write("loading")
+            states.append((measures.live_travel(sim) - at_rest, sim.load * sim.live_scale))
             value = next_value
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
         point = {"load": load, "displacement": measures.largest_displacement(sim)}
+        point["live_displacement"] = states[-1][0]
         found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
+        turns.append(len(states) - 1)
+        displacements, loads = np.array(states).T
+        made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
+        found["loops"] = [loop._asdict() for loop in made]
     found["status"] = "ok"
 
 

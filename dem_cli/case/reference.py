@@ -10,7 +10,9 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
 from dem_cli.case.tolerance_rules import ReferenceKind, allowance
 from dem_cli.case.wording import show
 
+Loads = tuple[float, ...]  # of a curve
 Word = Annotated[str, Field(min_length=1)]
+CURVE = "capacity_curve"  # quantity of the summary that is one
 NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes), as a share of 0 is nothing"
 
 
@@ -25,14 +27,23 @@ class Reference(CaseModel):
         description="instead of failure_load: path of a number, word or truth in summary.json",
         examples=["peaks.top displacement.peak"],
     )
-    value: bool | float | Pair | Word | None = Field(
+    value: bool | float | Pair | Loads | Word | None = Field(
         default=None,
-        description="of the quantity: a number, [lowest, highest], a word or a truth [unit of the quantity]",
+        description="of the quantity: a number, [lowest, highest], a word or a truth; of a curve its loads [unit of "
+        "the quantity]",
         examples=[0.012],
+    )
+    displacements: tuple[float, ...] | None = Field(
+        default=None,
+        min_length=2,
+        description="quantity = 'capacity_curve': displacements of the live load that the loads belong to, "
+        "increasing [m]",
+        examples=[[0.001, 0.002, 0.005]],
     )
     tolerance: Positive | None = Field(
         default=None,
-        description="largest difference that passes [unit of the quantity]; default: by the rule of its kind",
+        description="largest difference that passes [unit of the quantity], of a curve the mean one; default: by the "
+        "rule of its kind",
         examples=[0.001],
     )
     relative: Positive | None = Field(
@@ -73,15 +84,37 @@ class Reference(CaseModel):
             raise KeyProblem(f"{show(self.value)} is not allowed beside 'failure_load'", "value")
         if self.quantity is not None and self.value is None:
             raise KeyProblem("missing; must be a number, a list of 2 numbers, a string, true or false", "value")
+        self._check_curve()
         self._check_tolerance()
         return self
+
+    def _check_curve(self) -> None:
+        loads, places = self.value, self.displacements
+        if (places is not None) != (self.quantity == CURVE):
+            if places is not None:
+                raise KeyProblem(f"only allowed with quantity = '{CURVE}'", "displacements")
+            raise KeyProblem(
+                "missing; must be a list of numbers: where the loads of the curve are [m]", "displacements"
+            )
+        if places is None:
+            if isinstance(loads, tuple) and len(loads) != 2:
+                raise KeyProblem(f"{len(loads)} numbers are not allowed; must be [lowest, highest]", "value")
+            return
+        if not isinstance(loads, tuple) or len(loads) != len(places):
+            raise KeyProblem(f"must be a list of {len(places)} numbers, one for each of 'displacements'", "value")
+        for i in range(1, len(places)):
+            if places[i] < places[i - 1]:
+                raise KeyProblem(f"{places[i]:g} is not allowed; displacements increase", "displacements", i)
+        if max(loads) <= 0.0:
+            raise KeyProblem("loads above 0 are missing; errors are shares of the largest", "value")
 
     def _check_tolerance(self) -> None:
         given = [key for key in ("tolerance", "relative") if getattr(self, key) is not None]
         if len(given) == 2:
             raise KeyProblem(f"{show(self.relative)} is not allowed beside 'tolerance'", "relative")
-        if isinstance(self.expected, tuple) and self.expected[0] >= self.expected[1]:
-            raise KeyProblem(f"{show(self.expected)} is not allowed; must be [lowest, highest]", "value")
+        value = self.expected
+        if isinstance(value, tuple) and self.displacements is None and value[0] >= value[1]:
+            raise KeyProblem(f"{show(value)} is not allowed; must be [lowest, highest]", "value")
         if isinstance(self.expected, (bool, str)):
             extra = [*given, *(("scatter",) if self.scatter is not None else ())]
             if extra:
@@ -112,7 +145,7 @@ class Reference(CaseModel):
         return self.quantity or "failure_load"
 
     @property
-    def expected(self) -> bool | float | Pair | Word:
+    def expected(self) -> bool | float | Pair | Loads | Word:
         """The value of the quantity, in either form."""
         value = self.failure_load if self.quantity is None else self.value
         assert value is not None
@@ -124,6 +157,8 @@ class Reference(CaseModel):
         if isinstance(self.expected, (bool, str)):
             return None
         bounds = self.expected if isinstance(self.expected, tuple) else (self.expected,)
+        if self.displacements is not None:  # the difference that counts is a mean one, its size that of the peak
+            bounds = (max(bounds),)
         if self.tolerance is not None:
             return self.tolerance
         if self.relative is not None:

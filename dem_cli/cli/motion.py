@@ -63,9 +63,9 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
 
 def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
+    from dem_cli.motion.eurocode import target_of
     from dem_cli.motion.ground_motions import suites_of
     from dem_cli.motion.intensity_measures import fit
-    from dem_cli.motion.synthetic import target_of
 
     tables = [table for table in loaded.case.motion if table.kind != "none"]
     if not tables:

@@ -55,6 +55,17 @@ def live_displacement(sim: Simulation) -> float:
     return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
+def live_force(sim: Simulation) -> float:
+    """Sum of the forces of the live load at an internal multiplier of 1 [N]."""
+    return float(np.sqrt((sim.loads.live[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+
+
+def live_travel(sim: Simulation) -> float:
+    """Displacement of the live load along itself since it was drawn: q·u over `live_force` [m]; 0 without one."""
+    force = live_force(sim)
+    return live_displacement(sim) / force if force > 0.0 else 0.0
+
+
 def dead_scale(sim: Simulation) -> float:
     """What all dead loads would do to the softest joint or link [m]: no elastic displacement is larger by much."""
     joints = sim.joints

@@ -18,14 +18,19 @@ class Track:
     def __init__(self, sim: Simulation, observer: Observer, monitors: Monitors, frames: int):
         self.sim, self.observer, self.monitors, self.frames = sim, observer, monitors, frames
         self.kept: list[HistoryRow] = []
+        self.at_rest = 0.0  # of the live load under dead loads, as measures.live_travel [m]
 
     def row(self, stage: str, load: float | None = None) -> HistoryRow:
         """The history row of this instant. load: internal multiplier, where that of the instant is not wanted."""
         sim = self.sim
         load = sim.load if load is None else load
+        travel = measures.live_travel(sim)
+        if stage == "gravity":
+            self.at_rest = travel
         return HistoryRow(
             stage, sim.steps, load * sim.live_scale, measures.largest_displacement(sim), sim.unbalanced,
             measures.largest_overlap(sim), measures.energy(sim), self.monitors.values(sim), sim.time,
+            travel - self.at_rest,
         )  # fmt: skip
 
     def keep(self, stage: str) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.motion.eurocode import TargetSpectrum, eurocode, listed
+from dem_cli.motion.eurocode import TargetSpectrum, target_of
 from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.spectrum import OscillatorFilter, oscillator, pseudo_accelerations
 
@@ -28,15 +28,6 @@ CONTROLS = 80
 LEAST = 0.92  # of the target: lower places count in the choice of the best iteration (Eurocode 8 allows 0.90)
 WAVELET = 6.0  # time steps: period of the wavelet that raises a peak
 END_LEVEL = 0.05  # of the envelope at the end of the decay
-
-
-def target_of(table: ArtificialTable) -> TargetSpectrum:
-    """The spectrum that a table asks for."""
-    if isinstance(table.spectrum, str):
-        assert table.soil is not None
-        assert table.ag is not None
-        return eurocode(table.spectrum, table.soil, table.ag, table.damping)
-    return listed(table.spectrum, table.damping)
 
 
 def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Accelerogram]:

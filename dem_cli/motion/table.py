@@ -10,12 +10,11 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
 from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.motion.units import SI_FACTORS
+from dem_cli.tables.spectrum import SpectrumTable
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
-Period = tuple[NonNegative, Positive]  # period [s], acceleration [m/s2]
 MOST_CYCLES = 1_000_000  # of a harmonic motion
 PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("impulse",)}
-EC8_KEYS = ("soil", "ag")
 
 
 class MotionTable(CaseModel):
@@ -177,23 +176,10 @@ class RecordTable(MotionTable):
         return (1 if self.baseline else None) if isinstance(self.baseline, bool) else self.baseline
 
 
-class ArtificialTable(MotionTable):
+class ArtificialTable(SpectrumTable, MotionTable):
     """[motion] kind = "artificial": made to fit a response spectrum."""
 
     kind: Literal["artificial"] = "artificial"
-    spectrum: Literal["EC8-1", "EC8-2"] | Annotated[tuple[Period, ...], Field(min_length=2)] = Field(
-        description="elastic spectrum of Eurocode 8, type 1 or 2, or a list of [period [s], acceleration [m/s2]]",
-        examples=["EC8-1"],
-    )
-    soil: Literal["A", "B", "C", "D", "E"] | None = Field(
-        default=None, description="ground type of Eurocode 8", examples=["B"]
-    )
-    ag: Positive | None = Field(
-        default=None, description="ground acceleration on rock [m/s2], with Eurocode 8", examples=[3.0]
-    )
-    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
-        default=0.05, description="damping ratio that the spectrum is for [-]"
-    )
     duration: Positive = Field(default=20.0, description="how long each record lasts [s]")
     rise: Positive = Field(default=2.0, description="how long it grows [s], with the square of time")
     plateau: Positive = Field(default=10.0, description="how long it stays strong [s]; Eurocode 8 wants 10 s")
@@ -211,22 +197,8 @@ class ArtificialTable(MotionTable):
     )
     scale: float = Field(default=1.0, description="factor on the finished records [-]")
 
-    @field_validator("spectrum")
-    @classmethod
-    def _rising_periods(cls, spectrum: str | tuple[Period, ...]) -> str | tuple[Period, ...]:
-        if isinstance(spectrum, tuple):
-            for i in range(1, len(spectrum)):
-                if spectrum[i][0] <= spectrum[i - 1][0]:
-                    raise KeyProblem(f"{spectrum[i][0]:g} is not allowed; periods increase", i, 0)
-        return spectrum
-
     @model_validator(mode="after")
     def _consistent(self) -> ArtificialTable:
-        for key in EC8_KEYS:
-            if isinstance(self.spectrum, str) and getattr(self, key) is None:
-                raise KeyProblem(f"missing; spectrum = '{self.spectrum}' needs it", key)
-            if not isinstance(self.spectrum, str) and getattr(self, key) is not None:
-                raise KeyProblem("not allowed beside a spectrum given as a list", key)
         _some(self.scale, "scale")
         if self.number > self.count:
             raise KeyProblem(f"{self.number} is not allowed; must be at most count = {self.count}", "number")

@@ -233,6 +233,12 @@ HISTORY = {
     "unbalanced": Described("largest unbalanced force on a block over its own weight", PURE, _ROW),
     "overlap": Described("largest overlap of two blocks", "m", _ROW),
     "time": Described("time since the start of a time history; 0 in other analyses", "s", _ROW),
+    "live_displacement": Described(
+        "displacement of the live load along itself since the structure rested under dead loads: of one force that of "
+        "its point, of several the mean by their size, positive along them; 0 without a live load",
+        "m",
+        _ROW,
+    ),
     "monitor_values": Described(
         "value of each [[monitor]]; `columns` names them, `units` has one for each", (), ("row", "monitor")
     ),

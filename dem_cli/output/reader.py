@@ -32,7 +32,9 @@ class Results:
     summary: dict[str, Any]  # {} where a killed run left none
     model: Model
     frames: Frames  # a sequence of Frame, in the order in which they came
-    history: dict[str, np.ndarray]  # "stage" (names), "step", "load", "displacement", "unbalanced", "overlap", "time"
+    history: dict[
+        str, np.ndarray
+    ]  # "stage" (names), "step", "load", "displacement", "unbalanced", "overlap", "time", ...
     energy: dict[str, np.ndarray]  # [J], one value per history row, by the names of Energy
     monitors: dict[str, np.ndarray]  # one value per history row, by monitor name
     case_text: str

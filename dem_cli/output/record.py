@@ -147,6 +147,7 @@ class HistoryRow(NamedTuple):
     energy: Energy
     monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
     time: float = 0.0  # since the start of a time history [s]
+    live_displacement: float = 0.0  # of the live load along itself since it rested under dead loads [m], signed
 
 
 class Samples(NamedTuple):

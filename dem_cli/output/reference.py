@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Protocol
 
+import numpy as np
+
 from dem_cli.output.record import FALLS
 from dem_cli.output.scalars import scalars
 
@@ -22,8 +24,12 @@ class ReferenceTable(Protocol):
         """Key of the summary that is compared."""
 
     @property
-    def expected(self) -> bool | float | tuple[float, float] | str:
-        """Value, or ends of the interval, that it should have."""
+    def expected(self) -> bool | float | tuple[float, ...] | str:
+        """Value, ends of the interval, or loads of the curve, that it should have."""
+
+    @property
+    def displacements(self) -> tuple[float, ...] | None:
+        """Of a curve: where its values are [m]; None of anything else."""
 
     @property
     def allowance(self) -> float | None:
@@ -45,7 +51,10 @@ def verdicts(summary: Mapping[str, Any], references: Sequence[ReferenceTable]) -
     says that this is missed; `problem`, why there is nothing to compare.
     """
     known = scalars(summary)
-    return [verdict(known, reference) for reference in references]
+    return [
+        verdict(known, one) if one.displacements is None else curve_verdict(summary.get(one.path), one)
+        for one in references
+    ]
 
 
 def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, Any]:
@@ -66,7 +75,32 @@ def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, 
     return answer | ({"problem": problem} if problem else {})
 
 
-def passes(found: Value, expected: bool | float | tuple[float, float] | str, allowance: float | None) -> bool:
+def curve_verdict(curve: Any, reference: ReferenceTable) -> dict[str, Any]:
+    """One reference that is a curve, and the curve of a summary: `displacements` and `loads`.
+
+    found: our loads at its displacements, between the points of ours in proportion. What counts is mean_error, the mean
+    size of the differences; it and largest_error, that of largest size with its sign, are in the unit of the loads.
+    """
+    loads, places = np.array(reference.expected, float), np.array(reference.displacements, float)
+    answer: dict[str, Any] = {
+        "value": loads.tolist(), "displacements": places.tolist(), "tolerance": reference.allowance, "passed": False,
+        "quantity": reference.path, "kind": reference.kind, "found": None,
+    }  # fmt: skip
+    if reference.missed is not None:
+        answer["missed"] = reference.missed
+    if not isinstance(curve, Mapping) or "loads" not in curve:
+        return answer | {"problem": f"the summary has no '{reference.path}': only control = 'displacement' finds one"}
+    ours, end = np.array(curve["displacements"]), float(curve["displacements"][-1])
+    if end < places.max():
+        return answer | {"problem": f"the curve ends at {end:.3g} m, before {places.max():.3g} m of the reference"}
+    found = np.interp(places, ours, curve["loads"])
+    differences = found - loads
+    mean = float(np.abs(differences).mean())
+    answer |= {"mean_error": mean, "largest_error": float(differences[np.abs(differences).argmax()])}
+    return answer | {"found": found.tolist(), "passed": mean <= (reference.allowance or 0.0)}
+
+
+def passes(found: Value, expected: bool | float | tuple[float, ...] | str, allowance: float | None) -> bool:
     """Whether what was found is what was expected; nothing found never is, nor a truth for a number."""
     if isinstance(expected, (bool, str)):
         return type(found) is type(expected) and found == expected
@@ -74,7 +108,12 @@ def passes(found: Value, expected: bool | float | tuple[float, float] | str, all
     return off is not None and abs(off) <= (allowance or 0.0)
 
 
-def error(found: Value, expected: bool | float | tuple[float, float] | list[float] | str) -> float | None:
+def error_of(answer: Mapping[str, Any]) -> float | None:
+    """How far off a verdict is: of a curve the mean size of its differences, else `error`."""
+    return answer.get("mean_error") if "displacements" in answer else error(answer["found"], answer["value"])
+
+
+def error(found: Value, expected: bool | float | tuple[float, ...] | list[float] | str) -> float | None:
     """How far a number is above (+) or below (−) the expected one, or outside the interval; None of anything else."""
     if isinstance(expected, (bool, str)) or isinstance(found, (bool, str)) or found is None:
         return None

@@ -39,7 +39,7 @@ from dem_cli.output.summary import write_summary
 
 RESULTS_FORMAT = 1
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
-ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time")
+ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time", "live_displacement")
 FRAME_SCALARS = ("step", "load", "displacement", "time")
 IN_SECONDS = frozenset(("time-history",))  # kinds whose frames ParaView counts in seconds; others by their number
 FRAME_ARRAYS = ("positions", "orientations", "velocities")

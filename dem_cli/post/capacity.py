@@ -1,10 +1,10 @@
-"""capacity.png: load multiplier against control displacement, up to failure and over the whole collapse."""
+"""capacity.png: load multiplier over displacement, up to failure and beyond, its bilinear system, curves of tests."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,21 +12,62 @@ from dem_cli.output.reader import Results
 from dem_cli.output.reference import from_summary
 from dem_cli.post import style
 
+LIVE, LARGEST = "displacement of the live load", "control displacement"
 _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farther than failure
+
+
+class CapacityAxis(NamedTuple):
+    """Displacements that loads are drawn against."""
+
+    values: np.ndarray  # of each row of the history [m]
+    label: str
+    failure: float | None  # displacement at failure, or at the peak [m]; None: not known
+
+    @property
+    def farthest(self) -> float:
+        """Largest size [m]."""
+        return float(np.abs(self.values).max(initial=0.0))
+
+    @property
+    def signed(self) -> bool:
+        """Whether it is that of the live load, which has a sign."""
+        return self.label == LIVE
+
+
+def capacity_axis(results: Results) -> CapacityAxis:
+    """What the loads of a run are drawn against."""
+    history, summary = results.history, results.summary
+    curve = summary.get("capacity_curve")
+    if (curve or "turning_points" in summary) and "live_displacement" in history:
+        return CapacityAxis(history["live_displacement"], LIVE, curve["peak_displacement"] if curve else None)
+    values, given = history["displacement"], summary.get("displacement_at_failure")
+    if given:
+        return CapacityAxis(values, LARGEST, float(given))
+    loading = values[history["stage"] == "loading"]
+    return CapacityAxis(values, LARGEST, float(loading.max()) if len(loading) and loading.max() > 0 else None)
+
+
+def of_frames(results: Results, axis: CapacityAxis, frames: Sequence[Mapping[str, Any]]) -> list[float]:
+    """Displacement of frames on an axis [m]: of the row of their step and load. frames: as the view has them."""
+    if not axis.signed:
+        return [frame["displacement"] for frame in frames]
+    steps, loads = results.history["step"], results.history["load"]
+    top = float(np.abs(loads).max(initial=0.0)) or 1.0
+    rows = [int(np.argmin(abs(steps - f["step"]) + abs(loads - f["load"]) / top)) for f in frames]
+    return [float(axis.values[row]) for row in rows]
 
 
 def draw_capacity(results: Results, path: Path) -> None:
     """Draw the capacity curve; one panel more where the way to failure would be invisible."""
-    history, summary = results.history, results.summary
-    farthest = float(history["displacement"].max(initial=0.0))
-    to_failure = _failure_displacement(results)
+    summary, along = results.summary, capacity_axis(results)
+    farthest, to_failure = along.farthest, along.failure
     panels = [farthest]
-    if to_failure and farthest > _ZOOM_FROM * to_failure:
+    if to_failure and farthest > _ZOOM_FROM * to_failure and not summary.get("capacity_curve"):
         panels = [2.0 * to_failure, farthest]
     with style.figure(path, figsize=(7.4 if len(panels) == 1 else 11.0, 4.3)) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
         for i, (axis, limit) in enumerate(zip(axes, panels, strict=True)):
-            _draw_curve(axis, results, limit)
+            _draw_curve(axis, results, along, limit)
             _draw_answers(axis, summary, labelled=i == len(axes) - 1)
             if title := _title(summary, i, len(panels)):
                 axis.set_title(title, fontweight="normal", color=style.GREY, fontsize=10)
@@ -77,19 +118,12 @@ def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:
         legend.remove()
 
 
-def _failure_displacement(results: Results) -> float | None:
-    """Where failure is, from the summary or the end of loading."""
-    given = results.summary.get("displacement_at_failure")
-    if given:
-        return float(given)
-    loading = results.history["displacement"][results.history["stage"] == "loading"]
-    return float(loading.max()) if len(loading) and loading.max() > 0 else None
-
-
-def _draw_curve(axis: Any, results: Results, limit: float) -> None:
+def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) -> None:
     history = results.history
     factor, unit = style.length_unit(limit)
-    x, y = factor * history["displacement"], history["load"]
+    x, y = factor * along.values, history["load"]
+    lowest = min(float(x.min(initial=0.0)), 0.0) if along.signed else 0.0
+    highest = float(x.max(initial=0.0)) if lowest < 0.0 else factor * limit  # of cycles, or of the panel
     for stage, colour in style.STAGE_COLOURS.items():
         rows = np.flatnonzero(history["stage"] == stage)
         if len(rows):
@@ -97,10 +131,33 @@ def _draw_curve(axis: Any, results: Results, limit: float) -> None:
             if history["step"][before] <= history["step"][rows[0]]:
                 rows = np.concatenate(([before], rows))  # joined to the stage before
             places, loads = with_breaks(history["step"][rows], x[rows], y[rows])
-            axis.plot(places, loads, color=colour, label=stage)
-    axis.set_xlim(-0.02 * factor * limit, 1.03 * factor * limit or 1.0)
+            axis.plot(places, loads, color=colour, lw=1.2 if lowest < 0.0 else None, label=stage)
+    axis.set_xlim(1.03 * lowest - 0.02 * factor * limit, 1.03 * highest or 1.0)
     axis.locator_params(axis="x", nbins=6)
-    axis.set_xlabel(f"control displacement [{unit}]")
+    axis.set_xlabel(f"{along.label} [{unit}]")
+    if lowest < 0.0:  # cycles
+        for line in (axis.axhline, axis.axvline):
+            line(0.0, color=style.GREY, lw=0.8, zorder=0.5)
+    _draw_system(axis, results.summary.get("capacity_curve") or {}, factor)
+    _draw_tests(axis, results.summary, factor)
+
+
+def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
+    """The bilinear system over its curve."""
+    system = curve.get("bilinear")
+    if system:
+        ends = [0.0, factor * system["yield_displacement"], factor * system["ultimate_displacement"]]
+        loads = [0.0, system["yield_load"], system["yield_load"]]
+        axis.plot(ends, loads, color=style.SYSTEM, lw=1.4, ls=(0, (5, 2)), label="bilinear system")
+
+
+def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
+    """Curves that the case is compared with."""
+    curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
+    for i, one in enumerate(curves):
+        x = factor * np.array(one["displacements"])
+        name = f"reference curve{f' {i + 1}' if len(curves) > 1 else ''}, {one['kind']}"
+        axis.plot(x, one["value"], color=style.REFERENCE, lw=0.9, marker="os^D"[i % 4], ms=3, label=name)
 
 
 def with_breaks(steps: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
@@ -136,6 +193,8 @@ def _mark_failure(axis: Any, summary: dict[str, Any], displacement: float | None
     factor = {"m": 1.0, "mm": 1e3, "µm": 1e6}[axis.get_xlabel().split("[")[1].rstrip("]")]
     place = (factor * displacement, load)
     axis.plot(*place, "o", ms=7, mfc="white", mec=style.FAILURE, mew=1.6, zorder=5)
+    if summary.get("capacity_curve"):  # what is drawn over it leaves no room for words
+        return
     bracket = summary.get("failure_load_bracket")
     text = f"λ = {load:.4g}"
     if bracket and None not in bracket:
@@ -150,5 +209,7 @@ def _limit_loads(axis: Any, results: Results) -> None:
     loads = [results.history["load"].max(initial=0.0), results.summary.get("failure_load") or 0.0]
     limits = results.summary.get("limit_analysis") or {}
     loads += [limits.get(name) or 0.0 for name in ("associated", "non_associated")]
+    for one in from_summary(results.summary.get("reference")):
+        loads += one["value"] if one.get("displacements") else []
     top = max(loads) or 1.0
     axis.set_ylim(min(0.0, 1.1 * results.history["load"].min(initial=0.0)) - 0.02 * top, 1.12 * top)

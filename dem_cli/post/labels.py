@@ -28,6 +28,7 @@ _UNITS = {"m/s2": "m/s²", "kg/m3": "kg/m³", "-": "", "none": "", "N m": "N·m"
 KNOWN_QUANTITIES = {
     "load": Quantity("load multiplier λ"),
     "displacement": Quantity("control displacement", "m"),
+    "live_displacement": Quantity("displacement of the live load", "m"),
     "step": Quantity("solver step"),
     "time": Quantity("time", "s"),
     "unbalanced": Quantity("largest unbalanced force over the weight of its block"),

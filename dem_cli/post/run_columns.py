@@ -11,11 +11,12 @@ from dem_cli.errors import UsageError
 from dem_cli.output.reader import Results
 from dem_cli.output.series import BASE, MONITOR_UNITS, HistorySeries
 from dem_cli.output.store import IN_SECONDS
+from dem_cli.post.capacity import capacity_axis
 from dem_cli.post.labels import KNOWN_QUANTITIES, Quantity, nearest, unknown
 
 SPECTRUM_DAMPING = 0.05  # of response spectra
 PERIOD, SPECTRAL = "period", "spectral acceleration"
-_HISTORY = ("load", "displacement", "time", "step", "unbalanced", "overlap")
+_HISTORY = ("load", "displacement", "live_displacement", "time", "step", "unbalanced", "overlap")
 _AXES = "xyz"
 _FRAGILITY = {
     "intensity": Quantity("intensity"),
@@ -132,4 +133,5 @@ def usual(results: Results) -> tuple[str, list[str]] | None:
     if results.kind in IN_SECONDS:
         monitors = list(results.series.monitors) if results.series is not None else []
         return ("time", monitors[:1]) if monitors else None
-    return ("displacement", ["load"]) if {"displacement", "load"} <= first.quantities.keys() else None
+    along = "live_displacement" if capacity_axis(results).signed else "displacement"
+    return (along, ["load"]) if {along, "load"} <= first.quantities.keys() else None

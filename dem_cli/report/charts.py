@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
+from dem_cli.output.reference import from_summary
 from dem_cli.output.series import BASE, MONITOR_UNITS
 from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
-from dem_cli.post.capacity import off_the_load, with_breaks
+from dem_cli.post.capacity import capacity_axis, of_frames, off_the_load, with_breaks
 from dem_cli.post.energy import across
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import curve, of_quantity, thinned
@@ -42,26 +43,42 @@ def _capacity(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
     history = results.history
     if results.kind in {*IN_SECONDS, "modes"} or not len(history.get("load", ())) or not (history["load"] != 0.0).any():
         return []
-    factor, unit = style.length_unit(float(history["displacement"].max()))
+    along = capacity_axis(results)
+    factor, unit = style.length_unit(along.farthest)
     lines = []
     for name in dict.fromkeys(history["stage"].tolist()):
         rows = np.flatnonzero(history["stage"] == name)
         rows = np.concatenate((rows[:1] - 1, rows)) if rows[0] > 0 else rows
-        x, y = with_breaks(history["step"][rows], factor * history["displacement"][rows], history["load"][rows])
+        x, y = with_breaks(history["step"][rows], factor * along.values[rows], history["load"][rows])
         lines.append(line(name, x, y, name))
+    lines += _beside(results.summary, factor)
     chart: Chart = {
         "id": "capacity",
         "title": f"Collapse: {off}" if (off := off_the_load(results.summary)) else "Capacity curve",
-        "x": f"control displacement [{unit}]",
+        "x": f"{along.label} [{unit}]",
         "y": "load multiplier λ",
         "lines": lines,
         "levels": _answers(results.summary),
-        "marks": [[factor * frame["displacement"], frame["load"]] for frame in frames],
+        "marks": [
+            [factor * at, frame["load"]] for at, frame in zip(of_frames(results, along, frames), frames, strict=True)
+        ],
     }
-    failure = results.summary.get("displacement_at_failure")
-    if failure and history["displacement"].max() > _ZOOM_FROM * failure:
-        chart["zooms"] = [{"name": "up to failure", "to": 2.0 * factor * failure}]
+    if along.failure and along.farthest > _ZOOM_FROM * along.failure and not results.summary.get("capacity_curve"):
+        chart["zooms"] = [{"name": "up to failure", "to": 2.0 * factor * along.failure}]
     return [chart]
+
+
+def _beside(summary: Mapping[str, Any], factor: float) -> list[dict[str, Any]]:
+    """The bilinear system of a capacity curve, and curves that it is compared with."""
+    lines = []
+    if system := (summary.get("capacity_curve") or {}).get("bilinear"):
+        x = factor * np.array([0.0, system["yield_displacement"], system["ultimate_displacement"]])
+        lines.append(line("bilinear system", x, np.array([0.0, *[system["yield_load"]] * 2]), "1", width=1))
+    curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
+    for i, one in enumerate(curves):
+        x = factor * np.array(one["displacements"])
+        lines.append(line(f"reference curve {i + 1}, {one['kind']}", x, one["value"], str(4 + i), width=1, points=2))
+    return lines
 
 
 def _answers(summary: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -32,15 +32,14 @@ class DisplacementControl:
 
     def __init__(self, sim: Simulation, budget: Budget, compliance: float) -> None:
         self.sim, self.budget, self.settings = sim, budget, sim.settings.displacement_control
-        d = sim.model.dimension
-        self.forces = float(np.sqrt((sim.loads.live[sim.free, :d] ** 2).sum(axis=1)).sum())  # of the live load [N]
-        self.origin = measures.live_displacement(sim)
+        self.forces = measures.live_force(sim)  # of the live load [N]
+        self.origin = measures.live_travel(sim)
         self.first = self.settings.first * compliance / self.forces
 
     @property
     def displacement(self) -> float:
         """Of the live load since gravity [m]."""
-        return (measures.live_displacement(self.sim) - self.origin) / self.forces
+        return measures.live_travel(self.sim) - self.origin
 
     def go(self, distance: float) -> bool:
         """On by a distance [m], to rest: in parts where that is not found. Whether all forces balance there."""
@@ -100,15 +99,18 @@ class CapacityCurve:
 
     def __init__(self) -> None:
         self.points: list[CurvePoint] = []
-        self.peak, self.at_peak, self.whole = 0, None, False
+        self.peak, self.at_peak, self.at_first, self.whole = 0, None, None, False
 
     peak: int
     at_peak: SavedState | None
+    at_first: SavedState | None  # after the first increment
     whole: bool
 
     def add(self, point: CurvePoint, sim: Simulation) -> None:
         """One more point; its state is kept where it is the highest so far."""
         self.points.append(point)
+        if len(self.points) == 2:
+            self.at_first = sim.save()
         if self.at_peak is None or point.load > self.points[self.peak].load:
             self.peak, self.at_peak = len(self.points) - 1, sim.save()
 

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Vector
+from dem_cli.tables.code_check import CodeCheck, Idealisation
 
 Share = Annotated[float, Field(ge=0.0, le=0.2)]
 
@@ -96,6 +97,21 @@ class PushoverAnalysis(LiveAnalysis):
     increments: int = Field(
         default=100, ge=10, le=100_000, description="control = 'displacement': so many steps to `follow` at least"
     )
+    idealise: Idealisation = Field(
+        default=Idealisation(),
+        description="control = 'displacement': the bilinear system of the curve, { secant, drop }; the Italian code "
+        "takes 0.6 and 0.85",
+    )
+    loads_at: tuple[Positive, ...] = Field(
+        default=(),
+        description="control = 'displacement': displacements of the live load whose loads are wanted [m]",
+        examples=[[0.001, 0.002]],
+    )
+    check: CodeCheck | None = Field(
+        default=None,
+        description="control = 'displacement', pattern = 'mass': the structure against a response spectrum, "
+        "{ method, spectrum, ... }",
+    )
 
     @model_validator(mode="after")
     def _a_way_to_go(self) -> PushoverAnalysis:
@@ -106,8 +122,12 @@ class PushoverAnalysis(LiveAnalysis):
             refused["collapse"] = self.collapse != "auto"
             for key in (key for key, given in refused.items() if given):
                 raise KeyProblem("not allowed with control = 'displacement'", key)
-        elif self.increments != 100:
-            raise KeyProblem("only allowed with control = 'displacement'", "increments")
+            if self.check is not None and self.pattern != "mass":
+                raise KeyProblem(f"not allowed with pattern = '{self.pattern}'; only with 'mass'", "check")
+            return self
+        of_curves = {"increments": 100, "idealise": Idealisation(), "loads_at": (), "check": None}
+        for key in (key for key, default in of_curves.items() if getattr(self, key) != default):
+            raise KeyProblem("only allowed with control = 'displacement'", key)
         return self
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from dem_cli.case.tolerance_rules import RULES
 from dem_cli.verify.case_selection import APART, SHELVES
 from dem_cli.verify.records import Record, apart, counts, on_shelves
-from dem_cli.verify.verdict_words import VERDICTS, allowed, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, expected, found, off, share
 
 ABOUT = {
     "verification": "Exact answers: closed forms, limit analysis, motions integrated apart from dem to full accuracy. "
@@ -98,7 +98,7 @@ def _table(records: Sequence[Record]) -> list[str]:
 
 def _answer(answer: dict[str, Any]) -> list[str]:
     size = share(answer)
-    values = (shown(answer["found"]), shown(answer["value"], 6), off(answer))
+    values = (found(answer), expected(answer), off(answer))
     verdict = VERDICTS[answer["state"]]
     return [
         f"`{answer['quantity']}`",

@@ -11,7 +11,7 @@ from typing import Any
 
 from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
-from dem_cli.output.reference import as_declared, error, unexpected_fall, verdicts
+from dem_cli.output.reference import as_declared, error_of, unexpected_fall, verdicts
 from dem_cli.output.scalars import plain
 from dem_cli.verify.case_selection import APART, SHELVES
 
@@ -27,7 +27,7 @@ def record(path: Path, title: str, summary: Mapping[str, Any], references: Seque
     """
     status = str(summary["status"])
     answers = [
-        {**answer, **_told(reference), "error": error(answer["found"], answer["value"])}
+        {**answer, **_told(reference), "error": error_of(answer)}
         for answer, reference in zip(verdicts(summary, references), references, strict=True)
     ]
     kept = {"case": path.as_posix(), "sha256": digest(path), "title": title, "kind": summary["kind"], "status": status}

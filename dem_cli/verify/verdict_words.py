@@ -25,9 +25,24 @@ def number(value: float, digits: int, sign: str = "") -> str:
     return (f"{float(text):{sign}.0f}" if "e+0" in text else text).replace("-", "−")
 
 
+def found(answer: Mapping[str, Any]) -> str:
+    """What was found; of a curve the largest of its loads where those of the reference are."""
+    value = answer["found"]
+    return f"up to {shown(max(value))}" if "displacements" in answer and value else shown(value)
+
+
+def expected(answer: Mapping[str, Any]) -> str:
+    """What was expected; of a curve its peak and how many points it has."""
+    if "displacements" in answer:
+        return f"up to {shown(max(answer['value']), 6)} in {len(answer['value'])} points"
+    return shown(answer["value"], 6)
+
+
 def off(answer: Mapping[str, Any]) -> str:
     """How far off, in the unit of the quantity; "inside" an interval."""
     value = answer["error"]
+    if "displacements" in answer:
+        return "–" if value is None else f"{number(value, 2)} on average"
     if value is None:
         return "–" if answer["found"] is None else ""
     if isinstance(answer["value"], list) and value == 0.0:
@@ -39,6 +54,8 @@ def off(answer: Mapping[str, Any]) -> str:
 def share(answer: Mapping[str, Any]) -> float | None:
     """How far off, over the expected value (of an interval: its nearer end); None where that says nothing."""
     value, expected = answer["error"], answer["value"]
+    if "displacements" in answer:
+        return None if value is None else value / max(expected)
     if isinstance(expected, list):
         expected = expected[0] if value is not None and value < 0.0 else expected[1]
     return value / abs(expected) if value is not None and expected else None
@@ -53,7 +70,7 @@ def judgement(answer: Mapping[str, Any]) -> str:
     """A verdict in a sentence."""
     if "problem" in answer:
         return str(answer["problem"])
-    what = f"{answer['quantity']} is {shown(answer['found'])}, expected {shown(answer['value'], 6)} {allowed(answer)}"
+    what = f"{answer['quantity']} is {found(answer)}, expected {expected(answer)} {allowed(answer)}"
     if "missed" not in answer:
         return what.strip()
     if answer["passed"]:

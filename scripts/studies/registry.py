@@ -25,6 +25,7 @@ STUDIES = {  # module with STUDY, sentence of the list
         "random structures: every method between rigorous bounds",
     ),
     "rocking": ("studies.rocking.study", "blocks that rock, slide and bounce, against exact motions"),
+    "shear_walls": ("studies.shear_walls.study", "dry-stone shear walls: capacity curves over their tests"),
     "space": ("studies.space.study", "failure loads in space: by hand, planar twins, walls that meet"),
     "stress": ("studies.stress.study", "the stability stress test: try to break the program"),
     "thesis_joint": ("studies.thesis_joint", "one structure on the thesis's own joint"),

@@ -58,6 +58,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "post": {"geometry", "model", "motion", "output"},
     "analyses": {
         "case.schema",
+        "code_checks",
         "dynamics",
         "engine",
         "ensembles",
@@ -122,7 +123,8 @@ ALLOWED: dict[str, set[str] | None] = {
     "laws": {"case.base", "kernels"},
     "links": {"case.base", "case.wording", "kernels"},
     "tables": {"case.base", "case.selection"},
-    "motion": {"case.base", "case.named_file", "case.schema"},
+    "code_checks": {"motion.eurocode"},
+    "motion": {"case.base", "case.named_file", "case.schema", "tables.spectrum"},
     "calibrate": {"case.base", "case.schema", "laws", "output.csv_cells"},
     "model": {"geometry"},
     "output": {"geometry", "model"},

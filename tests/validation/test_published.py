@@ -18,10 +18,13 @@ def test_sandstone_walls(load):
     """Twin tests as mean and standard deviation."""
     tests = [row["value"] for row in book("lourenco_sw_walls")["result"]
              if row["id"].startswith(f"SW.{load}.") and row["id"].endswith("_peak")]  # fmt: skip
-    measured, bound = references(SW[load])
+    measured, bound, *curves = references(SW[load])
     assert measured["value"] == np.mean(tests)
     assert measured.get("scatter") == (pytest.approx(np.std(tests, ddof=1), rel=1e-4) if len(tests) > 1 else None)
     assert bound["value"] == value("lourenco_sw_walls", f"SW{load}_rigid_lp")
+    drawn = [(one["displacements"], one["value"]) for one in curves]
+    assert drawn == [(row["displacement_m"], row["value"]) for row in book("lourenco_sw_walls")["result"]
+                     if row["id"].startswith(f"SW.{load}.") and row["id"].endswith("_curve")]  # fmt: skip
     model = scene(SW[load])
     assert -model.dead[model.ids.index("beam"), 1] == 1e3 * load
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from casefiles import CASES, FILES, case_id, read, references, scene
-from oracle import manual
+from oracle import code_checks, manual
 from oracle.hinges import follow
 from oracle.rolling_column import foot
 from reference import value as book
@@ -24,6 +24,7 @@ RECORDS = {(DOCS / record["case"]).resolve(): record for record in TABLE["cases"
 REFERENCED = [path for path in FILES if references(path)]
 VERIFICATION = CASES / "verification"
 EXACT = manual.statics() | manual.springs() | manual.sliding() | manual.rocking()
+EXACT |= {name: values() for name, values in code_checks.CASES.items()}
 RUN_AGAIN = (*manual.statics(), "modes_block", "collision", "push_stop", "rocking_quarter", "overhang_10_falls")
 CLASSICAL = "classical_benchmarks"
 

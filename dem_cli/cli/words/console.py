@@ -10,6 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+from dem_cli.cli.words.curve import curve_rows
 from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.cli.words.limit_loads import limit_rows
 from dem_cli.cli.words.modes import mode_rows
@@ -118,7 +119,7 @@ def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbo
 def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each line of an answer of any kind, without warnings."""
     rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
-    rows += safety_rows(summary)
+    rows += [*curve_rows(summary), *safety_rows(summary)]
     return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
@@ -147,7 +148,8 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:
-        text = ", ".join(f"{metres(turn['displacement'])} at {load_text(turn['load'])}" for turn in turns[:MOST_TURNS])
+        shown = [(turn.get("live_displacement", turn["displacement"]), turn["load"]) for turn in turns[:MOST_TURNS]]
+        text = ", ".join(f"{metres(moved)} at {load_text(load)}" for moved, load in shown)
         rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")
     if reached:

@@ -13,7 +13,7 @@ from rich.table import Table
 from dem_cli.cli.words.numbers import seconds
 from dem_cli.verify.case_selection import SHELVES
 from dem_cli.verify.records import Record, on_shelves
-from dem_cli.verify.verdict_words import VERDICTS, allowed, judgement, off, share, shown
+from dem_cli.verify.verdict_words import VERDICTS, allowed, expected, found, judgement, off, share
 
 UNCUT_WIDTH = 240  # where there is no terminal: lines are not cut
 STYLES = {"passed": "green", "missed": "yellow", "failed": "bold red", "met": "bold red"}
@@ -48,7 +48,7 @@ def _table(shelf: str, records: Sequence[Record]) -> Table:
         for answer in record["references"]:
             size = share(answer)
             percent = "" if size is None or off(answer) == "inside" else f"{100.0 * size:+.2f}".replace("-", "−")
-            values = (shown(answer["found"]), shown(answer["value"], 6), off(answer), percent, allowed(answer))
+            values = (found(answer), expected(answer), off(answer), percent, allowed(answer))
             verdict = f"[{STYLES[answer['state']]}]{VERDICTS[answer['state']]}[/]"
             table.add_row(f"{path.parent.name}/{path.stem}", answer["quantity"], *values, verdict, took)
             took = ""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from dem_cli.motion.eurocode import target_of
 from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
-from dem_cli.motion.synthetic import envelope, power_spectrum, suite, target_of
+from dem_cli.motion.synthetic import envelope, power_spectrum, suite
 from dem_cli.motion.table import ArtificialTable
 
 

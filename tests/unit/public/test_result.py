@@ -57,7 +57,8 @@ def test_history(wall):
     history = wall.history
     assert {len(values) for values in history.values()} == {len(history["load"])}
     assert history.units == {
-        "step": "", "load": "", "displacement": "m", "unbalanced": "", "overlap": "m", "time": "s", "stage": "",
+        "step": "", "load": "", "displacement": "m", "unbalanced": "", "overlap": "m", "time": "s",
+        "live_displacement": "m", "stage": "",
     }  # fmt: skip
     assert {"gravity", "loading", "collapse"} >= set(history["stage"].tolist())
     assert set(wall.energy.units.values()) == {"J"}

@@ -1,0 +1,124 @@
+"""Answers of a capacity curve: peak, residual, loads at displacements, bilinear system, check against a spectrum."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dem_cli.code_checks import local_mechanism, n2
+from dem_cli.code_checks.oscillator import participation
+from dem_cli.engine.job import Job
+from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.state import SavedState
+from dem_cli.motion.eurocode import SOILS, target_of
+from dem_cli.statics.bilinear import bilinear, load_at
+from dem_cli.statics.displacement_control import CapacityCurve
+from dem_cli.tables.code_check import CodeCheck
+
+LEAST_FORCE = 1e-3  # of all weights, from which dead loads without mass are worth a word
+CORNER = 2  # of a row of motion/eurocode.py: SOILS
+
+
+def summary(job: Job, curve: CapacityCurve, force: float, scale: float) -> dict[str, Any]:
+    """What summary.json says of the curve; multipliers as users know them, displacements in m.
+
+    force: sum of the forces of the live load at an internal multiplier of one [N]; scale: multiplier of users at that.
+    """
+    analysis = job.case.analysis
+    displacements, loads = curve.arrays()
+    loads = loads * scale
+    peak, last = curve.highest, curve.points[-1]
+    wanted, system = analysis.idealise, bilinear(displacements, loads, analysis.idealise.secant, analysis.idealise.drop)
+    at = load_at(displacements, loads, np.array(analysis.loads_at))
+    return {
+        "displacements": displacements.tolist(),
+        "loads": loads.tolist(),
+        "force_at_load_1": force / scale,
+        "peak_load": peak.load * scale,
+        "peak_displacement": peak.displacement,
+        "last_load": last.load * scale,
+        "last_displacement": last.displacement,
+        "residual_share": last.load / peak.load if peak.load > 0.0 else None,
+        "whole": curve.whole,
+        "loads_at": [{"displacement": u, "load": load} for u, load in zip(analysis.loads_at, at.tolist(), strict=True)],
+        "bilinear": system
+        and system._asdict() | {"secant": wanted.secant, "drop": wanted.drop, "automatic_joints": automatic(job)},
+    }
+
+
+def automatic(job: Job) -> bool:
+    """Whether joints have a stiffness of the solver's choice: elastic displacements and periods are then nobody's."""
+    return any(joint.kn == "auto" for joint in job.case.joints.values())
+
+
+class CurveCheck:
+    """Check of a capacity curve against a spectrum: numbers for the summary, and what is to be said of it."""
+
+    def __init__(self, job: Job, sim: Simulation, table: CodeCheck) -> None:
+        self.job, self.sim, self.table = job, sim, table
+        self.masses = sim.model.masses[sim.free]
+
+    def run(self, found: dict[str, Any], curve: CapacityCurve, states: tuple[SavedState, SavedState]) -> dict[str, Any]:
+        """The key `check` of the summary; nothing, with a warning, where there is no answer.
+
+        found: what the summary says of the curve. states: at rest under dead loads, and at the end of the curve.
+        """
+        table, spectrum = self.table, target_of(self.table)
+        name = table.shape or ("end" if table.method == "mechanism" else "peak")
+        before, end = states
+        after = {"first": curve.at_first, "peak": curve.at_peak, "end": end}.get(name)
+        least = self.sim.settings.mechanism.takes_part if table.method == "mechanism" else 0.0
+        try:
+            parts = participation(self.masses, self._shape(before, after), least)
+        except ValueError as error:
+            return self._nothing(str(error))
+        self._without_mass()
+        gravity = found["force_at_load_1"] / float(self.masses.sum())
+        answer: dict[str, Any] | None
+        if table.method == "n2":
+            if automatic(self.job):
+                return self._nothing("with kn = 'auto' the period is that of the solver's joints; give kn and ks")
+            if not found["bilinear"]:
+                return self._nothing("the curve carries nothing")
+            answer = n2.check(found["bilinear"], parts, gravity, spectrum, self._corner())
+        else:
+            displacements, loads = np.array(found["displacements"]), np.array(found["loads"])
+            confidence, behaviour = table.confidence or 1.0, table.behaviour or 2.0
+            answer = local_mechanism.check((displacements, loads), parts, gravity, spectrum, confidence, behaviour)
+            if answer is None:
+                end_of = f"its end, {100 * found['residual_share']:.3g} % of its peak"
+                return self._nothing(f"where the curve is zero cannot be told from {end_of}; more of analysis.follow")
+        told = {"method": table.method, "spectrum": spectrum.title, "shape": name, "mass": parts.mass}
+        told |= {"effective_mass": parts.effective_mass, "mass_share": parts.share, "participation": parts.factor}
+        return {"check": told | answer}
+
+    def _shape(self, before: SavedState, after: SavedState | None) -> np.ndarray:
+        """Displacements of the free blocks along the live load [m], (n_free,); ones where all move alike."""
+        if after is None:
+            return np.ones(len(self.masses))
+        sim, d = self.sim, self.sim.model.dimension
+        moved = (after.bodies.positions - before.bodies.positions)[sim.free]
+        along = sim.loads.live[sim.free, :d].sum(axis=0)
+        return np.asarray(moved @ (along / np.sqrt((along**2).sum())))
+
+    def _corner(self) -> float:
+        table = self.table
+        return table.corner if table.corner is not None else SOILS[str(table.spectrum)][str(table.soil)][CORNER]
+
+    def _without_mass(self) -> None:
+        """Says so where dead loads are more than weights: what they stand for has no mass that is shaken."""
+        sim, d = self.sim, self.sim.model.dimension
+        others = sim.loads.dead[sim.free, :d].copy()
+        weights = self.job.case.gravity * self.masses
+        others[:, d - 1] += weights
+        force = float(np.sqrt((others**2).sum(axis=1)).sum())
+        if force > LEAST_FORCE * float(weights.sum()):
+            self.job.warnings.append(
+                f"the check leaves out the masses of dead loads, {force:.3g} N beside {weights.sum():.3g} N of "
+                "weights: draw what they stand for as blocks"
+            )
+
+    def _nothing(self, why: str) -> dict[str, Any]:
+        self.job.warnings.append(f"no check against the spectrum: {why}")
+        return {}

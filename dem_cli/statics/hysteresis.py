@@ -1,0 +1,59 @@
+"""Hysteresis loops of a load path: energy dissipated in each cycle, and the viscous damping of as much.
+
+A loop goes from a turning point of the path to one at the same value, the start, 0, included. Its damping is that of a
+linear oscillator of the same amplitudes F, u that loses as much energy E in a cycle:
+
+    ζ = E / (2π F u)
+
+Source: Chopra, Dynamics of Structures, equivalent viscous damping, ζ = E_D/(4π E_S0) with E_S0 = F u/2. Of an elastic,
+perfectly plastic system of ductility μ this is 2/π (1 − 1/μ).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+
+class HysteresisLoop(NamedTuple):
+    """One cycle."""
+
+    first: int  # turning point that it begins at, from 1; 0: the start of the path
+    last: int  # and ends at
+    energy: float  # dissipated [J]
+    displacement: float  # amplitude: half of its range [m]
+    load: float  # amplitude: half of its range [-]
+    damping: float  # equivalent damping ratio [-]
+
+
+def pairs_of(path: Sequence[float]) -> list[tuple[int, int]]:
+    """Turning points between which a path makes loops, none over another, short ones first; 0 is its start, at 0."""
+    values = [0.0, *path]
+    found: list[tuple[int, int]] = []
+    for span in range(2, len(values)):
+        for first in range(len(values) - span):
+            free = all(first + span <= one or first >= other for one, other in found)
+            if free and np.isclose(values[first], values[first + span], rtol=1e-9, atol=0.0):
+                found.append((first, first + span))
+    return sorted(found)
+
+
+def loops(
+    path: Sequence[float], turns: Sequence[int], displacements: np.ndarray, loads: np.ndarray, force: float
+) -> list[HysteresisLoop]:
+    """The loops of a path that was followed as far as it was.
+
+    turns: number of the state at the start of the path and at each turning point that was reached. displacements: of
+    the live load [m], loads: multipliers, of all states, (n,). force: of the live load at a multiplier of 1 [N].
+    """
+    found = []
+    for first, last in pairs_of(path[: len(turns) - 1]):
+        rows = slice(turns[first], turns[last] + 1)
+        u, load = displacements[rows], loads[rows]
+        energy = force * float(np.trapezoid(load, u))
+        sizes = 0.5 * float(np.ptp(u)), 0.5 * float(np.ptp(load))
+        elastic = 2.0 * np.pi * force * sizes[0] * sizes[1]
+        found.append(HysteresisLoop(first, last, energy, *sizes, energy / elastic if elastic > 0.0 else 0.0))
+    return found
