@@ -15,6 +15,7 @@ def search(path: float, finished: bool = True, bound: float = 1.0, slides: bool 
     """A load of 0.36 raised from gravity, beside a path and the bound by limit analysis."""
     limits = SimpleNamespace(slides=slides, followed=True, path=SimpleNamespace(load=path, finished=finished))
     return SimpleNamespace(
+        start={},
         found=True, low=0.36, high=0.3607, carried=0.36, wide=False, earlier=None, limits=limits, bound=bound,
         crept_beyond=False, crept=None,
     )  # fmt: skip

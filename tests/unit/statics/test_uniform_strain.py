@@ -96,7 +96,7 @@ def test_sheared_block_is_exact(kinematics):
     The joint slides by T/ks A and turns by φ = (T h/2)/(kn A w²/4), the block shears by ε = T/2A 2G: its centroid moves
     by T/ks A + φ h/2 + ε h.
     """
-    push, case = 2e4, column(2, load=(2e4, -2e5), poisson=0.0)
+    push, case = 2e4, column(2, load=(2e4, -2e5), poisson=0.0, points=2)
     case["load"][0]["at"][-1] = HIGH / 2
     sim, area = at_rest(case, kinematics), WIDE * DEEP
     exact = 1e-9 if kinematics == "fixed" else 1e-3
