@@ -52,7 +52,7 @@ def joint_properties(
         values = _law(table).intact
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
-    layouts = tuple(_layout(table, case.seed) for table in tables)
+    layouts = tuple(_layout(table, case.seed, model.dimension) for table in tables)
     rigid = np.array([table.kn == "auto" for table in tables])
     return JointProperties(names, by_material, kn, ks, columns, intact, layouts, rigid)
 
@@ -61,11 +61,12 @@ def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
 
 
-def _layout(table: StiffJoint, seed: int) -> PointLayout | None:
-    """Where the contact points of a joint are; None: at its two ends."""
+def _layout(table: StiffJoint, seed: int, dimension: int) -> PointLayout | None:
+    """Where the contact points of a joint are; None: at its two ends, in space at its vertices."""
     if table.profile is not None:
         return PointLayout(seed=seed, **table.profile.ranges)
-    return None if table.contact_points == 2 else PointLayout(table.contact_points)
+    points = table.contact_points(dimension)
+    return None if points == 2 and not table.centred else PointLayout(points, table.centred)
 
 
 def _columns(table: StiffJoint, kn: float, step: float) -> list[float]:

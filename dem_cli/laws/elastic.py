@@ -22,6 +22,7 @@ class ElasticJoint(StiffJoint):
     """[joints.*] with law = "elastic"."""
 
     plane_points: ClassVar[int] = 3
+    area_points: ClassVar[int] = 3
 
     law: Literal["elastic"] = "elastic"
 

@@ -36,6 +36,7 @@ class FractureJoint(FrictionJoint):
     """[joints.*] with law = "fracture"."""
 
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
+    area_points: ClassVar[int] = 3
 
     law: Literal["fracture"] = "fracture"
     tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])

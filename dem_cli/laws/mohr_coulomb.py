@@ -33,6 +33,7 @@ class MohrCoulombJoint(FrictionJoint):
     """[joints.*] with law = "mohr-coulomb"."""
 
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
+    area_points: ClassVar[int] = 3
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
     cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
