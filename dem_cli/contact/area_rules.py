@@ -1,10 +1,15 @@
 """Points over the area of a joint in space: quadrature of convex polygons, points at their corners, positive weights.
 
 Area, first and second moments are exact, so that a joint is as stiff in bending about any axis and in torsion as an
-elastic layer is, and a joint that cracks bit by bit as strong; with its corners a block still turns about its edges.
-Parallelograms have n × n Gauss–Lobatto points. Other polygons are a fan of triangles about their centroid, each cut
-into m² alike ones, m = (n − 1) // 2, with 1/12 of the area of each at its corners and 3/4 at its centroid: exact for
-quadratic functions (Abramowitz and Stegun 25.4.63).
+elastic layer is; with its corners a block still turns about its edges.
+
+Parallelograms have n × n Gauss–Lobatto points from n = 4 on, and nine for n = 3: corners, centre, and four on the
+diagonals. These nine leave two numbers free beyond the moments, which are such that a brittle joint in bending about
+either side is at its strongest when its edge cracks, as a continuous one is: the moment that it carries then falls to 98,
+85 and 0 %. Of n × n Lobatto points it would rise to 2, 1.35, 1.19, 1.05 times for n = 3, 4, 5, 9.
+
+Other polygons are a fan of triangles about their centroid, each cut into m² alike ones, m = (n − 1) // 2, with 1/12 of
+the area of each at its corners and 3/4 at its centroid: exact for quadratic functions (Abramowitz and Stegun 25.4.63).
 """
 
 from __future__ import annotations
@@ -16,6 +21,8 @@ import numpy as np
 from dem_cli.contact.layout import lobatto
 
 LEAST = 3  # points along a side from which on a rule is exact for second moments
+REACH = 0.4  # of the half diagonals: how far out the four points on them are
+ON_DIAGONALS, AT_CENTRE = 5.0 / 48.0, 19.0 / 60.0  # share of the area of each of these, and of the centre
 PARALLEL = 1e-9  # of its longest diagonal: a quadrilateral whose opposite sides are so alike is a parallelogram
 
 
@@ -47,7 +54,10 @@ def inner_points(outlines: np.ndarray, starts: np.ndarray, centres: np.ndarray, 
     for count, side in np.unique(kinds[ruled], axis=0).tolist():
         alike = np.flatnonzero(ruled & (kinds == (count, side)).all(axis=1))
         polygons = outlines[starts[alike, None] + np.arange(counts[alike[0]])]
-        rule = _grid(polygons, side) if count < 0 else _fan(polygons, centres[alike], (side - 1) // 2)
+        if count > 0:
+            rule = _fan(polygons, centres[alike], (side - 1) // 2)
+        else:
+            rule = _diagonals(polygons) if side == LEAST else _grid(polygons, side)
         corners[alike] = 1.0 - rule[1].sum(axis=1)
         found.update(zip(alike.tolist(), zip(*rule, strict=True), strict=True))
     sizes = [len(found[j][1]) if j in found else 0 for j in range(n)]
@@ -63,6 +73,13 @@ def _parallelograms(polygons: np.ndarray) -> np.ndarray:
     across = np.linalg.norm(polygons[:, 2:] - polygons[:, :2], axis=2).max(axis=1)
     odd = polygons[:, 0] - polygons[:, 1] + polygons[:, 2] - polygons[:, 3]
     return np.linalg.norm(odd, axis=1) <= PARALLEL * across
+
+
+def _diagonals(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The centre of parallelograms (m, 4, …) and four points on their diagonals: places (m, 5, …), shares."""
+    centres = polygons.mean(axis=1)[:, None]
+    at = np.concatenate([centres, centres + REACH * (polygons - centres)], axis=1)
+    return at, np.tile([AT_CENTRE] + 4 * [ON_DIAGONALS], (len(polygons), 1))
 
 
 def _grid(polygons: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
