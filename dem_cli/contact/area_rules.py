@@ -5,8 +5,8 @@ elastic layer is; with its corners a block still turns about its edges.
 
 Parallelograms have n × n Gauss–Lobatto points from n = 4 on, and nine for n = 3: corners, centre, and four on the
 diagonals. These nine leave two numbers free beyond the moments, which are such that a brittle joint in bending about
-either side is at its strongest when its edge cracks, as a continuous one is: the moment that it carries then falls to 98,
-85 and 0 %. Of n × n Lobatto points it would rise to 2, 1.35, 1.19, 1.05 times for n = 3, 4, 5, 9.
+either side is at its strongest when its edge cracks, as a continuous one is: the moment that it carries then falls to
+97, 87 and 38 %. Of n × n Lobatto points it would rise to 2, 1.35, 1.19, 1.05 times for n = 3, 4, 5, 9.
 
 Other polygons are a fan of triangles about their centroid, each cut into m² alike ones, m = (n − 1) // 2, with 1/12 of
 the area of each at its corners and 3/4 at its centroid: exact for quadratic functions (Abramowitz and Stegun 25.4.63).
