@@ -6,7 +6,7 @@ outline hardly turns gives it to its neighbours, so that nothing jumps where it 
 
 Points within the area of a joint of the start (contact/area_rules.py) belong to block b, as cracks do. One that block a
 no longer covers is held at the rim of the overlap and fades over a length like that of its own area; with what is left
-area and first moment are those of the overlap.
+area and first moment are those of the overlap, but for slivers, where area alone is.
 """
 
 from __future__ import annotations
@@ -238,9 +238,13 @@ def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
         sxy += w * x * y
         syy += w * y * y
     level, lx, ly = tilted(s0, sx, sy, sxx, sxy, syy, overlap[1])
+    total = 0.0
+    for k in range(count):
+        numbers[k, 0] *= max(level + lx * numbers[k, 2] + ly * numbers[k, 3], LEFT_OVER * level)
+        total += numbers[k, 0]
     for k in range(count):
         x, y = numbers[k, 2], numbers[k, 3]
-        numbers[k, 0] *= max(level + lx * x + ly * y, LEFT_OVER * level)
+        numbers[k, 0] *= overlap[1] / total
         if k >= corners:
             place = axpy(y + gy, t2, axpy(x + gx, t1, origin))
             place = axpy(dot(minus3(plane, place), n_b) / dot(upwards, n_b), upwards, place)

@@ -10,9 +10,13 @@ from engine import simulation, solve
 from studies.mortar.specimen import blocks_of
 from studies.space.structures import box, tables
 
+from dem_cli.contact.spatial_motion import place
+from dem_cli.engine.budget import Budget
+from dem_cli.errors import SolverError
 from dem_cli.geometry import polygon
 from dem_cli.kernels.records import FIXED_TO_B
 from dem_cli.kernels.spatial_forces import measure_spatial
+from dem_cli.statics.equilibrium import stand
 
 A, T, H = 0.4, 0.15, 0.2  # length, thickness, height [m]
 TENSION, COHESION = 0.322e6, 0.483e6
@@ -54,13 +58,11 @@ def twisted(share: float) -> dict:
 
 def test_torsion_is_elastic_up_to_the_first_corner():
     """Shear at a corner is T r / I_p over its share of the area: exact, and so is the strength of a brittle joint."""
-    summary, seen = solve(twisted(0.99))
-    assert summary["status"] == "ok"
-    contacts = seen.frames[-1].contacts
-    shear = np.linalg.norm(contacts.shear.reshape(len(contacts.shear), -1), axis=1)
-    assert shear.max() == pytest.approx(0.99 * COHESION * A * T / 15.0, rel=2e-3)
-    broken, _ = solve(twisted(1.02))
-    assert broken["status"] != "ok"
+    sim = simulation(twisted(0.99))
+    assert stand(sim, Budget(20_000)).state == "equilibrium"
+    assert np.linalg.norm(sim.contacts.shear, axis=1).max() == pytest.approx(0.99 * COHESION * A * T / 15.0, rel=2e-3)
+    with pytest.raises(SolverError, match="gave up"):
+        stand(simulation(twisted(1.02)), Budget(20_000))
 
 
 def areas(sim) -> tuple[np.ndarray, np.ndarray]:
@@ -92,13 +94,14 @@ def test_area_and_first_moment_stay_those_of_the_overlap(shift):
         sim.displace(np.array([block]), np.array([*shift, 0.0]) / 20.0)
         sim.bodies.corners[sim.shape.corner_blocks == block] += np.array([*shift, 0.0]) / 20.0
         sim.geometry.markers[:] = np.nan
-        sim.narrow.place(sim.joints, sim.geometry, sim.contacts, sim.bodies)
+        place(sim.joints, sim.geometry, sim.contacts, sim.bodies)
     weights, places = areas(sim)
     wide, deep = A - shift[0], T - shift[1]
     middle = np.array([shift[0] + wide / 2, shift[1] + deep / 2])
     floor = max(wide * deep, 0.25 * A * T)
     assert weights.sum() == pytest.approx(floor, rel=1e-9)
-    assert (weights[:, None] * places[:, :2]).sum(axis=0) / weights.sum() == pytest.approx(middle, rel=1e-6)
+    if wide * deep > 0.05 * A * T:
+        assert (weights[:, None] * places[:, :2]).sum(axis=0) / weights.sum() == pytest.approx(middle, abs=1e-9)
     inside = sim.geometry.types[sim.joints.kn > 0.0] == FIXED_TO_B
     assert (places[:, 0] > shift[0] - 1e-12).all()
     assert (places[:, 1] < T + 1e-12).all()
