@@ -18,12 +18,13 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
+from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range
-from dem_cli.statics.compliance import compliance
+from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
 from dem_cli.statics.equilibrium import settle
-from dem_cli.statics.failure_bracket import FailureLoad, SearchRange
-from dem_cli.statics.failure_load import AGAINST, LoadSearch
+from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
+from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import CURVE, CurveStart
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover under displacement control; status "not converged" where its peak could not be proved."""
     job = Job.start(case, model, observer, settings)
-    sim = job.simulation("fixed" if case.analysis.kinematics == "fixed" else "large")
+    sim = job.moving_simulation()
     search, found = FailureLoad(), dict[str, Any]()
     track, resolution = job.track(sim), case.analysis.resolution
     try:
@@ -52,6 +53,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     except KeyboardInterrupt:
         search.status = INTERRUPTED
     job.warnings += doubts(search, resolution, load_range(search, resolution))
+    if search.status == OK:
+        try:
+            found |= softer_joints.checked(job, sim, search, resolution)
+        except KeyboardInterrupt:
+            search.status = INTERRUPTED
     if search.limits is not None and search.status != INTERRUPTED and case.analysis.limit:
         found["limit_analysis"] = limit_analysis(job, search)
     return job.outcome([sim], answer(search, sim, resolution) | found)
@@ -62,8 +68,7 @@ def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad) -> dict[str,
     analysis, settings = job.case.analysis, job.settings.displacement_control
     at_rest = sim.save()
     elastic = compliance(sim, job.budget)[0]
-    if elastic <= 0.0:
-        raise SolverError(AGAINST)
+    check_moves(sim, elastic)
     control = DisplacementControl(sim, job.budget, elastic)
     coarse = trace(control, analysis.follow, analysis.increments, coarser=settings.coarser)
     sim.restore(at_rest)

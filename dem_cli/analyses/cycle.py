@@ -17,10 +17,9 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
-from dem_cli.statics.compliance import compliance
+from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
-from dem_cli.statics.failure_load import AGAINST
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -32,7 +31,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
     job = Job.start(case, model, observer, settings)
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
-    sim = job.first_simulation()
+    sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
     track = job.track(sim)
     found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": []}
     try:
@@ -90,8 +89,7 @@ def _by_load(job: Job, sim: Simulation) -> Callable[[float], bool]:
 def _by_displacement(job: Job, sim: Simulation) -> Callable[[float], bool]:
     """Goes to a displacement of the live load [m], to rest."""
     elastic = compliance(sim)[0]
-    if elastic <= 0.0:
-        raise SolverError(AGAINST)
+    check_moves(sim, elastic)
     control = DisplacementControl(sim, job.budget, elastic)
     return lambda displacement: control.go(displacement - control.displacement)
 

@@ -55,7 +55,7 @@ def describe(case: Case, model: Model) -> Rows:
         return sim
 
     wanted = case.analysis.kinematics
-    moving = VISIBLE.get(case.analysis.kind) if wanted != "fixed" else None
+    moving = _visible(case) if wanted != "fixed" else None
     moving = why_moving(case, model) if moving is None else moving
     kinematics = "fixed" if moving is None else "large"
     sim = simulation(kinematics, _ratio(case, model, kinematics))
@@ -141,6 +141,13 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
         origin = f", {given} chosen (auto)" if given else ""
         rows.append((f"stiffness {name}", f"kn {kn:.4g} Pa/m, ks {ks:.4g} Pa/m, kn·h/W {kn / scale:.3g}{origin}"))
     return rows
+
+
+def _visible(case: Case) -> str | None:
+    """Why blocks move visibly in the analysis of a case before anything fails; None: they do not."""
+    if getattr(case.analysis, "control", "load") == "displacement":
+        return "the live load is moved as far as the case says"
+    return VISIBLE.get(case.analysis.kind)
 
 
 def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:

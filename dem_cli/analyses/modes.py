@@ -47,7 +47,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _simulation(job: Job) -> Simulation:
-    return job.simulation("fixed" if job.case.analysis.kinematics == "fixed" else "large", elastic=True)
+    return job.moving_simulation(elastic=True)
 
 
 def _answer(job: Job, sim: Simulation) -> dict[str, Any]:

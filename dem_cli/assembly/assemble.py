@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.assembly import selection_checks
-from dem_cli.assembly.applied_loads import AppliedLoad, applied_loads
+from dem_cli.assembly.applied_loads import applied_loads
 from dem_cli.assembly.drawn_blocks import drawn_block
 from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
+from dem_cli.assembly.point_forces import AppliedLoad
 from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.wording import show, unknown_name

@@ -69,7 +69,8 @@ class Surfaces:
         open_, roofing = list[SurfacePiece](), np.isin(self.model.part_blocks, roofs)
         for piece in pieces:
             upright = abs(piece.normal[-1]) <= SLIVER
-            step = BESIDE * np.ptp(piece.corners, axis=0).max() * piece.normal if upright else 0.0
+            size = np.linalg.norm(piece.corners - piece.corners[0], axis=1).max()  # however it is turned in plan
+            step = BESIDE * size * piece.normal if upright else 0.0
             left = [piece.corners + step]
             for part in self._above(piece, left[0], ceiling, roofing):
                 left = [rest for one in left for rest in surface_pieces.outside(one, *self._shadow(part))]

@@ -16,11 +16,11 @@ from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
-from dem_cli.structures.registry import loose_ends
+from dem_cli.structures.registry import loose_ends, unsaid
 from dem_cli.structures.wall_outline import Outlined
 
 if TYPE_CHECKING:
-    from dem_cli.assembly.applied_loads import AppliedLoad
+    from dem_cli.assembly.point_forces import AppliedLoad
     from dem_cli.case.schema import Case
 
 BESIDE = 0.01  # of a block's size: a load so far from it still counts as on it (errors of size, rounded coordinates)
@@ -51,6 +51,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *_unused_joints(case),
         *_loose_ends(case),
         *_unspanned(case),
+        *_unsaid(case),
         *_slivers(case, model, blocks),
     ]
 
@@ -158,9 +159,13 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
         return
     for i, table in enumerate(case.structure):
         if key := loose_ends(table):
-            message = f"{show(getattr(table, key))}: stones at free ends may slide out along inclined joints; see "
-            message += "first whether they stand, with analysis.kind = 'gravity'; quoins hold them"
-            yield CaseProblem(("structure", i, key), message)
+            value, path = table, tuple(int(part) if part.isdigit() else part for part in key.split("."))
+            for part in path:
+                value = value[part] if isinstance(part, int) else getattr(value, part)
+            where, held = ("jambs", "dressed ones") if "jambs" in path else ("free ends", "quoins")
+            message = f"{show(value)}: stones at {where} may slide out along inclined joints; see "
+            message += f"first whether they stand, with analysis.kind = 'gravity'; {held} hold them"
+            yield CaseProblem(("structure", i, *path), message)
 
 
 def _unspanned(case: Case) -> Iterator[CaseProblem]:
@@ -171,6 +176,13 @@ def _unspanned(case: Case) -> Iterator[CaseProblem]:
             message = f"{names[0]}{more} neither lintel nor arch: stones are cut there, and bond and friction alone "
             message += "hold what is above; lintel goes over rectangular openings, openings of the case have arches"
             yield CaseProblem(("structure", i, "outline"), message)
+
+
+def _unsaid(case: Case) -> Iterator[CaseProblem]:
+    """What structures take for granted and might be otherwise."""
+    for i, table in enumerate(case.structure):
+        for key, message in unsaid(table):
+            yield CaseProblem(("structure", i, key), message)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:

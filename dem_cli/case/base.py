@@ -52,6 +52,7 @@ class StructureBase(CaseModel):
     """
 
     only_in: ClassVar[int | None] = None
+    no_base: ClassVar[bool | str] = False  # what its key `base` says where it has none
 
     id: str = Field(
         default="", description="prefix of the block names; default: the kind, made unique", examples=["tower"]

@@ -51,7 +51,8 @@ class Load(Selection):
     spread: NonNegative | None = Field(
         default=None,
         description="a load at a point or along a line spreads to each side on its way down through fill, by this "
-        "share of its depth, evenly: 0.5 is two down to one aside [-]; default: it does not",
+        "share of its depth, evenly, from a point in 3D over a disc: 0.5 is two down to one aside [-]; default: it "
+        "does not",
         examples=[0.5],
     )
     kind: Kind = Field(default="dead", description=KIND, examples=["live"])
@@ -259,7 +260,7 @@ class Fill(Selection):
 class GroundTable(CaseModel):
     """[ground]: one fixed block named "ground" under all structures, which then have no bases of their own.
 
-    A structure has one with base = true; springings of an arch without piers stay fixed.
+    A structure has one with base = true, beside the ground or above it; springings without piers stay fixed.
     """
 
     level: float | None = Field(

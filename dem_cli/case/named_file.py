@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -15,6 +16,14 @@ def absolute_path(file: str, info: ValidationInfo) -> str:
     if folder is None or path.is_absolute():
         return str(path)
     return str((Path(folder).absolute() / path).resolve())
+
+
+def digest(file: str | Path) -> str:
+    """What a file holds, in short (SHA-256); "" where it cannot be read: what is wrong is said by what reads it."""
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError:
+        return ""
 
 
 def missing_file(path: Path, what: str) -> str:

@@ -165,7 +165,7 @@ class Output(CaseModel):
 class ProgramStamp(CaseModel):
     """[dem]: put into the effective case by the program."""
 
-    version: str = Field(description="version of dem that wrote this file", examples=["0.7.0"])
+    version: str = Field(description="version of dem that wrote this file", examples=["0.8.0"])
 
 
 class Case(CaseModel):
@@ -226,8 +226,8 @@ class Case(CaseModel):
                         "not used with [ground], which is its base; or give base = true", "structure", i, key
                     )
         standing = tuple(
-            table.model_copy(update={"base": False})
-            if getattr(table, "base", False) is True and "base" not in table.model_fields_set and table.on_ground
+            table.model_copy(update={"base": table.no_base})
+            if hasattr(table, "base") and "base" not in table.model_fields_set and table.on_ground
             else table
             for table in self.structure
         )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from dem_cli.assembly.applied_loads import AppliedLoad
+    from dem_cli.assembly.point_forces import AppliedLoad
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
     from dem_cli.post.scene.axonometry import Standpoint

@@ -11,7 +11,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from dem_cli.contact import planar, spatial, spatial_motion
-from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointGeometry, JointProperties
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointGeometry, JointProperties, PressedLaw
 from dem_cli.contact.layout import PointLayout, ProfileFault
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints
@@ -77,9 +77,9 @@ class MovingNarrowPhase(NarrowPhase[Geometry, Returning], Protocol[Geometry, Ret
     def carry(self, old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
         """Stiffness and forces of new points (n,) from the old ones (n,) that they go on from."""
 
-    def book(self, old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+    def book(self, old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
         """Books the elastic energy that came or went with other points (Contacts.exchanged); known: those that were
-        there before, (n_points,) bool."""
+        there before, (n_points,) bool; pressed: what overlaps of the others hold (laws/law.py)."""
 
     def profile_fault(
         self, model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray

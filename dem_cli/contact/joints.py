@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -49,6 +50,10 @@ class DrawnFaces(NamedTuple):
         )  # fmt: skip
 
 
+# Normal forces [N] of points by parameters of their joints, overlaps [m], memory and kn: of laws/law.py, `pressed`.
+PressedLaw = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+
+
 class JointProperties(NamedTuple):
     """Properties of each named joint, by its number."""
 
@@ -60,6 +65,7 @@ class JointProperties(NamedTuple):
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", (n_named,) bool
+    pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * overlaps
 
     @property
     def profiled(self) -> bool:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.contact.geometry import AnyMovingNarrowPhase
-from dem_cli.contact.joints import JointArrays, points_of
+from dem_cli.contact.joints import JointArrays, PressedLaw, points_of
 from dem_cli.contact.keys import same_rows
 
 
-def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays) -> None:
+def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, pressed: PressedLaw) -> None:
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
-    that is nearest takes over.
+    that is nearest takes over. pressed: normal forces of points that are new, by their overlap (laws/law.py).
     """
     match = same_rows(old.geometry.keys, new.geometry.keys)
     points = _same_points(old, new, match)
@@ -25,7 +25,7 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)
     new.contacts.exchanged[:] = old.contacts.exchanged
-    narrow.book(old, new, points >= 0)
+    narrow.book(old, new, points >= 0, pressed)
 
 
 def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:

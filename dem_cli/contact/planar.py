@@ -10,7 +10,7 @@ import numpy as np
 
 from dem_cli.contact.chains import END_TO_END, STEEP, Chains, come_back, made_chains
 from dem_cli.contact.edges import edges_of, lengths_of, overlap_ends, overlap_lengths, widest_gaps
-from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointProperties, joints_of
+from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointProperties, PressedLaw, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, steepest, too_steep
 from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
@@ -177,7 +177,7 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
     new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
 
-def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
     """Nothing: points keep their stiffness."""
 
 

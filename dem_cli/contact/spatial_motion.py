@@ -10,7 +10,7 @@ import numpy as np
 
 from dem_cli.contact.area_rules import LEAST
 from dem_cli.contact.caps import Caps, caps_of, made_caps
-from dem_cli.contact.joints import Faces, JointArrays, JointProperties, joints_of
+from dem_cli.contact.joints import Faces, JointArrays, JointProperties, PressedLaw, joints_of
 from dem_cli.contact.meetings import polyhedra
 from dem_cli.contact.spatial import (
     LONE,
@@ -158,11 +158,13 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.n
                 getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
 
 
-def book(old: JointArrays, new: JointArrays, known: np.ndarray) -> None:
+def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
     """Energy that went or came with other points: new ones hold what their own overlap says, unless they are glued."""
     contacts, joints = new.contacts, new.joints
     fresh = ~known & (contacts.normal >= 0.0)
-    contacts.normal[fresh] = joints.kn[fresh] * np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    overlaps = np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    parameters = joints.law[joints.owners[fresh]]
+    contacts.normal[fresh] = pressed(parameters, overlaps, contacts.memory[fresh], joints.kn[fresh])
     contacts.shear[fresh & (contacts.normal == 0.0)] = 0.0
     change = _held(old) - _held(new)
     contacts.exchanged[:] += change, abs(change)

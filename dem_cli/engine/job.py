@@ -71,6 +71,10 @@ class Job:
         sim.shown = shown_closure(sim, resolution)
         return sim
 
+    def moving_simulation(self, elastic: bool = False) -> Simulation:
+        """A simulation whose geometry moves, unless the case says that it does not; elastic as for `simulation`."""
+        return self.simulation("fixed" if self.case.analysis.kinematics == "fixed" else "large", elastic=elastic)
+
     def softer(self, sim: Simulation, times: float) -> Simulation:
         """The same as a simulation whose geometry moves, on "auto" joints that are so many times as soft."""
         softer = self._compiled("large", ratio_of(sim) / times)

@@ -54,7 +54,7 @@ def joint_properties(
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
     layouts = tuple(_layout(table, case.seed, model.dimension) for table in tables)
     rigid = np.array([table.kn == "auto" for table in tables])
-    return JointProperties(names, by_material, kn, ks, columns, intact, layouts, rigid)
+    return JointProperties(names, by_material, kn, ks, columns, intact, layouts, rigid, mixed(tuple(laws)).pressed)
 
 
 def _law(table: StiffJoint) -> Law:

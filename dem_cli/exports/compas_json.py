@@ -1,7 +1,8 @@
 """COMPAS JSON of the blocks: a list of meshes that `compas.json_load` reads, with supports, materials, densities.
 
 As compas 2.15 writes them (compas.datastructures.Mesh.__data__): attributes carry what compas_assembly and compas_dem
-call is_support, and name, material and density of the block. A compound is a mesh for each of its parts, of one name.
+call is_support, and name, material and density of the block. A compound is a mesh for each of its parts, of one name;
+their attribute compound_parts says how many there are, for dem to read them as one block again.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ def compas_json(exported: ExportedCase) -> str:
 def _mesh(block: ExportedBlock, part: Polyhedron, density: float, path: str) -> dict[str, Any]:
     vertices = {str(k): dict(zip("xyz", corner)) for k, corner in enumerate((part.vertices + 0.0).tolist())}
     faces = {str(k): loop.tolist() for k, loop in enumerate(part.faces)}
-    attributes = {"is_support": block.fixed, "material": block.material, "density": density}
+    attributes: dict[str, Any] = {"is_support": block.fixed, "material": block.material, "density": density}
+    if len(block.parts) > 1:
+        attributes["compound_parts"] = len(block.parts)
     return {
         "dtype": "compas.datastructures/Mesh",
         "data": {

@@ -8,6 +8,7 @@ from dem_cli.errors import MissingExtra, UsageError
 from dem_cli.exports.contents import ExportedCase
 
 GROUND = "fixed"  # layer of blocks that cannot move
+NOT_IN_NAMES = '<>/\\":;?*=`|'  # of layers
 
 
 def dxf(exported: ExportedCase) -> str:
@@ -21,7 +22,7 @@ def dxf(exported: ExportedCase) -> str:
     drawing = ezdxf.new("R2000", units=6)
     space = drawing.modelspace()
     for block in exported.blocks:
-        layer = GROUND if block.fixed else block.material
+        layer = GROUND if block.fixed else "".join("_" if sign in NOT_IN_NAMES else sign for sign in block.material)
         if layer not in drawing.layers:
             drawing.layers.add(layer)
         for part in block.parts:

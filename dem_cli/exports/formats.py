@@ -28,17 +28,26 @@ class ExportFormat(NamedTuple):
     write: Callable[[ExportedCase, str], Written]  # a case, the name of the file
 
 
-def _plain(write: Callable[[ExportedCase], str | bytes]) -> Callable[[ExportedCase, str], Written]:
-    return lambda exported, file: (write(exported), [])
+def _plain(
+    write: Callable[[ExportedCase], str | bytes], compounds: bool = True
+) -> Callable[[ExportedCase, str], Written]:
+    """A format that carries all that it is asked for, beside what belongs together where it has no `compounds`."""
+    return lambda exported, file: (write(exported), [] if compounds else _apart(exported))
+
+
+def _apart(exported: ExportedCase) -> list[str]:
+    found = [block.id for block in exported.blocks if len(block.parts) > 1]
+    more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+    return [f"that the parts of '{found[0]}'{more} are one block"] if found else []
 
 
 EXPORT_FORMATS = {
     ".obj": ExportFormat("OBJ, an object for each block", _plain(obj)),
-    ".stl": ExportFormat("STL, a solid for each block", _plain(stl)),
+    ".stl": ExportFormat("STL, a solid for each block", _plain(stl, compounds=False)),
     ".glb": ExportFormat("glTF, for viewers", _plain(glb)),
     ".gltf": ExportFormat("glTF as text", _plain(gltf)),
     ".json": ExportFormat("COMPAS meshes", _plain(compas_json)),
-    ".dxf": ExportFormat("DXF, a closed polyline for each block of a case in 2D", _plain(dxf)),
+    ".dxf": ExportFormat("DXF, a closed polyline for each block of a case in 2D", _plain(dxf, compounds=False)),
     ".lmgc90.py": ExportFormat("LMGC90, a script for pylmgc90", lmgc90),
     ".3ddat": ExportFormat("3DEC, a data file", lambda exported, file: itasca_3dec(exported)),
 }

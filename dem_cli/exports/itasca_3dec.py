@@ -50,17 +50,22 @@ def not_carried(exported: ExportedCase) -> list[str]:
 def _block(block: ExportedBlock) -> list[str]:
     lines = []
     for part in block.parts:
-        lines.append(f"block create polyhedron group '{block.name}' slot 'dem-name' &")
+        lines.append(f"block create polyhedron group {_quoted(block.name)} slot 'dem-name' &")
         faces = [" ".join(triple(corner, ",") for corner in part.vertices[loop[::-1]]) for loop in part.faces]
         lines += [f"  face {face} &" for face in faces[:-1]] + [f"  face {faces[-1]}"]
-        named = f"range group '{block.name}' slot 'dem-name'"
-    lines.append(f"block group '{block.material}' slot 'dem-material' {named}")
+        named = f"range group {_quoted(block.name)} slot 'dem-name'"
+    lines.append(f"block group {_quoted(block.material)} slot 'dem-material' {named}")
     return [*lines, f"block fix {named}"] if block.fixed else lines
+
+
+def _quoted(name: str) -> str:
+    """A name as a string of 3DEC, in which there is no sign for an apostrophe."""
+    return "'" + name.replace("'", "_") + "'"
 
 
 def _properties(exported: ExportedCase) -> list[str]:
     return [
-        f"block property density {number(material.density)} range group '{name}' slot 'dem-material'"
+        f"block property density {number(material.density)} range group {_quoted(name)} slot 'dem-material'"
         for name, material in exported.case.materials.items()
         if any(block.material == name for block in exported.blocks)
     ]
@@ -78,7 +83,7 @@ def _joints(exported: ExportedCase) -> list[str]:
         for other in names[i:]:
             joint = case.joint_between(one, other)
             if joint != default:
-                between = f"group-intersection '{one}' '{other}'"
+                between = f"group-intersection {_quoted(one)} {_quoted(other)}"
                 lines.append(f"block contact property {_values(exported, joint)} range {between}  ; {joint}")
     return lines
 

@@ -1,9 +1,11 @@
 """LMGC90 input: a Python script for pylmgc90 that writes DATBOX, and with the argument `run` goes through time.
 
 Rigid bodies (RBDY3 with POLYR contactors, RBDY2 with POLYG), fixed ones with imposed velocities of zero, the friction
-of each pair of materials as IQS_CLB, gravity, forces. Calls are those of the examples of LMGC90 RIGID_3D/
-arche_plein_ceintre_3D/gen_sample.py, RIGID_3D/Wall_PR/command.py, Pre/wall2D/test_rigid_bricks/gen_sample.py and of
-pylmgc90/pre/build_avatar/particles.py. LMGC90 was not at hand: tests read the script back, nobody has run it there.
+of each pair of materials as IQS_CLB, gravity, forces. Moments are written in the plane alone: in space the components 4
+to 6 of RBDY3 are about the axes of inertia that LMGC90 finds, and turn with the body. Calls are those of the examples
+of LMGC90 RIGID_3D/arche_plein_ceintre_3D/gen_sample.py, RIGID_3D/Wall_PR/command.py, Pre/wall2D/test_rigid_bricks/
+gen_sample.py and of pylmgc90/pre/build_avatar/particles.py. LMGC90 was not at hand: tests read the script back, nobody
+has run it there.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from dem_cli.exports.contents import ExportedCase, number, triangles
 
 BODY, SHAPE, ELEMENT = {2: "RBDY2", 3: "RBDY3"}, {2: "POLYG", 3: "POLYR"}, {2: "Rxx2D", 3: "Rxx3D"}
 ALERT = 0.02  # of the shortest edge: contact is looked for so far away
+MOMENT = 1e-9  # of the largest force, in m: moments that are less are none
 TIME_STEP, STEPS = 1e-3, 2000
 
 _HEAD = '''\
@@ -42,7 +45,7 @@ mods.addModel(rigid)
 
 
 def block(parts, material, color, fixed, dead, live):
-    """A rigid body of convex parts; forces and moments about its centroid."""
+    """A rigid body of convex parts; forces at its centroid, in 2D with their moment about it."""
     body = pre.avatar(dimension=dim)
     body.addBulk(pre.rigid3d() if dim == 3 else pre.rigid2d())
     body.addNode(pre.node(coor=np.zeros(dim), number=1))
@@ -136,8 +139,20 @@ def not_carried(exported: ExportedCase) -> list[str]:
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
     notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection") if getattr(case, key, None)]
+    turned = _turned(exported)
+    more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""
+    notes += [f"moments of forces beside the centroid of '{turned[0]}'{more}"] if turned else []
     notes += ["stiffness of joints: bodies do not overlap in LMGC90"] if _stiff(exported) else []
     return notes
+
+
+def _turned(exported: ExportedCase) -> list[str]:
+    """Free blocks in space on which forces have a moment."""
+    if exported.case.dimension == 2:
+        return []
+    forces = np.abs(np.stack(exported.forces))
+    felt = (forces[:, :, 3:] > MOMENT * forces.max()).any(axis=(0, 2))
+    return [block.id for block, moment in zip(exported.blocks, felt, strict=True) if moment and not block.fixed]
 
 
 def _stiff(exported: ExportedCase) -> bool:
@@ -162,14 +177,14 @@ def _materials(exported: ExportedCase) -> list[str]:
 
 def _bodies(exported: ExportedCase) -> list[str]:
     kinds, (dead, live) = _kinds(exported), exported.forces
-    lines = []
+    lines, written = [], 3  # components: x, y, z, or x, z and the moment
     for k, block in enumerate(exported.blocks):
         kind = kinds[block.material, 1.0 if exported.case.dimension == 3 else block.thickness]
         if exported.case.dimension == 3:
             parts = [(part.vertices.tolist(), (triangles(part) + 1).tolist()) for part in block.parts]
         else:
             parts = [part.tolist() for part in block.parts]
-        loads = f"{dead[k].tolist()}, {live[k].tolist()}"
+        loads = f"{dead[k, :written].tolist()}, {live[k, :written].tolist()}"
         mass = number(exported.model.masses[k])
         lines.append(f'block({parts}, material_{kind}, "C{kind:04d}", {block.fixed}, {loads})  # {block.id}, {mass} kg')
     return [*lines, ""]

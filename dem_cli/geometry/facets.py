@@ -22,10 +22,10 @@ class Facets(NamedTuple):
     @property
     def corners(self) -> list[np.ndarray]:
         """Of each side the numbers of its corners, each once."""
-        return [
-            np.unique(np.concatenate([loop for loop, own in zip(self.loops, self.sides) if own == k]))
-            for k in range(len(self.normals))
-        ]
+        flat, owners = np.concatenate(self.loops), np.repeat(self.sides, [len(loop) for loop in self.loops])
+        pairs = np.unique(np.column_stack([owners, flat]), axis=0)
+        ends = np.cumsum(np.bincount(pairs[:, 0], minlength=len(self.normals)))[:-1]
+        return np.split(pairs[:, 1], ends)
 
     def over(self) -> np.ndarray:
         """How far each corner lies in front of each side [m], (n, k)."""

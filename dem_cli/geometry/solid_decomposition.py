@@ -35,8 +35,8 @@ def convex_pieces(sides: Sides) -> list[np.ndarray]:
     rough = roughness(sides)
     gap = max(ROUND_OFF * size, 2.0 * rough)
     over = sides.points @ sides.normals.T - sides.heights
-    cutting = np.flatnonzero((over > THIN * size).any(axis=0))
-    faces = [(k, sides.points[corners]) for k, corners in zip(sides.planes, sides.triangles) if k in set(cutting)]
+    through = set(np.flatnonzero((over > THIN * size).any(axis=0)).tolist())
+    faces = [(k, sides.points[corners]) for k, corners in zip(sides.planes, sides.triangles) if k in through]
     waiting, leaves = [(hull_corners(sides.points), faces)], []
     while waiting:
         cell, inside = waiting.pop()

@@ -77,6 +77,48 @@ def quadrature(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * np.concatenate([a + b, b + c, c + a]), np.tile(areas / 3.0, 3)
 
 
+def over_disc(piece: np.ndarray, centre: np.ndarray, radius: float) -> tuple[float, np.ndarray]:
+    """Area, seen from above, of what of a polygon in space lies over or under a disc [m²], and its centroid (3,) [m].
+
+    centre (2,) and radius [m]; no upright polygon. Green's theorem along the sides: what of one lies within the circle
+    bounds a triangle with the centre, what lies outside a sector.
+    """
+    low, high = piece[:, :2] - centre, np.roll(piece[:, :2], -1, axis=0) - centre
+    doubled, moments = 0.0, np.zeros(2)
+    for start, end in zip(low, high, strict=True):
+        shares = _within(start, end, radius)
+        enters, leaves = (start + share * (end - start) for share in shares)
+        product = _cross(enters, leaves)
+        doubled += product
+        moments += product / 6.0 * (enters + leaves)
+        for a, b, beyond in ((start, enters, shares[0] > 0.0), (leaves, end, shares[1] < 1.0)):
+            if beyond:
+                from_, to = a / np.hypot(*a), b / np.hypot(*b)
+                doubled += radius**2 * np.arctan2(_cross(a, b), a @ b)
+                moments += radius**3 / 3.0 * np.array([to[1] - from_[1], from_[0] - to[0]])
+    if doubled == 0.0:
+        return 0.0, piece.mean(axis=0)
+    normal = _products(piece[1:-1] - piece[0], piece[2:] - piece[0]).sum(axis=0)
+    place = centre + moments / (0.5 * doubled)
+    height = piece[0, 2] - normal[:2] @ (place - piece[0, :2]) / normal[2]
+    return 0.5 * abs(doubled), np.append(place, height)
+
+
+def _within(start: np.ndarray, end: np.ndarray, radius: float) -> tuple[float, float]:
+    """Shares of the way between two points (2,) at which it enters and leaves a circle about the origin."""
+    along = end - start
+    length = along @ along
+    beside = _cross(start, along) ** 2
+    if beside >= radius**2 * length:
+        return 0.0, 0.0
+    middle, half = -(start @ along) / length, np.sqrt(radius**2 * length - beside) / length
+    return min(max(middle - half, 0.0), 1.0), min(max(middle + half, 0.0), 1.0)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
 def _products(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Cross products in space (n, 3): np.cross takes ten times as long for a few."""
     (x, y, z), (u, v, w) = a.T, b.T

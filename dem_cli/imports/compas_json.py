@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.imports.contents import Contents, FileBody, FileProblem, finite
 
 MESH, ELEMENTS = "compas.datastructures/Mesh", "elements"
+COMPOUND = "compound_parts"  # attribute of a mesh that dem writes: how many of this name are one block
 POLYHEDRON, BOX = "compas.geometry/Polyhedron", "compas.geometry/Box"
 
 
@@ -29,10 +30,14 @@ def read(path: Path) -> Contents:
     materials = dict(_materials(data))
     names = {guid: str(each.get("name") or "") for guid, each in materials.items()}
     bodies = [_body(found, names) for found in _meshes(data, {})]
-    densities = {
-        names[guid]: float(each["density"]) for guid, each in materials.items() if each.get("density") is not None
-    }
-    return Contents(bodies, densities=densities)
+    given = {names[guid]: each["density"] for guid, each in materials.items() if each.get("density") is not None}
+    return Contents(bodies, densities={name: _density(name, value) for name, value in given.items()})
+
+
+def _density(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise FileProblem(f"material '{name}': its density {value!r} is not a number")
+    return float(value)
 
 
 def _materials(value: Any) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -72,16 +77,25 @@ def _draws(value: dict[str, Any], data: dict[str, Any]) -> bool:
 def _body(found: tuple[dict[str, Any], dict[str, Any]], materials: dict[str, str]) -> FileBody:
     value, said = found
     data = value["data"]
-    attributes = data.get("attributes") if isinstance(data.get("attributes"), dict) else {}
+    attributes = data["attributes"] if isinstance(data.get("attributes"), dict) else {}
     name = str(said.get("name") or value.get("name") or attributes.get("name") or "")
     try:
         points, faces = _corners_and_faces(value.get("dtype"), data)
         points = _transformed(points, said.get("transformation"))
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         raise FileProblem(f"mesh '{name}' is not as compas writes it ({type(error).__name__}: {error})") from None
     material = said.get("material") or attributes.get("material") or ""
     fixed = bool(said.get("is_support") or attributes.get("is_support"))
-    return FileBody(name, finite(points, f"mesh '{name}'"), faces, materials.get(material, str(material)), fixed)
+    places, layer = finite(points, f"mesh '{name}'"), _layer(material, materials)
+    return FileBody(name, places, faces, layer, fixed, compound=bool(attributes.get(COMPOUND)))
+
+
+def _layer(material: Any, materials: dict[str, str]) -> str:
+    """Name of a material, given as such, by its guid in the model, or in full."""
+    if isinstance(material, dict):
+        within = material.get("data")
+        return str((within.get("name") if isinstance(within, dict) else None) or material.get("name") or "")
+    return materials.get(str(material), str(material))
 
 
 def _corners_and_faces(dtype: Any, data: dict[str, Any]) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+
 
 class FileProblem(ValueError):
     """A geometry file that cannot be read, or holds no blocks: one message, without the name of the file."""
@@ -28,6 +30,7 @@ class FileBody(NamedTuple):
     fixed: bool = False
     indexed: bool = True
     said: str = ""  # how a drawing calls it: kind and handle of an entity (DXF), id (SVG)
+    compound: bool = False  # the file says that its solids, and those of the same name, are parts of one block
 
 
 class Contents(NamedTuple):
@@ -38,6 +41,14 @@ class Contents(NamedTuple):
     left_out: Sequence[str] = ()  # what the file holds beside blocks, in words such as "3 TEXT"
     densities: Mapping[str, float] = MappingProxyType({})  # of layers, where the file says them [kg/m3]
     layers: Sequence[str] = ()  # of a drawing: those on which anything is drawn
+
+
+def unit_of(contents: Contents, given: str | None) -> str:
+    """The unit of lengths: given in the case, else what the file says, else m. Raises FileProblem: one of others."""
+    found = given or contents.unit or "m"
+    if found not in UNITS:
+        raise FileProblem(f"its lengths are in {found}, which are not read; give unit, one of {', '.join(UNITS)}")
+    return found
 
 
 def finite(points: Sequence | np.ndarray, what: str) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 from dem_cli.errors import MissingExtra
 from dem_cli.imports.contents import Contents, FileBody, FileProblem
 
-UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}  # of $INSUNITS
+UNITS = {0: "", 1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}  # of $INSUNITS; 0: it says none
 OUTLINES, PIECES = ("LWPOLYLINE", "POLYLINE"), ("LINE", "ARC")
 _SAME = 1e-9  # of the size of a drawing: ends of lines that meet
 
@@ -53,7 +53,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> C
             left_out[kind] += 1
     bodies += _loops(pieces)
     words = [f"{count} {what}" for what, count in left_out.items()]
-    return Contents(bodies, UNITS.get(drawing.header.get("$INSUNITS", 0), ""), words, layers=list(layers))
+    return Contents(bodies, _unit(drawing.header.get("$INSUNITS", 0)), words, layers=list(layers))
 
 
 def _drawing(path: Path) -> Any:
@@ -65,6 +65,16 @@ def _drawing(path: Path) -> Any:
         return ezdxf.readfile(path)
     except Exception as error:  # of ezdxf: whatever its reader stumbles over
         raise FileProblem(f"not a DXF file that can be read ({str(error) or type(error).__name__})") from None
+
+
+def _unit(code: int) -> str:
+    """What a drawing says of its lengths, also a unit that is not read."""
+    from ezdxf.enums import InsertUnits
+
+    if code in UNITS:
+        return UNITS[code]
+    known = {int(each): each.name.lower() for each in InsertUnits}
+    return f"{known.get(code, 'units')} ($INSUNITS = {code})"
 
 
 def _entities(drawing: Any) -> Iterable[Any]:

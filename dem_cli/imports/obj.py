@@ -1,5 +1,6 @@
 """Wavefront OBJ files: objects (o) and groups (g) are blocks, usemtl names their material.
 
+An object NAME whose faces all stand in groups NAME-part-1, NAME-part-2, ... is a compound, as dem writes them.
 Read here because meshio and trimesh lose names, or take what is broken without a word. Source: Wavefront, Object Files
 (.obj), Advanced Visualizer manual, appendix B1. Lines that draw nothing that has a volume are left out.
 """
@@ -25,6 +26,12 @@ class _NamedFaces:
         self.name = name
         self.loops: list[list[int]] = []
         self.materials: Counter[str] = Counter()
+        self.groups: set[str] = set()
+
+    @property
+    def compound(self) -> bool:
+        """Whether its groups are called as the parts of one block, as exports/meshes.py does."""
+        return len(self.groups) > 1 and self.groups == {f"{self.name}-part-{k + 1}" for k in range(len(self.groups))}
 
 
 def read(path: Path) -> Contents:
@@ -49,6 +56,7 @@ def read(path: Path) -> Contents:
             for kept in (objects[-1], groups[-1]):
                 kept.loops.append(loop)
                 kept.materials[material] += 1
+                kept.groups.add(groups[-1].name)
         elif key in CURVED:
             raise FileProblem(f"line {number}: '{key}': curved surfaces are not read; export it as a mesh")
         elif key not in QUIET:
@@ -109,6 +117,7 @@ def _together(found: list[_NamedFaces]) -> list[_NamedFaces]:
             kept = by_name.setdefault(each.name, _NamedFaces(each.name))
             kept.loops += each.loops
             kept.materials += each.materials
+            kept.groups |= each.groups
     return list(by_name.values())
 
 
@@ -116,4 +125,6 @@ def _body(found: _NamedFaces, points: np.ndarray) -> FileBody:
     used, numbers = np.unique(np.concatenate(found.loops), return_inverse=True)
     ends = np.cumsum([len(loop) for loop in found.loops])[:-1]
     layer = found.materials.most_common(1)[0][0]
-    return FileBody(found.name, points[used], tuple(np.split(numbers.astype(np.int64), ends)), layer)
+    return FileBody(
+        found.name, points[used], tuple(np.split(numbers.astype(np.int64), ends)), layer, compound=found.compound
+    )

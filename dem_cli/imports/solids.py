@@ -42,6 +42,7 @@ class Solid(NamedTuple):
     layer: str
     fixed: bool
     parts: tuple[Any, ...]  # (n, 2) arrays, or polyhedra
+    compound: bool = False  # part of one block with all others of its name
 
 
 def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[list[Solid], list[str]]:
@@ -71,7 +72,7 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
         except ValueError as error:
             hint = "; a larger snap puts corners back onto planes" if "plane" in str(error) else ""
             raise FileProblem(f"{called(body, number)}: {error}{hint}") from None
-        solids.append(Solid(body.name, body.layer, body.fixed, parts))
+        solids.append(Solid(body.name, body.layer, body.fixed, parts, body.compound))
     return solids, notes
 
 

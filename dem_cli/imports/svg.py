@@ -29,7 +29,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> C
     """
     left_out: Counter[str] = Counter()
     bodies, layers = [], {}
-    for name, layer, shape in _shapes(_parsed(path), "", left_out):
+    for name, layer, shape in _shapes(_parsed(path, left_out), "", left_out):
         layers[layer] = True
         if only and layer not in only:
             left_out[f"on group '{layer}'" if layer else "on no group"] += 1
@@ -37,11 +37,11 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> C
         for ring in _rings(shape, name, chords):
             ring = finite(ring, f"'{name}'") * (1.0, -1.0)
             bodies.append(FileBody(name, ring, layer=layer, said=f"'{name}'" if name else ""))
-    words = [f"{count} {what}" for what, count in left_out.items()]
+    words = [f"{count} {what}" for what, count in left_out.items() if count]
     return Contents(bodies, left_out=words, layers=list(layers))
 
 
-def _parsed(path: Path) -> Any:
+def _parsed(path: Path, left_out: Counter[str]) -> Any:
     try:
         from svgelements import SVG
     except ImportError:
@@ -52,11 +52,18 @@ def _parsed(path: Path) -> Any:
             raise FileProblem(f"<{root.tag}>, not an SVG drawing")
         for key in _PAGE:
             root.attrib.pop(key, None)
+        left_out["hidden"] += sum(map(_is_hidden, root.iter()))
         return SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=True)
     except FileProblem:
         raise
     except Exception as error:  # of the parsers: whatever they stumble over
         raise FileProblem(f"not an SVG drawing that can be read ({str(error) or type(error).__name__})") from None
+
+
+def _is_hidden(element: Any) -> bool:
+    """Whether a group or shape, such as a layer that is off, is not displayed: svgelements leaves it out."""
+    style = element.get("style", "").replace(" ", "")
+    return element.get("display") == "none" or "display:none" in style.split(";")
 
 
 def _shapes(group: Any, layer: str, left_out: Counter[str]) -> Iterator[tuple[str, str, Any]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
 from pydantic import Field
 
 from dem_cli.case.base import Positive
@@ -49,6 +50,11 @@ def strength(parameters, kn) -> Envelope:
     return envelope(len(kn), friction=parameters[:, 1], compression=parameters[:, 2] * kn / parameters[:, 0])
 
 
+def pressed(parameters, overlaps, memory, kn):
+    """kn ⟨overlap − z⟩, at most fc A [N]: the rest of the overlap is crushed stone."""
+    return np.minimum(kn * np.maximum(overlaps - memory[:, 0], 0.0), parameters[:, 2] * kn / parameters[:, 0])
+
+
 CRUSHING = Law(
     name="crushing",
     parameters=CrushingJoint,
@@ -56,6 +62,7 @@ CRUSHING = Law(
     columns=lambda table, kn: (kn, table.coefficient, table.compression),
     shear_limit=lambda parameters, normal, memory, kn: parameters[:, 1] * normal,
     envelope=strength,
+    pressed=pressed,
     scalars=1,
     bonded=True,
     source="the cap in compression of interface models, here without hardening (Lourenço and Rots 1997)",

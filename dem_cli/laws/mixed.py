@@ -25,12 +25,15 @@ def mixed(laws: tuple[Law, ...]) -> Law:
     for number in range(len(laws) - 2, -1, -1):
         function = _either(number, laws[number].function, function)
 
-    def shear_limit(parameters, normal, memory, kn):
-        limit = np.zeros(len(normal))
-        for number, law in enumerate(laws):
-            own = parameters[:, -1] == number
-            limit[own] = law.shear_limit(parameters[own], normal[own], memory[own], kn[own])
-        return limit
+    def each(which):
+        def of_all(parameters, values, memory, kn):
+            found = np.zeros(len(values))
+            for number, law in enumerate(laws):
+                own = parameters[:, -1] == number
+                found[own] = which(law)(parameters[own], values[own], memory[own], kn[own])
+            return found
+
+        return of_all
 
     def joined(which):
         def of_all(parameters, kn) -> Envelope:
@@ -49,7 +52,8 @@ def mixed(laws: tuple[Law, ...]) -> Law:
         parameters=CaseModel,
         function=function,
         columns=lambda table, kn: (),
-        shear_limit=shear_limit,
+        shear_limit=each(lambda law: law.shear_limit),
+        pressed=each(lambda law: law.pressed),
         envelope=joined(lambda law: law.envelope) if straight else None,
         residual=joined(lambda law: law.residual or law.envelope) if straight and falls else None,
         scalars=max(law.scalars for law in laws),

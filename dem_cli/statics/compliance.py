@@ -7,11 +7,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.engine import measures
+from dem_cli.errors import SolverError
 from dem_cli.statics.equilibrium import relax
 
 if TYPE_CHECKING:
     from dem_cli.engine.budget import Budget
     from dem_cli.engine.simulation import Simulation
+
+AGAINST = "a small live load moves the structure against its direction: it hardly stands as it is"
+NOTHING = "the live load moves nothing: no free block has a live load"
+
+
+def check_moves(sim: Simulation, value: float) -> None:
+    """Raises SolverError where the live load moves nothing, or against itself; value: q·u as `compliance` has it."""
+    if not value > 0.0:
+        raise SolverError(AGAINST if sim.loads.live[sim.free].any() else NOTHING)
 
 
 def compliance(sim: Simulation, budget: Budget | None = None) -> tuple[float, float]:

@@ -26,7 +26,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.model.scales import largest_structure
-from dem_cli.statics.compliance import compliance
+from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.trial_loads import TrialLoads
@@ -36,9 +36,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
     from dem_cli.statics.warm_start import CurveStart, WarmStart
-
-
-AGAINST = "a small live load moves the structure against its direction: it hardly stands as it is"
 
 
 class LoadSearch:
@@ -74,10 +71,7 @@ class LoadSearch:
                 self._raise_load(self._trials([least], least))
                 return
         answer.compliance, answer.elastic = compliance(sim, self.budget)
-        if answer.compliance <= 0.0:
-            if sim.loads.live[sim.free].any():
-                raise SolverError(AGAINST)
-            raise SolverError("the live load moves nothing: no free block has a live load")
+        check_moves(sim, answer.compliance)
         if start is not None and self._holds(start):
             low = answer.carried / sim.live_scale
             if start.kind == LIMIT:

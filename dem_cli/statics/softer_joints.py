@@ -14,7 +14,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import settle_or_fail, stand
-from dem_cli.statics.warm_start import GRAVITY
+from dem_cli.statics.warm_start import CURVE, GRAVITY
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -25,12 +25,14 @@ if TYPE_CHECKING:
 def checked(job: Job, sim: Simulation, search: FailureLoad, resolution: float) -> dict[str, Any]:
     """Keys of the summary about a failure load on "auto" joints; what is doubtful goes to the warnings of the job."""
     settings = job.settings.load_search
-    if not (search.found and search.start.get("kind") == GRAVITY and _checkable(sim)):
+    kind = search.start.get("kind")
+    if not (search.found and kind in (GRAVITY, CURVE) and _checkable(sim)):
         return {}
     softer = f"on joints {settings.softer:g} times as soft"
     wanted = (1.0 - settings.softer * resolution) * search.carried
     carried = {one.load for one in search.passes if one.state == "equilibrium" and 0.0 < one.load < wanted}
-    loads = sorted(carried | {wanted})
+    steps = {share * wanted for share in settings.shares} if kind == CURVE else set()  # no loads led to its peak
+    loads = sorted(carried | steps | {wanted})
     job.clock.progress(softer, 0.0, 0.0, None)
     budget = Budget(int(settings.softer_steps * max(sim.steps, settings.trial)))
     try:

@@ -87,6 +87,11 @@ class Bridge(StructureBase):
     )
 
     @property
+    def on_ground(self) -> bool:
+        """Whether a [ground] takes the place of its base: where it has no abutments its end springings stay fixed."""
+        return self.abutments is not None
+
+    @property
     def all_spans(self) -> tuple[float, ...]:
         """Clear spans from the left [m]."""
         return self.spans or (self.span or 0.0,) * self.count

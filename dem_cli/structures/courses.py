@@ -69,6 +69,11 @@ BONDS: dict[str, Bond] = {
 HEADER_BONDS = ("english", "english-garden", "flemish")
 
 
+def pattern_of(bond: str, offset: float | None, course: int, length: float) -> Pattern:
+    """What a bond lays in a course, from 0; offset: shift of every other course [m], None: half a block of `length`."""
+    return BONDS[bond](course, 0.5 if offset is None else offset / length)
+
+
 def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequence[float]) -> list[Piece]:
     """Blocks of a course from left to right, none shorter than a quarter of a block where the span is not.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -15,13 +14,12 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.case.named_file import absolute_path, missing_file
-from dem_cli.imports.contents import Contents, FileBody, FileProblem
+from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
 from dem_cli.model.blocks import Block
+from dem_cli.structures.patterns.drawn_once import drawn_once
 
-UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 SHOWN = 6  # names in a message
-MOST_KEPT = 4  # files that were read
 
 
 class Layer(CaseModel):
@@ -81,9 +79,10 @@ class Import(StructureBase):
     names: Literal["file", "numbers"] = Field(
         "file", description="of blocks: those in the file, or numbers in its order", examples=["numbers"]
     )
-    shells: Literal["blocks", "parts"] = Field(
-        "blocks",
-        description="what several solids of one name are: blocks, or convex parts of one block",
+    shells: Literal["blocks", "parts"] | None = Field(
+        None,
+        description="what several solids of one name are: blocks, or convex parts of one block; default: parts where "
+        "`dem build` wrote them as such (OBJ, compas JSON), else blocks",
         examples=["parts"],
     )
     concave: Literal["refuse", "decompose"] = Field(
@@ -122,6 +121,9 @@ class Import(StructureBase):
             if key in self.model_fields_set:
                 holds = "outlines in a plane" if found.flat else "solids"
                 raise KeyProblem(f"not used with {suffix}, which holds {holds}", key)
+        for name, layer in self.layers.items():
+            if layer.thickness is not None and not found.flat:
+                raise KeyProblem(f"not used with {suffix}, which holds solids", "layers", name, "thickness")
         return self
 
 
@@ -130,9 +132,7 @@ class ImportedStructure(NamedTuple):
 
     blocks: list[Block]
     notes: list[str]
-
-
-_KEPT: dict[tuple[str, str], ImportedStructure] = {}  # by the table, and what its file holds
+    divided: dict[str, int]  # names in the file with several solids that nobody said what they are, and how many
 
 
 def build(table: Import) -> list[Block]:
@@ -140,29 +140,25 @@ def build(table: Import) -> list[Block]:
     return imported(table).blocks
 
 
+def unsaid(table: Import) -> list[tuple[str, str]]:
+    """`shells`, where names of the file have several solids each and nobody said what they are."""
+    found = imported(table).divided
+    if not found:
+        return []
+    name, count = next(iter(found.items()))
+    more = f" (so do {len(found) - 1} more names)" if len(found) > 1 else ""
+    message = f"'{name}' has {count} solids{more}: they are blocks of their own; shells = 'parts' makes one block of "
+    return [("shells", message + "those of a name, shells = 'blocks' says that they are meant")]
+
+
+@drawn_once
 def imported(table: Import) -> ImportedStructure:
-    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem.
-
-    A command asks for them several times: they are kept until the file or the table changes.
-    """
-    try:
-        held = hashlib.sha256(Path(table.file).read_bytes()).hexdigest()
-    except OSError:
-        held = ""  # what is wrong is said where it is read
-    key = table.model_dump_json(), held
-    if key not in _KEPT:
-        if len(_KEPT) >= MOST_KEPT:
-            _KEPT.clear()
-        _KEPT[key] = _read(table)
-    return _KEPT[key]
-
-
-def _read(table: Import) -> ImportedStructure:
+    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem."""
     from dem_cli.imports.solids import solids_of
 
     try:
         contents = _kept(table, read(table.file, table.chords))
-        factor = table.scale * UNITS[table.unit or contents.unit or "m"]
+        factor = table.scale * UNITS[unit_of(contents, table.unit)]
         solids, notes = solids_of(_named(contents.bodies), factor, table)
     except FileProblem as error:
         raise KeyProblem(f"{Path(table.file).name}: {error}", "file") from None
@@ -170,7 +166,7 @@ def _read(table: Import) -> ImportedStructure:
     notes = [_counts(table, contents, blocks), *notes]
     notes += [f"left out: {', '.join(contents.left_out)}"] if contents.left_out else []
     notes += [f"the file says {name or 'a material'}: {rho:g} kg/m3" for name, rho in contents.densities.items()]
-    return ImportedStructure(blocks, notes)
+    return ImportedStructure(blocks, notes, _divided(table, solids))
 
 
 def _named(bodies: Sequence[FileBody]) -> list[FileBody]:
@@ -205,14 +201,12 @@ def _kept(table: Import, contents: Contents) -> Contents:
 def _blocks(table: Import, solids: Sequence[Any]) -> list[Block]:
     names = local_names(table, [solid.name for solid in solids])
     fixed = _fixed(table, solids, names)
-    if table.shells == "parts":
-        groups: dict[str, list[int]] = {}
-        for k, solid in enumerate(solids):
-            groups.setdefault(solid.name or f"\0{k}", []).append(k)
-        chosen = list(groups.values())
-        names = local_names(table, [solids[own[0]].name for own in chosen])
-    else:
-        chosen = [[k] for k in range(len(solids))]
+    groups: dict[str, list[int]] = {}
+    for k, solid in enumerate(solids):
+        together = table.shells == "parts" or (table.shells is None and solid.compound)
+        groups.setdefault(solid.name if together and solid.name else f"\0{k}", []).append(k)
+    chosen = list(groups.values())
+    names = local_names(table, [solids[own[0]].name for own in chosen])
     blocks = []
     for name, own in zip(names, chosen, strict=True):
         layer = table.layers.get(solids[own[0]].layer, PLAIN)
@@ -221,6 +215,17 @@ def _blocks(table: Import, solids: Sequence[Any]) -> list[Block]:
         parts = tuple(part for k in own for part in solids[k].parts)
         blocks.append(Block(name, parts, material, thickness, fixed=any(fixed[k] for k in own)))
     return blocks
+
+
+def _divided(table: Import, solids: Sequence[Any]) -> dict[str, int]:
+    """Names of several solids that are blocks of their own; a layer, and one name for all, say nothing."""
+    found = format_of(table.file)
+    drawing = found is not None and found.flat
+    named = [solid for solid in solids if not solid.compound and not (drawing and solid.name == solid.layer)]
+    counts = Counter(solid.name for solid in named)
+    if table.shells is not None or (len(counts) == 1 and not any(solid.compound for solid in solids)):
+        return {}
+    return {name: count for name, count in counts.items() if name and count > 1}
 
 
 def local_names(table: Import, given: Sequence[str]) -> list[str]:
@@ -282,9 +287,8 @@ def _counts(table: Import, contents: Contents, blocks: Sequence[Block]) -> str:
     by_layer = f" ({', '.join(f'{n} on {name}' for name, n in layers.items())})" if layers else ""
     parts = sum(len(block.parts) for block in blocks)
     convex = f" of {parts:,} convex parts" if parts > len(blocks) else ""
-    unit = table.unit or contents.unit or "m"
     bodies = f"{len(contents.bodies):,} {found.what}" if len(contents.bodies) > 1 else f"one of its {found.what}"
-    read_as = f"{len(blocks):,} blocks{convex} from {bodies}{by_layer}, lengths in {unit}"
+    read_as = f"{len(blocks):,} blocks{convex} from {bodies}{by_layer}, lengths in {unit_of(contents, table.unit)}"
     return read_as + (f" times {table.scale:g}" if table.scale != 1.0 else "")
 
 

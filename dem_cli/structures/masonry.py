@@ -16,12 +16,11 @@ from dem_cli.case.base import CaseModel, Positive
 from dem_cli.structures import courses, tops
 from dem_cli.structures.course_layout import CoursePlan
 from dem_cli.structures.courses import Span
+from dem_cli.structures.leaves import depths_of
 from dem_cli.structures.openings import Opening
 from dem_cli.structures.voids import Void
 
-LEAVES = "abc"  # names of leaves, from the front (y = −thickness / 2) to the back
 CORE_LEAF = "b"
-WELD = 1e-10  # of a block: round-off of corners that are the same
 SMALL = 1e-6  # of a block's smaller side: what is narrower is not made
 
 
@@ -68,8 +67,8 @@ class Masonry:
 
     def pattern(self, k: int) -> courses.Pattern:
         """What its bond lays in course k, from 0."""
-        shift = 0.5 if self.offset is None else self.offset / self.block_length(k)
-        return courses.BONDS[self.bond](k + (0 if self.first == "full" else 1), shift)
+        course = k + (0 if self.first == "full" else 1)
+        return courses.pattern_of(self.bond, self.offset, course, self.block_length(k))
 
     def block_length(self, k: int) -> float:
         """Of a full block in course k [m]."""
@@ -88,11 +87,10 @@ class Masonry:
     @property
     def depths(self) -> list[Span]:
         """Of each leaf from where to where it goes square to the wall [m]."""
-        half = self.thickness / 2.0
         if self.core is None:
-            at = (self.thickness * np.arange(self.leaves + 1) / self.leaves - half).tolist()
-        else:
-            at = [-half, -self.core.thickness / 2.0, self.core.thickness / 2.0, half]
+            return depths_of(self.whole, self.leaves)
+        half = self.thickness / 2.0
+        at = [-half, -self.core.thickness / 2.0, self.core.thickness / 2.0, half]
         return list(zip(at[:-1], at[1:], strict=True))
 
     def plan(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> CoursePlan:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import numpy as np
-
 from dem_cli.geometry import cuts
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.geometry.polyhedron import prism
 from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
+from dem_cli.structures.leaves import numbered
 from dem_cli.structures.masonry import Masonry
 from dem_cli.structures.masonry_stones import uncut_stones
 from dem_cli.structures.stones import Part, Stone, put_together
@@ -33,7 +32,8 @@ def masonry_blocks(masonry: Masonry) -> list[Block]:
     over = list(_over_openings(masonry, voids))
     laid = list(_cut_stones(masonry, [*voids, *masonry.hollows]))
     exact = _welded([*laid, *over], WELD * masonry.length)
-    named = [*_named(put_together(exact[: len(laid)], masonry.small)), *((one.name, one) for one in exact[len(laid) :])]
+    together = put_together(exact[: len(laid)], masonry.small)
+    named = [*numbered(together), *((one.name, one) for one in exact[len(laid) :])]
     return [_block(name, stone, masonry) for name, stone in named]
 
 
@@ -53,23 +53,6 @@ def _block(name: str, stone: Stone, masonry: Masonry) -> Block:
         return Block(name, tuple(shapes), stone.material, across=depths.pop(), **others)
     solids = (prism(shape, *part.across) for shape, part in zip(shapes, stone.parts, strict=True))
     return Block(name, tuple(solids), stone.material, **others)
-
-
-def _named(stones: Sequence[Stone]) -> Iterator[tuple[str, Stone]]:
-    """Stones by course, from left to right; those that go through count in every leaf and are named as in the first."""
-    by_course: dict[int, list[Stone]] = {}
-    for stone in stones:
-        if stone.name:
-            yield stone.name, stone
-        else:
-            by_course.setdefault(stone.course, []).append(stone)
-    for course in sorted(by_course):
-        ordered = sorted(by_course[course], key=lambda stone: tuple(np.round(stone.box[:2], 9)))
-        leaves = sorted({stone.leaf for stone in ordered} - {""}) or [""]
-        for leaf in leaves:
-            for n, stone in enumerate([stone for stone in ordered if stone.leaf in ("", leaf)]):
-                if stone.leaf == leaf or leaf == leaves[0]:
-                    yield f"{course}-{n + 1}{stone.leaf}", stone
 
 
 def _over_openings(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:

@@ -9,7 +9,8 @@ from dem_cli.geometry.polygon import rectangle
 from dem_cli.structures import courses
 from dem_cli.structures.course_layout import Interruption, interruption, laid_around, split
 from dem_cli.structures.courses import Piece, Span
-from dem_cli.structures.masonry import CORE_LEAF, LEAVES, Masonry
+from dem_cli.structures.leaves import in_leaves
+from dem_cli.structures.masonry import CORE_LEAF, Masonry
 from dem_cli.structures.stones import Part, Stone
 from dem_cli.structures.voids import Void
 
@@ -98,13 +99,14 @@ def _through(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]]) -> list[
 def _side_by_side(masonry: Masonry, k: int, span: Span, whole: bool) -> Iterator[Stone]:
     """One stone, or one in each leaf but the core."""
     low, high = masonry.levels_of(k)
-    shape, full = rectangle(span[0], low, span[1] - span[0], high - low), masonry.full(k)
+    shape = rectangle(span[0], low, span[1] - span[0], high - low)
+    stone = Stone(k + 1, (Part(shape, masonry.whole),), masonry.full(k))
     if whole or masonry.leaves == 1:
-        yield Stone(k + 1, (Part(shape, masonry.whole),), full)
+        yield stone
         return
-    for leaf, across in zip(LEAVES, masonry.depths, strict=False):
-        if masonry.core is None or leaf != CORE_LEAF:
-            yield Stone(k + 1, (Part(shape, across),), full, leaf)
+    for one in in_leaves(stone, masonry.depths):
+        if masonry.core is None or one.leaf != CORE_LEAF:
+            yield one
 
 
 LaidCourse = tuple[Sequence[Sequence[Piece]], Sequence[Span]]  # runs of pieces, thin leftovers

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall
-from dem_cli.structures.building.build import build as build_building
+from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall, wall_blocks
+from dem_cli.structures.building import build as building
 from dem_cli.structures.building.table import Building
 from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
 from dem_cli.structures.vaults import shapes as vaults
@@ -22,13 +22,14 @@ class Generator(NamedTuple):
     parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
     build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
     figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
-    loose_ends: Callable[[Any], str] = lambda table: ""  # key that lets stones slide out at free ends; "": none does
+    loose_ends: Callable[[Any], str] = lambda table: ""  # key path that lets stones slide out; "": none does
+    unsaid: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # keys not given that matter, what was taken
 
 
 GENERATORS: dict[str, Generator] = {
     generator.kind: generator
     for generator in (
-        Generator("wall", wall.Wall, wall.build),
+        Generator("wall", wall.Wall, wall_blocks.build),
         Generator("column", column.Column, column.build),
         Generator("arch", arch.Arch, arch.build),
         Generator("bridge", bridge.Bridge, bridge.build),
@@ -46,8 +47,8 @@ GENERATORS: dict[str, Generator] = {
             loose_ends=herringbone_wall.loose_ends,
         ),
         Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
-        Generator("building", Building, build_building),
-        Generator("import", imported.Import, imported.build),
+        Generator("building", Building, building.build, building.figures, building.loose_ends),
+        Generator("import", imported.Import, imported.build, unsaid=imported.unsaid),
     )
 }
 
@@ -65,3 +66,8 @@ def generated_figures(table: Any, seed: int) -> list[tuple[str, str]]:
 def loose_ends(table: Any) -> str:
     """The key by which stones of a structure may slide out at its free ends; "": none does."""
     return GENERATORS[table.kind].loose_ends(table)
+
+
+def unsaid(table: Any) -> list[tuple[str, str]]:
+    """Keys that a structure does not give although they matter here, and what was taken instead."""
+    return GENERATORS[table.kind].unsaid(table)

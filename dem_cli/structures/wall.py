@@ -1,4 +1,4 @@
-"""Walls of rectangular blocks in courses."""
+"""Walls of rectangular blocks in courses: what a case file says of one."""
 
 from __future__ import annotations
 
@@ -9,22 +9,19 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive
-from dem_cli.geometry.polygon import rectangle
-from dem_cli.model.blocks import Block
 from dem_cli.structures import tops
-from dem_cli.structures.bases import base_block
+from dem_cli.structures.bonding import BondKeys
 from dem_cli.structures.courses import HEADER_BONDS, LEAST_PIECE, bed_joints
-from dem_cli.structures.masonry import Core, Masonry, Quoins
-from dem_cli.structures.masonry_blocks import masonry_blocks
+from dem_cli.structures.masonry import Core, Quoins
 from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
-from dem_cli.structures.sides import Side, SupportedWall, side_blocks
-from dem_cli.structures.wall_outline import NOT_UPRIGHT, Outlined, hollows
+from dem_cli.structures.sides import Side
+from dem_cli.structures.wall_outline import NOT_UPRIGHT, Outlined
 
 MOST_BLOCKS = 1_000_000
 OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "course_lengths", "gable", "profile")
 
 
-class Wall(Outlined):
+class Wall(BondKeys, Outlined):
     """Blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
 
     In 3D half of the thickness lies to either side of the origin.
@@ -54,16 +51,6 @@ class Wall(Outlined):
     length: Positive | None = Field(
         None, description="length of the wall [m], instead of blocks_per_course", examples=[6.0]
     )
-    bond: Literal["running", "stack", "english", "english-garden", "flemish"] | None = Field(
-        None,
-        description="running: every other course is shifted by half a block; stack: none is; english: courses of "
-        "stretchers and of headers (half a block long) in turn; english-garden: three of stretchers, one of headers; "
-        "flemish: stretchers and headers in turn in each course; headers go through all leaves; default: running",
-        examples=["stack"],
-    )
-    offset: NonNegative | None = Field(
-        None, description="shift of every other course [m], instead of bond; less than the block length", examples=[0.1]
-    )
     ends: Literal["half", "toothed"] = Field(
         "half",
         description="half: part blocks close the ends flush; "
@@ -80,14 +67,6 @@ class Wall(Outlined):
         (), description="block length in each course from below [m]; default: all alike", examples=[[0.5, 0.4, 0.4]]
     )
     thickness: Positive = Field(1.0, description="depth out of plane [m]")
-    leaves: int = Field(1, ge=1, le=3, description="walls side by side that the thickness consists of", examples=[2])
-    through_stones: float = Field(
-        0.0,
-        ge=0.0,
-        le=1.0,
-        description="share of the stones of a face that go through all leaves, evenly spaced [-]",
-        examples=[0.2],
-    )
     core: Core | None = Field(
         None,
         description="rubble in place of the middle one of three leaves; default: none",
@@ -156,6 +135,21 @@ class Wall(Outlined):
         return self.with_drawn(self.openings)
 
     @property
+    def quoin_courses(self) -> int:
+        """How many courses have quoins: those at whose ends the outline is upright."""
+        if self.outline is None:
+            return len(self.levels) - 1
+        eaves = self.outline.drawn.eaves * (1.0 + NARROWEST_PIECE)
+        return int(np.searchsorted(self.levels, eaves, side="right")) - 1
+
+    @property
+    def top_line(self) -> tops.Profile | None:
+        """The line of the top from left to right, of a gable or a profile; None: level, or drawn in the outline."""
+        if self.gable:
+            return tops.gable_profile(self.gable, 0.0, self.extent, self.courses_top)
+        return np.array(self.profile) if self.profile else None
+
+    @property
     def is_plain(self) -> bool:
         """Whether blocks and what is cut of them stay as they fall, however short: one leaf, holes without arches."""
         return not self._shaped_by
@@ -188,13 +182,7 @@ class Wall(Outlined):
             given = getattr(self, key)
             if given and len(given) != self.courses:
                 raise KeyProblem(f"{len(given)} values; must be one for each of the {self.courses} courses", key)
-        if self.offset is not None:
-            if self.bond is not None:
-                raise KeyProblem("bond and offset say the same; give one of them", "offset")
-            shortest = min(self.course_lengths or (self.block[0],))
-            if self.offset >= shortest:
-                message = f"{self.offset:g} is not allowed; must be less than the block length, {shortest:g}"
-                raise KeyProblem(message, "offset")
+        self.check_bond(min(self.course_lengths or (self.block[0],)))
         for i, length in enumerate(self.course_lengths):
             if length > self.extent * (1 + NARROWEST_PIECE):
                 message = f"{length:g} is not allowed; must be at most {self.extent:g}, the length of the wall"
@@ -217,17 +205,13 @@ class Wall(Outlined):
 
 
 def _check_leaves(wall: Wall) -> None:
-    """Raises KeyProblem where leaves, through-stones and a core do not go together."""
-    if wall.through_stones and wall.leaves == 1:
-        raise KeyProblem("not used with leaves = 1: every stone goes through", "through_stones")
-    if wall.through_stones and wall.bond in HEADER_BONDS:
-        raise KeyProblem(f"not used with bond = '{wall.bond}': its headers go through", "through_stones")
+    """Raises KeyProblem where leaves, a core and quoins do not go together."""
     if wall.core and wall.leaves != 3:
         raise KeyProblem("a core is the middle one of three leaves: give leaves = 3", "core")
     if wall.core and wall.core.thickness >= wall.thickness:
         message = f"{wall.core.thickness:g} is not allowed; must be less than the thickness of the wall, "
         raise KeyProblem(f"{message}{wall.thickness:g}", "core", "thickness")
-    if wall.quoins and _quoin_courses(wall) < 1:
+    if wall.quoins and wall.quoin_courses < 1:
         raise KeyProblem(NOT_UPRIGHT, "quoins")
     if wall.quoins and 2.0 * wall.quoins.length > wall.extent:
         message = f"{wall.quoins.length:g} is not allowed; must be at most {wall.extent / 2.0:g}, half the wall"
@@ -243,7 +227,7 @@ def _check_top(wall: Wall) -> None:
     if wall.gable and wall.gable.ridge is not None and wall.gable.ridge >= wall.extent:
         message = f"{wall.gable.ridge:g} is not allowed; must be less than the length of the wall, {wall.extent:g}"
         raise KeyProblem(message, "gable", "ridge")
-    top = _top(wall)
+    top = wall.top_line
     if top is None:
         return
     for i, opening in enumerate(wall.openings):
@@ -262,137 +246,3 @@ def _check_side(wall: Wall, side: Side, i: int) -> None:
         raise KeyProblem(
             f"'{side.face}' is not allowed with ends = 'toothed': the ends are not plane", "sides", i, "face"
         )
-
-
-def build(wall: Wall) -> list[Block]:
-    """Blocks in local coordinates, course by course from below, the base first, lintels last."""
-    if wall.is_plain:
-        boxes = [_course(wall, k) for k in range(len(wall.levels) - 1)]
-        ends = (min(box[0, 0] for box in boxes), max(box[-1, 2] for box in boxes))
-        laid = _plain_blocks(wall, boxes)
-    else:
-        ends = (0.0, wall.extent)
-        laid = masonry_blocks(masonry_of(wall))
-    blocks = []
-    if wall.base:
-        left, right = ends[0] - wall.base_extension, ends[1] + wall.base_extension
-        shape = rectangle(left, -wall.base_depth, right - left, wall.base_depth)
-        blocks.append(base_block("base", shape, wall.thickness, wall.base_extension))
-    foot = -wall.base_depth if wall.base and not wall.base_extension else 0.0
-    blocks += side_blocks(wall.sides, SupportedWall(wall.extent, wall.courses_top, wall.thickness, foot))
-    blocks += laid
-    if all(block.fixed for block in blocks):
-        raise ValueError("the openings leave nothing of the wall")
-    return blocks
-
-
-def masonry_of(wall: Wall) -> Masonry:
-    """What a wall is made of that is laid without short pieces."""
-    levels = wall.levels
-    courses = len(levels) - 1
-    if wall.gable:
-        levels = tops.with_gable(levels, wall.gable, wall.block[1])
-    top, stepped = _top(wall), wall.gable is not None and wall.gable.edges == "stepped"
-    spans = [((0.0, wall.extent),)] * courses
-    if wall.gable and top is not None:
-        edges = zip(levels[courses:-1].tolist(), levels[courses + 1 :].tolist(), strict=True)
-        spans += [(tops.level_span(top, (low + high) / 2.0 if stepped else low),) for low, high in edges]
-    return Masonry(
-        length=wall.block[0],
-        thickness=wall.thickness,
-        levels=levels,
-        spans=spans,
-        bond=wall.bond or "running",
-        offset=wall.offset,
-        first=wall.first,
-        lengths=wall.course_lengths and (*wall.course_lengths, *[wall.block[0]] * (len(spans) - courses)),
-        leaves=wall.leaves,
-        through_stones=wall.through_stones,
-        core=wall.core,
-        quoins=wall.quoins,
-        quoin_courses=_quoin_courses(wall),
-        openings=wall.all_openings,
-        hollows=hollows(wall.outline),
-        top=None if stepped else top,
-    )
-
-
-def _quoin_courses(wall: Wall) -> int:
-    """How many courses have quoins: those at whose ends the outline is upright."""
-    if wall.outline is None:
-        return len(wall.levels) - 1
-    return int(np.searchsorted(wall.levels, wall.outline.drawn.eaves * (1.0 + NARROWEST_PIECE), side="right")) - 1
-
-
-def _top(wall: Wall) -> tops.Profile | None:
-    """Outline of the top from left to right; None: level."""
-    if wall.gable:
-        return tops.gable_profile(wall.gable, 0.0, wall.extent, wall.courses_top)
-    return np.array(wall.profile) if wall.profile else None
-
-
-def _plain_blocks(wall: Wall, boxes: list[np.ndarray]) -> list[Block]:
-    """Blocks of courses (n, 4) and what openings leave of them, rectangles; lintels last."""
-    holes = [opening.box for opening in wall.openings]
-    lintels = [opening.lintel_box for opening in wall.openings]
-    blocks = []
-    small = NARROWEST_PIECE * min(wall.block[0], wall.block[1])
-    for k, box in enumerate(boxes):
-        pieces = box
-        for hole in (*holes, *(lintel for lintel in lintels if lintel)):
-            pieces = _cut(pieces, hole, small)
-        for n, shape in enumerate(_corners(pieces)):
-            blocks.append(Block(f"{k + 1}-{n + 1}", (shape,), "", wall.thickness, course=k + 1))
-    for i, (opening, lintel_box) in enumerate(zip(wall.openings, lintels, strict=True)):
-        if opening.lintel:
-            shape = _corners(np.array([lintel_box]))[0]
-            blocks.append(Block(f"lintel-{i + 1}", (shape,), opening.lintel.material, wall.thickness))
-    return blocks
-
-
-def _course(wall: Wall, k: int) -> np.ndarray:
-    """Boxes [left, bottom, right, top] of course k (from 0), (n, 4), from left to right."""
-    length = wall.course_lengths[k] if wall.course_lengths else wall.block[0]
-    shift = wall.offset if wall.offset is not None else (0.0 if wall.bond == "stack" else length / 2.0)
-    if k % 2 == (0 if wall.first == "full" else 1):
-        shift = 0.0
-    count = round(wall.extent / length, 6)
-    if wall.ends == "toothed":
-        heads = shift + length * np.arange(max(int(count), 1) + 1)
-    else:
-        inner = shift + length * np.arange(int(np.ceil(count)) + 1)
-        small = NARROWEST_PIECE * length
-        inner = inner[(inner > small) & (inner < wall.extent - small)]
-        heads = np.concatenate([[0.0], inner, [wall.extent]])
-    low, high = wall.levels[k : k + 2]
-    ones = np.ones(len(heads) - 1)
-    return np.stack([heads[:-1], low * ones, heads[1:], high * ones], axis=1)
-
-
-def _cut(boxes: np.ndarray, hole: tuple[float, float, float, float], small: float) -> np.ndarray:
-    """The boxes (n, 4) less the hole: pieces left and right at full height, others below and above it."""
-    left, bottom, right, top = hole
-    hit = (boxes[:, 0] < right - small) & (boxes[:, 2] > left + small)
-    hit &= (boxes[:, 1] < top - small) & (boxes[:, 3] > bottom + small)
-    if not hit.any():
-        return boxes
-    b = boxes[hit]
-    x0, x1 = np.clip(left, b[:, 0], b[:, 2]), np.clip(right, b[:, 0], b[:, 2])
-    y0, y1 = np.clip(bottom, b[:, 1], b[:, 3]), np.clip(top, b[:, 1], b[:, 3])
-    pieces = np.concatenate(
-        [
-            np.stack([b[:, 0], b[:, 1], x0, b[:, 3]], axis=1),
-            np.stack([x1, b[:, 1], b[:, 2], b[:, 3]], axis=1),
-            np.stack([x0, b[:, 1], x1, y0], axis=1),
-            np.stack([x0, y1, x1, b[:, 3]], axis=1),
-        ]
-    )
-    pieces = pieces[(pieces[:, 2] - pieces[:, 0] > small) & (pieces[:, 3] - pieces[:, 1] > small)]
-    kept = np.concatenate([boxes[~hit], pieces])
-    return kept[np.lexsort((kept[:, 1], kept[:, 0]))]
-
-
-def _corners(boxes: np.ndarray) -> np.ndarray:
-    """Corners of boxes (n, 4), counter-clockwise, (n, 4, 2)."""
-    x0, y0, x1, y1 = boxes.T
-    return np.stack([x0, y0, x1, y0, x1, y1, x0, y1], axis=1).reshape(-1, 4, 2)

@@ -13,9 +13,8 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, StructureBase
 from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.geometry import pockets, polygon
-from dem_cli.imports.contents import Contents, FileBody, FileProblem
+from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
-from dem_cli.structures.imported import UNITS
 from dem_cli.structures.openings import Lintel, Opening
 from dem_cli.structures.voids import Void, overlap, plain_void
 
@@ -148,14 +147,14 @@ class WallOutline(CaseModel):
             only = [layer for layer in (self.layer, self.openings) if layer] if self.layer else []
             contents = read(self.file, self.chords, only)
             wall, inner = _wall_of(self, contents)
-            factor = UNITS[self.unit or contents.unit or "m"]
-            drawn = [(_called(body), body.points * factor) for body in (wall, *inner)]
+            unit = unit_of(contents, self.unit)
+            drawn = [(_called(body), body.points * UNITS[unit]) for body in (wall, *inner)]
             found = _elevation(drawn, ("layer", "openings"))
         except FileProblem as error:
             raise KeyProblem(f"{Path(self.file).name}: {error}", "file") from None
         except KeyProblem as problem:
             raise KeyProblem(f"{Path(self.file).name}: {problem}", *problem.keys) from None
-        note = f"{_called(wall)}, lengths in {self.unit or contents.unit or 'm'}"
+        note = f"{_called(wall)}, lengths in {unit}"
         left_out = (f"left out: {', '.join(contents.left_out)}",) if contents.left_out else ()
         return found._replace(notes=(f"{note}; {found.notes[0]}", *left_out))
 

@@ -7,6 +7,7 @@ import pytest
 from lawpaths import joint, ramp
 
 from dem_cli.laws.displacement_path import drive
+from dem_cli.laws.mixed import mixed
 
 KN, KS, AREA = 1.0e10, 5.0e9, 0.02
 FC, MU = 8.0e6, 0.6
@@ -50,6 +51,20 @@ def test_below_the_cap_it_is_coulomb(d):
     plain, capped = along(path, joint("coulomb", friction=MU)), along(path)
     np.testing.assert_allclose(capped.normal, plain.normal, rtol=1e-12)
     np.testing.assert_allclose(capped.shear, plain.shear, rtol=1e-12, atol=1e-12 * CAP)
+
+
+def test_points_that_come_to_be_in_crushed_stone():
+    """Their overlap is a spring beyond the crushed depth alone, up to fc A; of other laws, and mixed, all of it."""
+    kn = np.full(4, KN * AREA)
+    overlaps, memory = np.array([0.5, 1.5, 2.5, 90.0]) * YIELD, np.array([[0.0], [1.0], [2.0], [3.0]]) * YIELD
+    rows = np.tile(CRUSHING.law.columns(CRUSHING.table, KN), (4, 1))
+    expected = np.array([0.5, 0.5, 0.5, 1.0]) * CAP
+    np.testing.assert_allclose(CRUSHING.law.pressed(rows, overlaps, memory, kn), expected, rtol=1e-12)
+    coulomb = joint("coulomb", friction=MU).law
+    both = mixed((coulomb, CRUSHING.law))
+    numbered = np.column_stack([rows, [0.0, 1.0, 1.0, 0.0]])
+    expected[[0, 3]] = kn[0] * overlaps[[0, 3]]
+    np.testing.assert_allclose(both.pressed(numbered, overlaps, memory, kn), expected, rtol=1e-12)
 
 
 def test_elastic_carries_everything():

@@ -74,6 +74,17 @@ def test_to_and_fro():
     assert records.rows[-1].energy.friction == pytest.approx(0.6 * weight * ways, rel=1e-3)
 
 
+def test_a_block_that_rocks_to_and_fro():
+    """On joints of "auto" stiffness: tan(α − θ) to either side, as geometry moves without being told to."""
+    keys = {"kind": "cycle", "control": "displacement", "path": [0.04, -0.04], "step": 0.02}
+    case = tables(BASE, block("b", rectangle(0, 0, 0.5, 1.0)), joints={"dry": {"friction": 1.0}}, analysis=keys)
+    summary, _ = solve(case)
+    lean, radius = np.arctan2(0.5, 1.0), np.hypot(0.5, 1.0) / 2.0
+    exact = np.tan(np.arcsin(np.sin(lean) - 0.04 / radius))
+    assert [point["load"] for point in summary["turning_points"]] == pytest.approx([exact, -exact], rel=2e-3)
+    assert summary["status"] == "ok"
+
+
 def test_a_peak_beyond_the_end_is_said():
     summary, _ = solve(controlled(1e-6, block("b", rectangle(0, 0, 0.2, 1)), friction=2.0))
     assert any("still rises where it ends" in line for line in summary["warnings"])
@@ -92,3 +103,27 @@ def test_the_curve_of_a_rocking_block_is_idealised():
     assert taken == pytest.approx(area, rel=1e-9)
     assert not bilinear(u[:55], loads[:55]).softened
     assert bilinear(u, -loads) is None
+
+
+@pytest.mark.parametrize("kind", ["pushover", "cycle"])
+def test_a_live_load_that_cancels_itself_moves_nothing(kind):
+    pushes = [{"block": "b", "force": [force, 0.0], "kind": "live"} for force in (1e3, -1e3)]
+    keys = {"pushover": {"follow": 0.01}, "cycle": {"path": [0.01], "step": 0.001}}[kind]
+    keys = {"kind": kind, "control": "displacement", "pattern": "live"} | keys
+    case = tables(BASE, block("b", rectangle(0, 0, 0.2, 1)), load=pushes, analysis=keys)
+    summary, _ = solve(case)
+    assert summary["status"] == "not converged"
+    assert any("the live load moves nothing" in line for line in summary["warnings"])
+
+
+@pytest.mark.parametrize(("tension", "holds"), [(None, True), (2e4, False)])
+def test_a_peak_that_hangs_on_the_stiffness_says_so(tension, holds):
+    """A joint that softens as it opens: stiff ones carry W b/2 + ft b²/2, on "auto" ones it has opened at the peak."""
+    case = controlled(0.005, block("b", rectangle(0, 0, 0.7, 1.75)), friction=1.0)
+    if tension is not None:
+        energies = {"fracture_energy_tension": 20.0, "fracture_energy_shear": 100.0}
+        case["joints"]["dry"] |= {"law": "fracture", "tension": tension, "cohesion": 3e4} | energies
+    summary, _ = solve(case)
+    assert summary["status"] == "ok"
+    assert summary["softer_joints_hold"] is holds
+    assert any("on joints 10 times as soft" in line for line in summary["warnings"]) is not holds

@@ -12,13 +12,15 @@ from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
 from dem_cli.model.blocks import Block
+from dem_cli.structures.building.bed import Floors, Slab
 from dem_cli.structures.building.courses import WallCourses
 from dem_cli.structures.building.elevation import Pocket, WallElevation
-from dem_cli.structures.building.floors import Slab, floors_of
+from dem_cli.structures.building.floors import floors_of
 from dem_cli.structures.building.irregular import IrregularWall, zones_of
 from dem_cli.structures.building.plan import Junction, Plan, PlanAxis, plan_of
-from dem_cli.structures.building.runs import Passes, runs_of, turn_by_turn
+from dem_cli.structures.building.runs import Passes, Run, runs_of, turn_by_turn
 from dem_cli.structures.building.table import Building
+from dem_cli.structures.patterns.pattern_wall import stone_figures
 from dem_cli.structures.stones import Part, Stone
 from dem_cli.structures.tops import Gable, with_gable
 
@@ -31,15 +33,43 @@ Planes = list[tuple[np.ndarray, float]]
 def build(building: Building) -> list[Block]:
     """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
     plan = plan_of(building)
-    _check_gables(building, plan)
     floors = floors_of(building, plan)
-    passes = _passes(plan, floors.pockets)
-    elevations = [
-        _elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))
-    ]
+    elevations = _elevations(building, plan, floors)
     walls = [block for each in elevations for block in _blocks(building, plan, each)]
     blocks = [*_base(building, elevations), *walls, *(_slab(slab) for slab in floors.slabs)]
     return _welded(blocks)
+
+
+def figures(building: Building) -> list[tuple[str, str]]:
+    """What was drawn for walls of irregular stones, for `dem check`."""
+    plan = plan_of(building)
+    walls = _elevations(building, plan, floors_of(building, plan))
+    tilings = [(wall.axis.name, _irregular(building, plan, wall)) for wall in walls]
+    return [(f"{name} stones", stone_figures(each.tiling)) for name, each in tilings if each and each.tiling.stones]
+
+
+def loose_ends(building: Building) -> str:
+    """The key by which stones may slide out of jambs; "": none. Ends of walls are dressed."""
+    for i, wall in enumerate(building.walls):
+        pattern = wall.pattern or building.pattern
+        if pattern is not None and pattern.jambs == "rubble" and wall.openings:
+            return "pattern.jambs" if wall.pattern is None else f"walls.{i}.pattern.jambs"
+    return ""
+
+
+def _elevations(building: Building, plan: Plan, floors: Floors) -> list[WallCourses]:
+    """What the walls are laid from. Raises KeyProblem: gables in each other's way."""
+    _check_gables(building, plan)
+    passes = _passes(plan, floors.pockets)
+    return [_elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))]
+
+
+def _irregular(building: Building, plan: Plan, wall: WallCourses) -> IrregularWall | None:
+    """A wall that a pattern fills; None: it is laid in regular courses."""
+    pattern = wall.table.pattern or building.pattern
+    if pattern is None:
+        return None
+    return IrregularWall(wall, zones_of(building, plan, wall), pattern, building.seed or 0)
 
 
 def _check_gables(building: Building, plan: Plan) -> None:
@@ -94,7 +124,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
         return course < courses[other]
 
     runs = [runs_of(plan, wall, course, present, passes) for course in range(len(levels) - 1)]
-    return WallCourses(wall, plan.axes[wall], table, building.block[0], levels, eaves, runs, tuple(pockets))
+    return WallCourses(wall, plan.axes[wall], table, building.block[0], building, levels, eaves, runs, tuple(pockets))
 
 
 def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
@@ -107,11 +137,10 @@ def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
 
 def _blocks(building: Building, plan: Plan, wall: WallCourses) -> list[Block]:
     """Blocks of a wall in the places of the plan."""
-    pattern = wall.table.pattern or building.pattern
-    if pattern is None:
+    irregular = _irregular(building, plan, wall)
+    if irregular is None:
         return _set_up(wall, wall.stones())
-    zones = zones_of(building, plan, wall)
-    found = IrregularWall(wall, zones, pattern, building.seed or 0).stones()
+    found = irregular.stones()
     return [*_set_up(wall, found.dressed), *_set_up(wall, found.others, cut=False)]
 
 
@@ -138,11 +167,11 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
     if not course:
         return []
     (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
-    middle, reach = 0.5 * (low + high), ASKEW * elevation.length
+    reach = ASKEW * elevation.length
     laid = int(
         np.searchsorted(elevation.levels, 0.5 * (foot + head))
     )  # a stone may have got a piece of the next course
-    run = next(run for run in elevation.runs[laid - 1] if run.start.min() - reach <= middle <= run.stop.max() + reach)
+    run = _run_of(elevation.runs[laid - 1], low, high, reach)
     found = []
     for line, sign, inside in (
         (run.start, -1.0, low >= run.start.max() - reach),
@@ -154,6 +183,16 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
             normal /= np.linalg.norm(normal)
             found.append((normal, float(normal @ [line[0], right, 0.0])))
     return found
+
+
+def _run_of(runs: Sequence[Run], low: float, high: float, reach: float) -> Run:
+    """The run of a part, from where to where along the wall: on both sides of a wall that is askew two may overlap."""
+
+    def beyond(run: Run) -> tuple[float, float]:
+        before, after = low - float(run.start.min()), float(run.stop.max()) - high
+        return max(-before, -after, reach), min(abs(before), abs(after))
+
+    return min(runs, key=beyond)
 
 
 def _turn(axis: PlanAxis) -> Callable[[Polyhedron], Polyhedron]:

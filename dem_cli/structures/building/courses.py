@@ -14,9 +14,11 @@ from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import cuts
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.structures import tops
-from dem_cli.structures.building.bond import SHORTEST, RunEnds, laid
+from dem_cli.structures.building.bond import SHORTEST, CourseBond, Laid, RunEnds, clearance, laid
 from dem_cli.structures.building.elevation import SMALL, Box, Hole, WallElevation
 from dem_cli.structures.building.runs import Run
+from dem_cli.structures.courses import Pattern, are_through, pattern_of
+from dem_cli.structures.leaves import depths_of, in_leaves, numbered
 from dem_cli.structures.stones import Part, Stone, put_together
 
 WELD = 1e-10  # of a block: round-off of corners that are the same
@@ -36,6 +38,14 @@ class Stretch(NamedTuple):
         return RunEnds(self.left + start, self.right - stop, start, stop)
 
 
+class LaidPiece(NamedTuple):
+    """A rectangle of masonry in elevation, before openings with arches and gables are cut."""
+
+    box: Box
+    across: tuple[float, float]  # of the wall, or what a floor leaves of it [m]
+    whole: bool  # whether it goes through all leaves
+
+
 class WallCourses(WallElevation):
     """A wall in courses."""
 
@@ -49,11 +59,13 @@ class WallCourses(WallElevation):
         tried: dict[float, float] = {}
         for k in courses:
             for run in self.runs[k]:
-                ends = self.ends(run, k)
+                ends, bond = self.ends(run, k), self.bond(k, 0.0)
+                period = bond.period / self.length
+                begins = [float(step) / self.length - shift for step in bond.steps for shift in (0.0, 0.5)]
                 for place in (ends.start, ends.stop):
-                    for shift in (0.0, 0.5):
-                        first = round((place / self.length + shift + 0.5 * (k % 2)) % 1.0, 9) * self.length
-                        tried.setdefault(first % self.length, 0.0)
+                    for begin in begins:
+                        first = round((place / self.length - begin - bond.pattern.start) % period, 9) * self.length
+                        tried.setdefault(first % bond.period, 0.0)
         for first in tried:
             tried[first] = sum(self._cost(k, first) for k in courses)
         least = min(tried.values())
@@ -62,13 +74,31 @@ class WallCourses(WallElevation):
     def _cost(self, course: int, first: float) -> float:
         near = [x for k in (course - 1, course + 1) if 0 <= k < len(self.runs) for run in self.runs[k]
                 for line in run for x in set(line.tolist())]  # fmt: skip
-        return sum(
-            laid(self.ends(run, course), self.length, self.place(course, first), near).cost for run in self.runs[course]
-        )
+        bond = self.bond(course, first)
+        return sum(laid(self.ends(run, course), bond, near).cost for run in self.runs[course])
 
-    def place(self, course: int, first: float) -> float:
-        """A place to which heads of a course belong."""
-        return first + 0.5 * self.length * (course % 2)
+    def pattern(self, course: int) -> Pattern:
+        """What the bond lays in a course."""
+        return pattern_of(self.keys.bond or "running", self.keys.offset, course, self.length)
+
+    def bond(self, course: int, first: float) -> CourseBond:
+        """Where the bond has blocks and heads in a course, begun at a place of the lowest one."""
+        pattern = self.pattern(course)
+        return CourseBond(pattern, self.length, first + pattern.start * self.length)
+
+    def _laid(self, ends: RunEnds, course: int) -> Laid:
+        """A stretch of a course in blocks."""
+        fixed, apart = self.joints(course - 1) + self.joints(course + 1), 0.0
+        if course:
+            apart = clearance(self.pattern(course - 1), self.pattern(course))
+        found = laid(ends, self.bond(course, self.first), fixed, self._heads.get(course - 1, ()), apart)
+        self._heads.setdefault(course, []).extend(found.heads.tolist())
+        return found
+
+    @cached_property
+    def _heads(self) -> dict[int, list[float]]:
+        """Heads of courses that are laid [m]."""
+        return {}
 
     # -- courses ---------------------------------------------------------------------------------------------------
 
@@ -79,12 +109,8 @@ class WallCourses(WallElevation):
         """
         laid_ones, over = self.laid_stones(), list(self.over_openings())
         exact = self._welded([*laid_ones, *(stone for _, stone in over)])
-        found: list[tuple[str, Stone]] = []
-        count = dict.fromkeys(range(1, len(self.runs) + 1), 0)
         together = put_together(exact[: len(laid_ones)], SMALL * self.length)
-        for stone in sorted(together, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
-            count[stone.course] += 1
-            found.append((f"{self.axis.name}-{stone.course}-{count[stone.course]}", stone))
+        found = [(f"{self.axis.name}-{name}", stone) for name, stone in numbered(together)]
         return found + [(name, stone) for (name, _), stone in zip(over, exact[len(laid_ones) :], strict=True)]
 
     def laid_stones(self) -> list[Stone]:
@@ -115,8 +141,8 @@ class WallCourses(WallElevation):
         low, high = (float(level) for level in self.levels[course : course + 2])
         full, small = self.length * (high - low), SMALL * self.length
         arches = [self.voids[i] for i, beside in self._arches if course in beside and self._is_free(i, course)]
-        for box, across in (each for run in self.runs[course] for each in self._boxes(run, course)):
-            x0, y0, x1, y1 = box
+        for piece in self._through(course):
+            x0, y0, x1, y1 = piece.box
             shapes = [rectangle(x0, y0, x1 - x0, y1 - y0)]
             for void in arches:
                 if void.reach[0] < x1 and void.reach[2] > x0:
@@ -125,7 +151,40 @@ class WallCourses(WallElevation):
                 shapes = [piece for shape in shapes for piece in tops.below(shape, self.top, small)]
             groups = cuts.connected(shapes, small) if arches else [range(len(shapes))] if shapes else []
             for group in groups:
-                yield Stone(course + 1, tuple(Part(shapes[i], across) for i in group), full)
+                stone = Stone(course + 1, tuple(Part(shapes[i], piece.across) for i in group), full)
+                yield from [stone] if piece.whole else in_leaves(stone, depths_of(self.across, self.keys.leaves))
+
+    def _through(self, course: int) -> list[LaidPiece]:
+        """Pieces of a course, with those that go through all leaves.
+
+        Headers, a share of the others, and all that touch another wall, a free end or a floor.
+        """
+        pieces = [piece for run in self.runs[course] for piece in self._boxes(run, course)]
+        if self.keys.leaves == 1:
+            return pieces
+        middles = np.array([0.5 * (piece.box[0] + piece.box[2]) for piece in pieces])
+        bond = self.bond(course, self.first)
+        headers = [bond.pattern.units[k].header for k in bond.units_at(middles).tolist()]
+        share = are_through(self.keys.through_stones, len(pieces), course)
+        return [
+            piece._replace(whole=header or through or self._is_held(piece))
+            for piece, header, through in zip(pieces, headers, share, strict=True)
+        ]
+
+    def _is_held(self, piece: LaidPiece) -> bool:
+        """Whether a piece touches another wall, an end of its own one, or a floor."""
+        small = SMALL * self.length
+        near = any(piece.box[0] <= b + small and piece.box[2] >= a - small for a, b in self._crossed)
+        return near or piece.across != self.across
+
+    @cached_property
+    def _crossed(self) -> list[tuple[float, float]]:
+        """From where to where other walls cross this one in some course, and its ends in any [m]."""
+        starts, stops = ([end for runs in self.runs for end in each(runs)] for each in (_first_ends, _last_ends))
+        found = [(min(starts), max(starts)), (min(stops), max(stops))]
+        for runs in self.runs:
+            found += [(float(one.stop.min()), float(two.start.max())) for one, two in pairwise(runs)]
+        return found
 
     @cached_property
     def _arches(self) -> list[tuple[int, range]]:
@@ -144,37 +203,33 @@ class WallCourses(WallElevation):
         message = f"its arch, from {left:.4g} to {right:.4g} along wall '{self.axis.name}', reaches into another wall"
         raise KeyProblem(message, *self._key(opening))
 
-    def _boxes(self, run: Run, course: int) -> Iterator[tuple[Box, tuple[float, float]]]:
-        """Blocks of a run [left, low, right, top], and from where to where they go across."""
+    def _boxes(self, run: Run, course: int) -> Iterator[LaidPiece]:
+        """Blocks of a run."""
         ends, holes = self.ends(run, course), self.holes(course)
-        avoid = self.joints(course - 1) + self.joints(course + 1)
-        first = self.place(course, self.first)
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
         askew = {outer[0]: ends.start_askew, outer[1]: ends.stop_askew}
         for hole in holes:
             if hole.arch is not None:
                 askew |= {hole.left: hole.left - hole.arch.middle[0], hole.right: hole.arch.middle[1] - hole.right}
         for stretch in self._stretches(run, ends, course):
-            heads = laid(stretch.ends(askew), self.length, first, avoid).heads if stretch.free else np.zeros(0)
+            heads = self._laid(stretch.ends(askew), course).heads if stretch.free else np.zeros(0)
             if (stretch.left, stretch.right) == outer and self._is_tip(course):
                 count = math.ceil((outer[1] - outer[0]) / self.length - SMALL)
                 heads = outer[0] + (outer[1] - outer[0]) * np.arange(1, count) / count
             for low, high in stretch.free:
                 for a, b in pairwise([stretch.left, *heads.tolist(), stretch.right]):
-                    yield (a, low, b, high), stretch.across
-        yield from self._tips(run, holes, course, avoid)
+                    yield LaidPiece((a, low, b, high), stretch.across, True)
+        yield from self._tips(run, holes, course)
 
-    def _tips(
-        self, run: Run, holes: Sequence[Hole], course: int, avoid: Sequence[float]
-    ) -> Iterator[tuple[Box, tuple[float, float]]]:
+    def _tips(self, run: Run, holes: Sequence[Hole], course: int) -> Iterator[LaidPiece]:
         """Thin leftovers over and under arches, which become parts of other stones."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         for hole in holes:
             if hole.arch is not None and run.start.max() <= hole.left and hole.right <= run.stop.min():
                 for tip in hole.arch.tips:
-                    heads = laid(RunEnds(*tip), self.length, self.place(course, self.first), avoid).heads
+                    heads = self._laid(RunEnds(*tip), course).heads
                     for a, b in pairwise([tip[0], *heads.tolist(), tip[1]]):
-                        yield (a, low, b, high), self.across
+                        yield LaidPiece((a, low, b, high), self.across, True)
 
     def _is_tip(self, course: int) -> bool:
         """Whether it is the course under the tip of a gable."""
@@ -235,3 +290,11 @@ class WallCourses(WallElevation):
             near = [h for h in holes if min(abs(h.left - stretch.right), abs(h.right - stretch.left)) < least]
             key = self._key(near[0].opening) if near else ("walls", self.number, "axis")
             raise KeyProblem(f"a piece is left that is too short, {where}; at least a quarter of a block", *key)
+
+
+def _first_ends(runs: Sequence[Run]) -> list[float]:
+    return runs[0].start.tolist() if runs else []
+
+
+def _last_ends(runs: Sequence[Run]) -> list[float]:
+    return runs[-1].stop.tolist() if runs else []

@@ -11,6 +11,7 @@ import numpy as np
 
 from dem_cli.case.base import KeyProblem
 from dem_cli.structures import tops
+from dem_cli.structures.bonding import BondKeys
 from dem_cli.structures.building.bond import RunEnds
 from dem_cli.structures.building.plan import PlanAxis
 from dem_cli.structures.building.runs import Run
@@ -52,6 +53,7 @@ class WallElevation:
     axis: PlanAxis
     table: PlanWall
     length: float  # of a full block
+    keys: BondKeys  # of the building
     levels: np.ndarray  # bed joints, with those of the gable
     eaves: float  # where a gable begins
     runs: Sequence[Sequence[Run]]  # of each course

@@ -6,10 +6,10 @@ those beside floors. What is left, without openings, is the panel that a pattern
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -18,13 +18,17 @@ from dem_cli.geometry import polygon
 from dem_cli.structures import tops
 from dem_cli.structures.building.courses import WallCourses
 from dem_cli.structures.building.elevation import SMALL
+from dem_cli.structures.building.jambs import jamb_stones
 from dem_cli.structures.building.patterns import CoursedRubble, VoronoiRubble
 from dem_cli.structures.building.plan import Plan
 from dem_cli.structures.building.table import Building
+from dem_cli.structures.leaves import numbered
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of
+from dem_cli.structures.patterns.tiling import Tiling
 from dem_cli.structures.stones import Part, Stone, put_together
 from dem_cli.structures.voids import overlap
 
+T = TypeVar("T")
 Span = tuple[float, float]
 NamedStone = tuple[str, Stone]
 SQUARE = 1e-9  # cosine of the angle of walls that meet squarely
@@ -78,12 +82,13 @@ class IrregularWall:
 
     def stones(self) -> WallStones:
         """All stones. Raises KeyProblem for what the pattern cannot fill."""
-        dressed, name = [], self.courses.axis.name
-        count = dict.fromkeys(range(1, len(self.regular.runs) + 1), 0)
-        for stone in sorted(self._kept, key=lambda each: (each.course, *np.round(each.box[:2], 9))):
-            count[stone.course] += 1
-            dressed.append((f"{name}-dressed-{stone.course}-{count[stone.course]}", stone))
-        return WallStones(dressed, [*self._pattern_stones(), *self.courses.over_openings()])
+        prefix = f"{self.courses.axis.name}-dressed"
+        dressed = [(f"{prefix}-{name}", stone) for name, stone in numbered(self._kept)]
+        jambs = [
+            (f"{self.courses.axis.name}-{name}", Stone(0, (Part(shape, self.courses.across),), 0.0))
+            for name, shape in self._jambs
+        ]
+        return WallStones(dressed, [*self._pattern_stones(), *jambs, *self.courses.over_openings()])
 
     # -- dressed stones -------------------------------------------------------------------------------------------
 
@@ -177,15 +182,25 @@ class IrregularWall:
         ]
         return max(a for a, _ in around), min(b for _, b in around)
 
+    @cached_property
+    def _boxes(self) -> list[np.ndarray]:
+        return list(self._dressed_boxes())
+
+    @cached_property
+    def _jambs(self) -> list[tuple[str, np.ndarray]]:
+        """Stones beside openings by name."""
+        return jamb_stones(self.courses, self._boxes) if self.pattern.jambs == "dressed" else []
+
     # -- the pattern ----------------------------------------------------------------------------------------------
 
+    @cached_property
     def _panel(self) -> WallPanel:
         """What the pattern fills."""
         wall, (low, high) = self.courses, self.courses.span
         outline = _box(low, 0.0, high, wall.eaves)
         if wall.table.gable is not None:
             outline = np.insert(outline, 3, tops.gable_profile(wall.table.gable, low, high, wall.eaves)[1], axis=0)
-        boxes = list(self._dressed_boxes())
+        boxes = self._boxes
         for i, void in enumerate(wall.voids):
             for box in boxes:
                 if overlap([box], void.outlines) > self.small * wall.length:
@@ -193,30 +208,48 @@ class IrregularWall:
                     message = "it reaches into dressed stones where walls meet, end or carry a floor, from "
                     message += f"{x0:.4g} to {x1:.4g} m along wall '{wall.axis.name}', {y0:.4g} to {y1:.4g} m high"
                     raise KeyProblem(message, "walls", wall.number, "openings", i)
-        return WallPanel(outline, (*boxes, *(shape for void in wall.voids for shape in void.outlines)))
+        jambs = [shape for _, shape in self._jambs]
+        return WallPanel(outline, (*boxes, *jambs, *(shape for void in wall.voids for shape in void.outlines)))
 
     def _key(self) -> tuple[str | int, ...]:
         return ("walls", self.courses.number, "pattern") if self.courses.table.pattern is not None else ("pattern",)
 
-    def _pattern_stones(self) -> list[NamedStone]:
-        wall, panel = self.courses, self._panel()
+    @cached_property
+    def _mean(self) -> float:
+        """Area of a mean stone [m2]."""
+        panel = self._panel
+        return self._of_pattern(lambda: self.pattern.mean(panel))
+
+    @cached_property
+    def tiling(self) -> Tiling:
+        """Stones of the pattern. Raises KeyProblem for what it cannot fill."""
+        wall, panel = self.courses, self._panel
         draws = np.random.default_rng([self.seed, *wall.axis.name.encode()])
-        try:
-            tiling, mean = self.pattern.stones_in(panel, draws), self.pattern.mean(panel)
-        except KeyProblem as problem:
-            raise KeyProblem(f"{problem} (wall '{wall.axis.name}')", *self._key(), *problem.keys) from None
+        tiling, mean = self._of_pattern(lambda: self.pattern.stones_in(panel, draws)), self._mean
         if not tiling.stones:
-            return []
+            return tiling
         areas = tiling.areas()
         if areas.min() < LEAST_SHARE * mean * (1.0 - SMALL):
             x, y = polygon.centroid(tiling.outline(int(areas.argmin()))).tolist()
             message = f"a stone of {areas.min():.3g} m2 is left alone at {x:.4g} m along wall '{wall.axis.name}', "
             message += f"{y:.4g} m high; at least {LEAST_SHARE * mean:.3g}, a quarter of a mean stone: smaller ones, "
             raise KeyProblem(message + "or openings elsewhere", *self._key())
-        found = []
-        for block in blocks_of(tiling, prefix=f"{wall.axis.name}-"):
+        return tiling
+
+    def _of_pattern(self, drawn: Callable[[], T]) -> T:
+        """What the pattern makes; its mistakes with the name of the wall."""
+        try:
+            return drawn()
+        except KeyProblem as problem:
+            raise KeyProblem(f"{problem} (wall '{self.courses.axis.name}')", *self._key(), *problem.keys) from None
+
+    def _pattern_stones(self) -> list[NamedStone]:
+        wall, found = self.courses, []
+        if not self.tiling.stones:
+            return []
+        for block in blocks_of(self.tiling, prefix=f"{wall.axis.name}-"):
             parts = tuple(Part(np.asarray(part), wall.across) for part in block.parts)
-            found.append((block.id, Stone(block.course, parts, mean)))
+            found.append((block.id, Stone(block.course, parts, self._mean)))
         return found
 
 

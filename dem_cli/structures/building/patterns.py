@@ -7,12 +7,23 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from dem_cli.case.base import CaseModel
 from dem_cli.structures.patterns import coursed, voronoi
 from dem_cli.structures.patterns.panel import WallPanel
 from dem_cli.structures.patterns.tiling import Tiling
 
 
-class VoronoiRubble(voronoi.VoronoiPattern):
+class BuildingPatternKeys(CaseModel):
+    """What every pattern of a building accepts."""
+
+    jambs: Literal["dressed", "rubble"] = Field(
+        "dressed",
+        description="beside openings; dressed: squared stones, long and short in turn; rubble: stones of the pattern, "
+        "which may slide out",
+    )
+
+
+class VoronoiRubble(voronoi.VoronoiPattern, BuildingPatternKeys):
     """Walls of a building without courses: rubble, with many Lloyd steps polygonal masonry. `cells`: of each wall."""
 
     kind: Literal["voronoi"] = Field("voronoi", description="cells of random points, without courses")
@@ -26,7 +37,7 @@ class VoronoiRubble(voronoi.VoronoiPattern):
         return panel.area / self.count(panel.area)
 
 
-class CoursedRubble(coursed.CoursedPattern):
+class CoursedRubble(coursed.CoursedPattern, BuildingPatternKeys):
     """Walls of a building in irregular courses."""
 
     kind: Literal["coursed"] = Field("coursed", description="irregular courses")

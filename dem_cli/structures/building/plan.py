@@ -124,7 +124,7 @@ def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction
     """Where two axes cross, or one comes as near as the thickness of the other; None: they do not meet."""
     a, b = axes[i], axes[j]
     sine = float(a.along @ b.across)
-    if abs(sine) < math.sin(math.radians(SHARPEST)):
+    if abs(sine) < math.sin(math.radians(SHARPEST)) * (1.0 - SAME):
         return None
     at = (float((b.start - a.start) @ b.across) / sine, float((a.start - b.start) @ a.across) / -sine)
     ends = []
@@ -140,7 +140,7 @@ def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction
     return Junction((i, j), at, (ends[0], ends[1]))
 
 
-def _overlap(one: np.ndarray, other: np.ndarray, reach: float) -> bool:
+def overlap(one: np.ndarray, other: np.ndarray, reach: float) -> bool:
     """Whether two convex footprints share an area: no side of either separates them."""
     return not (_apart(one, other, reach) or _apart(other, one, reach))
 
@@ -172,7 +172,7 @@ def _check_others(plan: Plan, reach: float) -> None:
         a, b = plan.axes[i], plan.axes[j]
         if (i, j) in met or hosts[i] & hosts[j]:
             continue
-        if _overlap(a.corners(), b.corners(), reach):
+        if overlap(a.corners(), b.corners(), reach):
             raise KeyProblem(_beside(a, b), "walls", j, "axis")
         places, off = a.local(np.stack([b.start, b.start + b.length * b.along])).T
         in_line = np.abs(off).max() < 0.5 * (a.thickness + b.thickness) - reach

@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, RandomStructure
+from dem_cli.structures.bonding import BondKeys
 from dem_cli.structures.building.patterns import BuildingPattern
-from dem_cli.structures.courses import bed_joints
+from dem_cli.structures.courses import HEADER_BONDS, bed_joints
 from dem_cli.structures.openings import Opening, check_apart
 from dem_cli.structures.tops import Gable
 from dem_cli.structures.wall import MOST_BLOCKS
@@ -97,7 +98,7 @@ class Floor(CaseModel):
         return self
 
 
-class Building(RandomStructure):
+class Building(BondKeys, RandomStructure):
     """Walls that meet, from their axes in plan: bonded at corners, T-junctions and crossings of any angle, with
     openings, gables and floors. Local origin: that of the plan, at the foot of the walls, on top of the base.
 
@@ -111,6 +112,7 @@ class Building(RandomStructure):
     """
 
     only_in: ClassVar[int | None] = 3
+    no_base: ClassVar[bool | str] = "none"
 
     kind: Literal["building"] = "building"
     block: tuple[Positive, Positive] = Field(
@@ -156,9 +158,13 @@ class Building(RandomStructure):
 
     @model_validator(mode="after")
     def _consistent(self) -> Building:
+        self.check_bond(self.block[0])
+        _check_pattern(self)
         if self.course_heights and len(self.course_heights) != self.courses:
             given = len(self.course_heights)
             raise KeyProblem(f"{given} values; must be one for each of the {self.courses} courses", "course_heights")
+        if "seed" in self.model_fields_set and not (self.pattern or any(wall.pattern for wall in self.walls)):
+            raise KeyProblem("not used without a pattern: nothing is drawn at random", "seed")
         names = [wall.id for wall in self.walls] + [floor.id for floor in self.floors]
         for i, name in enumerate(names):
             if name in names[:i] or name == "base":
@@ -179,6 +185,17 @@ class Building(RandomStructure):
         if count > MOST_BLOCKS:
             raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", "courses")
         return self
+
+
+def _check_pattern(building: Building) -> None:
+    """Raises KeyProblem where keys of regular courses cannot hold for stones of a pattern."""
+    if building.pattern is None and all(wall.pattern is None for wall in building.walls):
+        return
+    if building.leaves > 1:
+        raise KeyProblem("not used with a pattern: its stones go through the whole wall", "leaves")
+    if building.bond in HEADER_BONDS:
+        allowed = "must be 'running' or 'stack', or an offset"
+        raise KeyProblem(f"'{building.bond}' is not allowed with a pattern; {allowed}", "bond")
 
 
 def _check_floor(building: Building, floor: Floor, i: int) -> None:

@@ -10,6 +10,7 @@ from pydantic import model_validator
 from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns import coursed
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, spread, stone_figures
 
 UNITS = {"head_angle_deg": "deg"}
@@ -37,6 +38,7 @@ def build(wall: CoursedWall) -> list[Block]:
     return masonry(wall, stones(wall).tiling)
 
 
+@drawn_once
 def stones(wall: CoursedWall) -> coursed.CoursedStones:
     """The stones of a wall, and what was drawn for them."""
     return coursed.stones_in(wall.panel, wall, np.random.default_rng(wall.seed))

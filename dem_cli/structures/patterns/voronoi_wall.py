@@ -10,6 +10,7 @@ from pydantic import model_validator
 from dem_cli.case.base import RandomStructure
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns import voronoi
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry, stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
 
@@ -38,6 +39,7 @@ def build(wall: VoronoiWall) -> list[Block]:
     return masonry(wall, stones(wall))
 
 
+@drawn_once
 def stones(wall: VoronoiWall) -> Tiling:
     """The stones of a wall."""
     return voronoi.stones_in(wall.panel, wall, np.random.default_rng(wall.seed))

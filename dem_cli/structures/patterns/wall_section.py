@@ -12,6 +12,7 @@ from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
 from dem_cli.structures.patterns.coursed import Size, divided
+from dem_cli.structures.patterns.drawn_once import drawn_once
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of
 from dem_cli.structures.patterns.pattern_wall import stone_figures
 from dem_cli.structures.patterns.tiling import Tiling
@@ -84,6 +85,7 @@ def figures(section: WallSection) -> list[tuple[str, str]]:
     return [("core", stone_figures(_stones(section)[1]))]
 
 
+@drawn_once
 def _stones(section: WallSection) -> tuple[list[tuple[str, np.ndarray, int]], Tiling]:
     """Names, shapes and courses of the stones of faces and through-stones; stones of the core."""
     draws = np.random.default_rng(section.seed)

@@ -124,6 +124,11 @@ class Vault(StructureBase):
     )
     base: bool = Field(True, description="fixed blocks below, as deep as the vault is thick")
 
+    @property
+    def on_ground(self) -> bool:
+        """Whether a [ground] takes the place of its base: of piers or a drum; springings without any stay fixed."""
+        return self.piers is not None or self.drum is not None
+
     @model_validator(mode="after")
     def _keys_of_its_shape(self) -> Vault:
         needed, other = OF_SHAPE[self.shape]

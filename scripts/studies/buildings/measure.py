@@ -30,6 +30,21 @@ def town() -> dict[str, Any]:
     return stages(plans.case(plans.town(), "gravity"), None)
 
 
+def bonds() -> list[dict[str, Any]]:
+    """Blocks, whether it stands, failure load of a house of two rooms in each bond."""
+    found = []
+    with tempfile.TemporaryDirectory() as name:
+        for bond, keys in plans.BONDS.items():
+            folder = Path(name) / str(len(found))
+            file = folder.with_suffix(".toml")
+            file.write_text(tomli_w.dumps(plans.case(plans.two_rooms(keys), "pushover", **PUSH)), encoding="utf-8")
+            row = command("pushover", "run", str(file), "-o", str(folder))
+            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            told = ("blocks", "status", "failure_load_bracket", "failure_mode")
+            found.append({"bond": bond, **{key: summary.get(key) for key in told}, "seconds": row["seconds"]})
+    return found
+
+
 def stages(at_rest: dict[str, Any], pushed: dict[str, Any] | None) -> dict[str, Any]:
     """Blocks, points, and what each stage took."""
     with tempfile.TemporaryDirectory() as name:

@@ -46,6 +46,39 @@ def house() -> dict[str, Any]:
     }
 
 
+BONDS: dict[str, dict[str, Any]] = {
+    "running": {},
+    "offset a quarter": {"offset": 0.2},
+    "stack": {"bond": "stack"},
+    "english": {"bond": "english"},
+    "flemish": {"bond": "flemish"},
+    "running, two leaves, a fifth through": {"leaves": 2, "through_stones": 0.2},
+    "english, two leaves": {"bond": "english", "leaves": 2},
+    "flemish, two leaves": {"bond": "flemish", "leaves": 2},
+}
+
+
+def two_rooms(bond: dict[str, Any]) -> dict[str, Any]:
+    """A house of two rooms in coarse blocks, a door and a window in its façade."""
+    lintel = {"height": 0.4, "bearing": 0.4}
+    openings = [
+        {"x": 0.8, "y": 0.8, "width": 0.8, "height": 0.8, "lintel": lintel},
+        {"x": 3.6, "y": 0.0, "width": 0.8, "height": 1.6, "lintel": lintel},
+    ]
+    return {
+        "block": [0.8, 0.4, 0.4],
+        "courses": 6,
+        "walls": [
+            {"id": "front", "axis": [[0.0, 0.0], [6.0, 0.0]], "openings": openings},
+            {"id": "back", "axis": [[0.0, 3.2], [6.0, 3.2]]},
+            {"id": "left", "axis": [[0.0, 0.0], [0.0, 3.2]]},
+            {"id": "middle", "axis": [[2.6, 0.0], [2.6, 3.2]]},
+            {"id": "right", "axis": [[6.0, 0.0], [6.0, 3.2]]},
+        ],
+        **bond,
+    }
+
+
 def town(rooms: int = 4, storeys: int = 2) -> dict[str, Any]:
     """Rooms of 5 × 5 m side by side both ways, walls in common, a window or a door in each, plates as floors."""
     side, window = 5.0, {"x": 2.0, "y": 0.75, "width": 1.0, "height": 1.25, "lintel": LINTEL}

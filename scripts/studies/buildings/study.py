@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from studies.buildings import measure
 from studies.study import StudyRunner
-from studies.template import table
+from studies.template import bracket, table
 
 WHAT = {
     "generate": "blocks from the plan",
@@ -23,17 +23,38 @@ class BuildingStudy(StudyRunner):
     """A house and a block of houses."""
 
     def said(self, section: str, found: Any) -> str:
+        if section == "bonds":
+            return "\n".join(f"{row['bond']}: {row['failure_load_bracket']}" for row in found)
         spent = ", ".join(f"{row['stage']} {row['seconds']:g} s" for row in found["stages"])
         return f"{section}: {found['blocks']} blocks: {spent}"
 
     def problems(self, section: str, found: Any) -> list[str]:
+        if section == "bonds":
+            return [f"{row['bond']}: {row['status']}" for row in found if row["failure_load_bracket"] is None]
         return [] if found["status"] == "ok" else [f"{section}: {found['status']}"]
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
     """What page.md.j2 shows."""
-    kept = {name: {**section, "table": stages(section)} for name, section in found.items() if name != "machine"}
-    return {"house": None, "town": None} | kept
+    costs = {name: {**found[name], "table": stages(found[name])} for name in ("house", "town") if name in found}
+    return {"house": None, "town": None, "bonds": bonds(found.get("bonds", []))} | costs
+
+
+def bonds(rows: Sequence[Mapping[str, Any]]) -> str:
+    """A table of the failure load in each bond."""
+    shown = [
+        [
+            row["bond"],
+            str(row["blocks"]),
+            "stands" if row["status"] == "ok" else row["status"],
+            bracket(row["failure_load_bracket"]) if row["failure_load_bracket"] else "–",
+            row["failure_mode"] or "–",
+            f"{row['seconds']:.1f} s",
+        ]
+        for row in rows
+    ]
+    head = ("bond", "blocks", "under its weight", "at least, not above", "mode", "CPU")
+    return table(head, shown) if shown else ""
 
 
 def stages(section: Mapping[str, Any]) -> str:
@@ -45,6 +66,5 @@ def stages(section: Mapping[str, Any]) -> str:
     return table(("stage", "CPU", "memory"), rows)
 
 
-STUDY = BuildingStudy(
-    "buildings", "Buildings from their plan", {"house": measure.house, "town": measure.town}, values, machine=True
-)
+SECTIONS = {"house": measure.house, "town": measure.town, "bonds": measure.bonds}
+STUDY = BuildingStudy("buildings", "Buildings from their plan", SECTIONS, values, machine=True)

@@ -152,3 +152,9 @@ def test_fragility(tmp_path, levels, runs):
     assert found["runs"] == runs
     assert found["load"] == "20 s of motion"
     assert f"({int(runs.split()[-1])} runs × " in found["cost"]
+
+
+def test_a_displacement_that_is_prescribed_moves_the_geometry():
+    keys = ("analysis.control='displacement'", "analysis.follow=0.01")
+    assert rows("sliding_block", *keys)["kinematics"] == "large: the live load is moved as far as the case says"
+    assert rows("sliding_block", *keys, "analysis.kinematics='fixed'")["kinematics"] == "fixed (as the case says)"

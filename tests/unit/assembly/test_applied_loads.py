@@ -286,6 +286,48 @@ def test_a_line_load_is_shared_by_length(case_of):
     assert axle.centre == pytest.approx([2.0, 0.5, 0.5], abs=1e-9)
 
 
+def turned(table: dict, keys: tuple[str, ...], degrees: float) -> dict:
+    """A table with places and vectors turned in plan."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return table | {key: (np.asarray(table[key], float) @ turn.T).tolist() for key in keys if key in table}
+
+
+def test_loads_turn_with_the_case(case_of):
+    """Three stones with uneven tops under axles on a point and along a line, fill, earth: turned by 30° in plan the
+    loads on each stone and their moments are those of before, turned."""
+    stones = []
+    for name, low, high in (("a", 0.0, 1.0), ("b", 1.0, 1.8), ("c", 1.8, 3.0)):
+        top = [[low, 0.0, 1.0 + 0.2 * low], [high, 0.0, 1.0], [high, 2.0, 1.2], [low, 2.0, 1.2 + 0.2 * low]]
+        stones.append({"id": name, "vertices": [[x, y, 0.0] for x, y, _ in top] + top})
+    tables = [
+        {"at": [1.1, 0.3, 2.5], "force": [3.0, 1.0, -60.0], "spread": 0.4},
+        {"at": [1.0, 1.0, 2.0], "force": [0.0, 0.0, -1.0]},
+        {"line": [[0.3, 0.2, 2.0], [2.5, 1.5, 2.0]], "force_per_length": [0.0, 1.0, -7.0], "spread": 0.3},
+    ]
+    floor = {"id": "floor", "vertices": [[x, y, z] for x in (-9, 9) for y in (-9, 9) for z in (-1, 0)], "fixed": True}
+    found = []
+    for angle in (0.0, 30.0):
+        blocks = [turned(stone, ("vertices",), angle) for stone in stones]
+        loads, model = loads_of(
+            case_of, dimension=3, block=[*blocks, floor],
+            load=[turned(table, ("at", "force", "line", "force_per_length"), angle) for table in tables],
+            fill=[{"block": "?", "density": 1800.0, "level": 2.0, "coefficient": 0.5}],
+        )  # fmt: skip
+        sums = []
+        for load in loads:
+            for name in "abc":
+                on = load.blocks == model.numbers[name]
+                force, moment = load.forces[on].sum(axis=0), moments(load.points[on], load.forces[on]).sum(axis=0)
+                sums += [turned({"v": [force, moment]}, ("v",), -angle)["v"]]
+        found.append(np.array(sums))
+    assert np.abs(found[0][0]).max() > 1.0
+    sizes = np.abs(found[0]).reshape(4, -1).max(axis=1)
+    errors = np.abs(found[1] - found[0]).reshape(4, -1).max(axis=1)
+    assert (errors[[0, 2, 3]] <= 1e-12 * sizes[[0, 2, 3]]).all()
+    assert errors[1] <= 1e-9  # a disc of a micrometre
+
+
 def test_an_axle_in_the_plane_acts_where_it_stands(case_of):
     """On the extrados under it, with its moment, also on a joint; spread through fill, still with its moment."""
     (load, wide), _ = loads_of(

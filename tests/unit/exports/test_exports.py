@@ -20,7 +20,7 @@ from dem_cli.case.reader import CaseSource, validate
 from dem_cli.cli.main import main
 from dem_cli.exports.contents import ExportedCase
 from dem_cli.exports.formats import EXPORT_FORMATS, write_case
-from dem_cli.structures.imported import Import, imported
+from dem_cli.structures.imported import Import, imported, unsaid
 
 DRAWN = Path(__file__).resolve().parents[2] / "drawn"
 STONE, WOOD = 2143.0, 800.0
@@ -85,7 +85,7 @@ def volumes(exported: ExportedCase) -> dict[str, float]:
 @pytest.mark.parametrize("suffix", [".obj", ".json", ".stl"])
 def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, exported, suffix):
     path = tmp_path / f"model{suffix}"
-    assert write_case(path, exported) == []
+    write_case(path, exported)
     table = {"kind": "import", "id": "x", "file": str(path), "shells": "parts", "materials": "file"}
     found = imported(Import.model_validate(table)).blocks
     assert [block.id for block in found] == [block.name for block in exported.solids]
@@ -100,6 +100,69 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path, exported, suffix
             assert block.material == own.material
     if suffix == ".json":
         assert [block.fixed for block in found] == [block.fixed for block in exported.solids]
+
+
+@pytest.fixture(scope="module")
+def of_compounds() -> ExportedCase:
+    """The section of a three-leaf wall: stones of its core are concave."""
+    tables = {
+        "materials": {"stone": {"density": 2200.0}, "rubble": {"density": 1900.0}},
+        "joints": {"dry": {"friction": 0.7}},
+        "structure": [{
+            "kind": "wall-section", "id": "w", "size": [0.8, 1.0], "course": [0.25, 0.05], "face": [0.2, 0.05],
+            "cell": 0.12, "seed": 20, "shortest": 0.3, "thickness": 0.7, "material": "stone", "core_material": "rubble",
+        }],
+        "analysis": {"kind": "gravity"},
+    }  # fmt: skip
+    case = validate(tables, make_case_model(), CaseSource(Path("case.toml"), ""))
+    made = assembly(case)
+    assert any(len(block.parts) > 1 for block in made.blocks)
+    return ExportedCase(case, made.model, made.blocks, "section")
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".json", ".stl"])
+def test_compounds_come_back_as_they_were_or_it_is_said(tmp_path, of_compounds, suffix):
+    """Same blocks, same masses; STL has no word for it: both ways it is said, and shells = 'parts' has them again."""
+    path, own = tmp_path / f"model{suffix}", of_compounds
+    lost = write_case(path, own)
+    several = [block for block in own.blocks if len(block.parts) > 1]
+    tables = {
+        "dimension": 3,
+        "materials": {name: {"density": m.density} for name, m in own.case.materials.items()},
+        "joints": {"dry": {"friction": 0.7}},
+        "structure": [
+            {
+                "kind": "import",
+                "id": "w",
+                "file": str(path),
+                "fixed": ["w-base"],
+                "materials": "file",
+                "material": "stone",
+            }
+        ],
+        "analysis": {"kind": "gravity"},
+    }
+    if suffix == ".stl":
+        more = f" and {len(several) - 1} more" if len(several) > 1 else ""
+        assert lost == [f"that the parts of '{several[0].id}'{more} are one block"]
+        tables["structure"][0]["materials"] = "structure"
+        table = imported(Import.model_validate(tables["structure"][0]))
+        assert table.divided == {block.id: len(block.parts) for block in several}
+        ((key, message),) = unsaid(Import.model_validate(tables["structure"][0]))
+        assert key == "shells"
+        assert message.startswith(f"'{several[0].id}' has {len(several[0].parts)} solids")
+        tables["structure"][0]["shells"] = "parts"
+    else:
+        assert lost == []
+    structure = Import.model_validate(tables["structure"][0])
+    assert unsaid(structure) == []
+    made = assembly(validate(tables, make_case_model(), CaseSource(Path("case.toml"), "")))
+    assert [block.id for block in made.blocks] == [block.id for block in own.blocks]
+    assert [len(block.parts) for block in made.blocks] == [len(block.parts) for block in own.blocks]
+    if suffix != ".stl":
+        assert made.model.masses == pytest.approx(own.model.masses, rel=1e-12)
+    with_blocks = imported(structure.model_copy(update={"shells": "blocks"})).blocks
+    assert len(with_blocks) == sum(len(block.parts) for block in own.blocks)
 
 
 def test_a_drawing_comes_back_with_layers(tmp_path):
@@ -260,6 +323,18 @@ def test_lmgc90_gets_the_masses_the_supports_and_the_friction(tmp_path, monkeypa
         forces = [drive for drive in recorder.bodies[-1].driven if drive[1] == "force"]
         assert [(c, pytest.approx(f)) for c, _, f in forces] == [([1], 10.0), ([2], 20.0), ([3], -30.0)]
         assert notes == ["stiffness of joints: bodies do not overlap in LMGC90"]
+
+
+def test_lmgc90_says_which_moments_it_has_not(tmp_path):
+    """In space those of forces beside the centroid; in the plane they are written."""
+    off = [{"block": "ell", "force": [10.0, 0.0, 0.0], "at": [0.5, 0.5, 2.0]}]
+    case = spatial_case(materials={"wood": {"density": WOOD}}, block=[{"id": "ell", "parts": ELL}], load=off)
+    made = assembly(case)
+    notes = write_case(tmp_path / "a.lmgc90.py", ExportedCase(case, made.model, made.blocks, "a"))
+    assert notes == ["moments of forces beside the centroid of 'ell'"]
+    text = (tmp_path / "a.lmgc90.py").read_text()
+    assert ", [10.0, 0.0, 0.0], [0.0, 0.0, 0.0])  # ell" in text
+    assert notes[0] in text
 
 
 def test_3dec_gets_closed_convex_blocks_clockwise_from_outside(tmp_path, exported):

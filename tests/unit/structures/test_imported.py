@@ -179,6 +179,31 @@ def test_a_facade_in_dxf_has_its_layers_units_and_names(tmp_path):
     assert len(read(path, layers=layers | {"lintel": {"skip": True}}).blocks) == 86
 
 
+def test_a_unit_that_is_not_read_is_asked_for_and_layers_are_no_names_of_parts(tmp_path):
+    """Yards were taken for metres without a word; many outlines on each of two layers had a warning."""
+    import ezdxf
+
+    drawing = ezdxf.new(units=10)
+    for layer, y in (("stone", 0.0), ("ground", -2.0)):
+        for x in (0.0, 2.0):
+            square = [(x + a, y + b) for a, b in SQUARE]
+            drawing.modelspace().add_lwpolyline(square, close=True, dxfattribs={"layer": layer})
+    drawing.saveas(tmp_path / "d.dxf")
+    with pytest.raises(
+        KeyProblem, match=r"d.dxf: its lengths are in yards \(\$INSUNITS = 10\).*; give unit, one of m, "
+    ):
+        read(tmp_path / "d.dxf")
+    found = read(tmp_path / "d.dxf", unit="ft")
+    assert polygon.area(found.blocks[0].parts[0]) == pytest.approx(0.3048**2)
+    assert not found.divided
+
+
+def test_a_depth_of_a_layer_of_solids_is_refused(tmp_path, boxes):
+    by_trimesh(boxes[:1], tmp_path / "w.obj")
+    with pytest.raises(ValueError, match="which holds solids"):
+        read(tmp_path / "w.obj", layers={"stone": {"thickness": 0.3}})
+
+
 def test_lines_that_meet_in_twos_are_outlines_and_bulges_become_chords(tmp_path):
     import ezdxf
 
@@ -217,6 +242,14 @@ def test_svg_shapes_keep_their_numbers_and_groups(tmp_path):
         np.sort(by_name["b"].parts[0], axis=0), np.sort([[0.1, 0.2], [0.5, 0.2], [0.5, 0.4], [0.1, 0.4]], axis=0)
     )
     assert found.notes[1] == "left out: 1 text"
+
+
+def test_layers_that_are_off_in_svg_are_left_out_with_a_word(tmp_path):
+    off = '<g id="off" style="fill:red; display: none"><rect x="5" y="0" width="1" height="1"/></g></svg>'
+    (tmp_path / "d.svg").write_text(SVG.replace("</svg>", off))
+    found = read(tmp_path / "d.svg")
+    assert len(found.blocks) == 3
+    assert found.notes[1] == "left out: 1 hidden, 1 text"
 
 
 def test_a_concave_outline_is_refused_or_decomposed(tmp_path):
@@ -295,6 +328,13 @@ def test_compas_meshes_have_names_supports_and_materials(tmp_path):
     assert np.array_equal(block.parts[0].vertices, prism(SQUARE, 0.0, 1 / 3)[0])
 
 
+def test_a_material_in_full_has_a_name(tmp_path):
+    full = {"dtype": "compas_dem.material/Stone", "data": {"name": "tuff", "density": 1600.0}}
+    mesh = {**MESH, "data": {**MESH["data"], "attributes": {"is_support": True, "material": full}}}
+    (tmp_path / "m.json").write_text(json.dumps([mesh]))
+    assert read(tmp_path / "m.json", materials="file").blocks[0].material == "tuff"
+
+
 def test_a_model_of_compas_dem_has_supports_materials_and_transformations(tmp_path):
     """As compas_dem 0.3 writes a BlockModel: elements by guid, materials beside them, contacts in the graph."""
     shift = [[1.0, 0.0, 0.0, 5.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -340,6 +380,9 @@ NO_NUMBER = [
 XMLNS = '<svg xmlns="http://www.w3.org/2000/svg">'
 OPEN = (prism(SQUARE, 0.0, 1.0)[0], prism(SQUARE, 0.0, 1.0)[1][1:])
 NO_EDGE = "'lid': the surface is not closed: the edge from .* belongs to 1 face instead of two"
+FACES_IN_A_LIST = '{"dtype": "compas.datastructures/Mesh", "data": {"vertex": {"0": {"x": 1}}, "face": [[0]]}}'
+BOX_WITHOUT_AXES = '{"dtype": "compas.geometry/Box", "data": {"frame": [0, 0, 0], "xsize": 1}}'
+HEAVY = {"data": {"materials": {"m": {"data": {"name": "tuff", "density": "heavy"}}}, "block": PLAIN_MESH}}
 HALF_A_MESH = '{"dtype": "compas.datastructures/Mesh", "data": {"vertex": {"0": {"x": 1}}, "face": {}}}'
 BAD = {
     "empty.obj": ("", "no objects in it"),
@@ -357,6 +400,9 @@ BAD = {
     "bad.json": ("{", "not JSON"),
     "none.json": ('{"a": 1}', "no meshes in it"),
     "mesh.json": (HALF_A_MESH, "is not as compas writes it"),
+    "list.json": (FACES_IN_A_LIST, "is not as compas writes it"),
+    "box.json": (BOX_WITHOUT_AXES, "is not as compas writes it"),
+    "heavy.json": (json.dumps(HEAVY), "material 'tuff': its density 'heavy' is not a number"),
     "bad.dxf": ("hello", "not a DXF file that can be read"),
     "bad.svg": ("<html/>", "<html>, not an SVG drawing"),
     "worse.svg": ("<svg", "not an SVG drawing that can be read"),

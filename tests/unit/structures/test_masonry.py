@@ -11,7 +11,8 @@ from synthetic.skins import free_volume, model_of, open_area
 
 from dem_cli.geometry import polygon
 from dem_cli.structures import arch
-from dem_cli.structures.wall import Wall, build
+from dem_cli.structures.wall import Wall
+from dem_cli.structures.wall_blocks import build
 
 SHAPES = ("segmental", "semicircular", "pointed", "flat", "circle", "lintel", "none")
 

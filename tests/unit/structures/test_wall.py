@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from dem_cli.geometry import polygon
 from dem_cli.structures.placement import corner_blocks
-from dem_cli.structures.wall import Wall, build
+from dem_cli.structures.wall import Wall
+from dem_cli.structures.wall_blocks import build
 
 
 def wall(**keys) -> Wall:
