@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
-VERTICES = ("vertices", "vertices+centre")  # contact points of joints in 3D that no rule of integration has
 ELASTIC = 3  # points along a line, from which on it is as stiff in bending as it is
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
