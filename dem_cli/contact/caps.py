@@ -3,6 +3,8 @@
 The cap of thesis 7.2.3 carried to space: on the way from the centroid of the outline to each of its corners it rises as
 half of the profile of a plane joint does, so that its rings are the outline, scaled about the centroid. Its height is
 then a convex, growing function of the scale: the cap is convex whatever the outline, and its facets are plane.
+
+Points over the area of a plane joint (contact/area_rules.py) go with block b in the same way, as a cap without height.
 """
 
 from __future__ import annotations
@@ -11,11 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.area_rules import inner_points
 from dem_cli.contact.joints import Faces, JointProperties, points_of
 from dem_cli.contact.keys import face_names, same_rows
 from dem_cli.contact.layout import SAMPLES, PointLayout, ProfileFault, draw
-from dem_cli.contact.meetings import meetings
+from dem_cli.contact.meetings import Meetings, meetings
 from dem_cli.kernels.records import FACES
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE
 from dem_cli.model.model import Model
 
 STEEP = np.cos(np.pi / 4) - 1e-9  # a bed joint has its normal within 45° of the vertical
@@ -36,20 +40,30 @@ class Caps(NamedTuple):
     faces: np.ndarray  # and their faces, (n, 2)
     rises: np.ndarray  # of the outline [m], (n,)
     slopes: np.ndarray  # of the steepest side, (n,)
+    corners: np.ndarray  # share of the area that corners of an outline have where points lie within a plane joint, else
+    # 0, (n,)
     starts: np.ndarray  # each has the points starts[i]:starts[i + 1] within its outline, (n + 1,)
     arms: np.ndarray  # of these, from the centroid of block b as it stands at the start [m], (n_points, 3)
     areas: np.ndarray  # of the joint that belong to each [m²], (n_points,)
 
 
 def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
-    """Caps of the joints of the start, by the layout of their named joint; None: no joint may have one."""
-    if not any(layout is not None and layout.sides is not None for layout in properties.layouts):
+    """Caps of the joints of the start, and points over the area of plane ones, by the layout of their named joint.
+
+    None: no joint may have any.
+    """
+    if not any(layout is not None and not layout.centred for layout in properties.layouts):
         return None
     found, named = meetings(model, faces, corners), properties.between(model, model.part_blocks[faces.parts])
     names = face_names(model)
     made, rows, inner = [], [], [np.zeros((0, 4))]
+    plane, own = _plane_points(model, faces, corners, found, properties.along_sides[named])
     for i in np.flatnonzero(found.kinds == FACES):
         layout, normal = properties.layouts[named[i]], found.frames[i, :3]
+        if len(plane[i]):
+            made.append(i)
+            rows.append((0.0, 0.0, own[i]))
+            inner.append(plane[i])
         if layout is None or not has_cap(layout, normal):
             continue
         points = slice(found.starts[i], found.starts[i + 1])
@@ -57,17 +71,34 @@ def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
         key = (names[faces.faces[i, 1]], names[faces.faces[i, 0]])
         cap = cap_over(outline, found.weights[points] / area, normal, layout, key)
         steep = slopes(outline, *half_profile(layout, key, outline)).max(initial=0.0)
-        vertex = model.topology.face_corners[model.topology.face_starts[faces.faces[i, 1]]]
-        arms = cap.places - (corners[vertex] - model.vertices[vertex])
+        arms = cap.places - _centroids(model, faces, corners)[i]
         made.append(i)
-        rows.append((cap.rises[0], steep))
+        rows.append((cap.rises[0], steep, 0.0))
         inner.append(np.column_stack([arms, area * cap.shares])[len(outline) :])
     starts = np.cumsum([len(each) for each in inner]).astype(np.int64)
-    sizes, points_inside = np.array(rows).reshape(-1, 2), np.concatenate(inner)
+    sizes, points_inside = np.array(rows).reshape(-1, 3), np.concatenate(inner)
     return Caps(
-        faces.parts[made], faces.faces[made], sizes[:, 0].copy(), sizes[:, 1].copy(), starts,
+        faces.parts[made], faces.faces[made], sizes[:, 0].copy(), sizes[:, 1].copy(), sizes[:, 2].copy(), starts,
         points_inside[:, :3].copy(), points_inside[:, 3].copy(),
     )  # fmt: skip
+
+
+def _centroids(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
+    """Of the blocks b, as they stand at the start [m], (n, 3)."""
+    vertex = model.topology.face_corners[model.topology.face_starts[faces.faces[:, 1]]]
+    return corners[vertex] - model.vertices[vertex]
+
+
+def _plane_points(
+    model: Model, faces: Faces, corners: np.ndarray, found: Meetings, sides: np.ndarray
+) -> tuple[list[np.ndarray], np.ndarray]:
+    """Points within the outlines of joints of faces, so many along each side (n,): of each joint their arms on b [m]
+    and areas [m²], (points, 4), and the share of its corners, (n,)."""
+    middles = found.measures[:, CENTRE : CENTRE + 3]
+    rule = inner_points(found.places, found.starts, middles, np.where(found.kinds == FACES, sides, 0))
+    of = np.repeat(np.arange(len(sides)), np.diff(rule.starts))
+    arms = rule.places - _centroids(model, faces, corners)[of]
+    return np.split(np.column_stack([arms, rule.shares * found.measures[of, AREA]]), rule.starts[1:-1]), rule.corners
 
 
 def caps_of(caps: Caps | None, faces: Faces) -> Caps:
@@ -78,16 +109,21 @@ def caps_of(caps: Caps | None, faces: Faces) -> Caps:
     n = len(faces.parts)
     if caps is None:
         none = np.zeros(n)
-        return Caps(faces.parts, faces.faces, none, none, np.zeros(n + 1, np.int64), np.zeros((0, 3)), np.zeros(0))
+        return Caps(
+            faces.parts, faces.faces, none, none, none, np.zeros(n + 1, np.int64), np.zeros((0, 3)), np.zeros(0)
+        )  # fmt: skip
     by_parts, by_faces = same_rows(caps.parts, faces.parts), same_rows(caps.faces, faces.faces)
     rises = np.where(by_parts >= 0, caps.rises[by_parts], 0.0) if len(caps.rises) else np.zeros(n)
-    slope = np.where(by_faces >= 0, caps.slopes[by_faces], 0.0) if len(caps.rises) else np.zeros(n)
+    slope, own = (
+        np.where(by_faces >= 0, each[by_faces], 0.0) if len(each) else np.zeros(n)
+        for each in (caps.slopes, caps.corners)
+    )
     here = by_faces[by_faces >= 0]
     counts = np.zeros(n, np.int64)
     counts[by_faces >= 0] = np.diff(caps.starts)[here]
     points = points_of(caps.starts, here)
     starts = np.concatenate([[0], np.cumsum(counts)])
-    return Caps(faces.parts, faces.faces, rises, slope, starts, caps.arms[points], caps.areas[points])
+    return Caps(faces.parts, faces.faces, rises, slope, own, starts, caps.arms[points], caps.areas[points])
 
 
 def cap_over(

@@ -90,9 +90,19 @@ class JointProperties(NamedTuple):
         return self.compliance is not None or not self.rigid.all()
 
     @property
+    def plane(self) -> list[PointLayout]:
+        """Layouts of plane joints; those of profiles as if they had none."""
+        return [PointLayout() if layout is None or layout.sides is not None else layout for layout in self.layouts]
+
+    @property
     def centred(self) -> np.ndarray:
-        """In space: which have a point at the centroid of each face joint as well, (n_named,) bool."""
-        return np.array([layout is not None and layout.sides is None for layout in self.layouts])
+        """In space: which have points at the corners and the centroid of each face joint, (n_named,) bool."""
+        return np.array([layout.centred for layout in self.plane])
+
+    @property
+    def along_sides(self) -> np.ndarray:
+        """Points along each side of a face joint; 2: those at its corners alone, or at its centre too, (n_named,)."""
+        return np.array([2 if layout.centred else layout.points for layout in self.plane])
 
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """The named joint of each pair of blocks (n, 2), (n,) int64."""

@@ -23,10 +23,12 @@ VERTEX_SHARE = 0.5
 class PointLayout(NamedTuple):
     """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them.
 
-    In space a plane joint has its points at the corners of the overlap, and with any layout one at the centre as well.
+    In space a plane joint has points at the corners of the overlap, and so many along each of its sides
+    (contact/area_rules.py), or one at its centre besides.
     """
 
     points: int = 2
+    centred: bool = False  # in space: corners and centre
     sides: tuple[int, int] | None = None
     aperture: Range = (0.0, 0.0)  # [m]
     lengths: tuple[Range, ...] = ()  # of the sides [m] or as proportions; one: the same range for each; none: equal

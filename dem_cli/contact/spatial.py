@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.contact.area_rules import InnerPoints, inner_points
 from dem_cli.contact.caps import apothems, has_cap, highest, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
 from dem_cli.contact.layout import PointLayout, ProfileFault, too_deep, too_steep
@@ -32,6 +33,7 @@ from dem_cli.model.model import Model
 FLAT = 1e-4  # angle of kinks across which parts may touch on both sides, within round-off [rad]
 NOTED = 0.02  # of the smaller face: area beside a joint that is worth a word
 LONE = 0.25  # of the median face: the area of a point outside of face joints
+INNER = np.iinfo(np.int32).max  # features of points within an outline: from here on
 
 
 def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
@@ -117,15 +119,15 @@ def points(
 ) -> tuple[MovingJoints, SpatialGeometry]:
     """Joints with contact points at the corners of their overlap, and stiffness by the area of each; not yet placed.
 
-    Where the layout of a joint asks for more than its ends, there is one at its centre as well (`_with_centres`).
+    Where the layout of a joint asks for more, there are points within the outline as well.
     """
     found = meetings(model, faces, corners)
     lone, areas, shares = found.kinds != FACES, _areas(model, found), _shares(found)
     outline = np.diff(found.starts)
     if properties.profiled:
         named = properties.between(model, model.part_blocks[faces.parts])
-        centred = ~lone & properties.centred[named]
-        found, shares = _with_centres(found, shares, centred)
+        found, shares = _with_centres(found, shares, ~lone & properties.centred[named])
+        found, shares = _with_rules(found, shares, np.where(lone, 0, properties.along_sides[named]))
     joints = joints_of(model, faces, properties, found.starts, areas, shares)
     geometry = SpatialGeometry(
         keys=faces.faces,
@@ -157,8 +159,32 @@ def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> t
         places=np.insert(found.places, at, middles[centred], axis=0),
         weights=np.insert(found.weights * keep[owners], at, (1.0 - keep[centred]) * found.measures[centred, AREA]),
         gaps=np.insert(found.gaps, at, found.measures[centred, GAP]),
-        features=np.insert(found.features, at, np.iinfo(np.int32).max),
+        features=np.insert(found.features, at, INNER),
     ), np.insert(shares * keep[owners], at, 1.0 - keep[centred])
+
+
+def _with_rules(found: Meetings, shares: np.ndarray, sides: np.ndarray) -> tuple[Meetings, np.ndarray]:
+    """So many points along each side of joints (n,), fewer than LEAST: none but those that there are."""
+    inner = rules_over(found, sides)
+    counts = np.diff(inner.starts)
+    if not counts.any():
+        return found, shares
+    of, own = np.repeat(np.arange(len(counts)), counts), inner.corners[found.owners]
+    at, areas = found.starts[1:][of], found.measures[of, AREA]
+    return found._replace(
+        starts=found.starts + np.concatenate([[0], np.cumsum(counts)]),
+        places=np.insert(found.places, at, inner.places[:, :3], axis=0),
+        weights=np.insert(found.weights * own, at, inner.shares * areas),
+        gaps=np.insert(found.gaps, at, inner.places[:, 3]),
+        features=np.insert(found.features, at, INNER + np.arange(len(of)) - inner.starts[of]),
+    ), np.insert(shares * own, at, inner.shares)
+
+
+def rules_over(found: Meetings, sides: np.ndarray) -> InnerPoints:
+    """Points within the outlines of joints of faces, so many along each side (n,), and in column 3 their gaps [m]."""
+    outlines = np.column_stack([found.places, found.gaps])
+    centres = np.column_stack([found.measures[:, CENTRE : CENTRE + 3], found.measures[:, GAP]])
+    return inner_points(outlines, found.starts, centres, sides)
 
 
 def _areas(model: Model, found: Meetings) -> np.ndarray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.contact.area_rules import LEAST
 from dem_cli.contact.caps import Caps, caps_of, made_caps
 from dem_cli.contact.joints import Faces, JointArrays, JointProperties, PressedLaw, joints_of
 from dem_cli.contact.meetings import polyhedra
@@ -71,7 +72,7 @@ def points(
         normals=np.ascontiguousarray(normals.reshape(-1, 6)),
         tangents=np.ascontiguousarray(model.faces.first_sides[faces.faces[:, 0]]),
         markers=np.full((n, 6), np.nan),
-        scales=_scales(model, faces, properties),
+        scales=_scales(model, faces, properties, caps.corners),
         edges=edges,
         types=np.zeros(n_points, np.int8),
         corners=np.full((n_points, 5), -1),
@@ -105,20 +106,23 @@ def _median_free_face(model: Model) -> float:
     return float(np.median(areas[free])) if free.any() else median_face(model)
 
 
-def _scales(model: Model, faces: Faces, properties: JointProperties) -> np.ndarray:
-    """SpatialMotion.scales of pairs of faces, (n, 8)."""
+def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.ndarray) -> np.ndarray:
+    """SpatialMotion.scales of pairs of faces, (n, 9). own: Caps.corners of them, (n,).
+
+    Where faces meet that did not at the start, they have their corners and the centre.
+    """
     median, areas, shortest = _median_free_face(model), model.faces.areas, model.faces.shortest_sides
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     kn, ks = properties.stiffness_of(named, faces.faces)
-    centred = properties.centred[named].astype(float)
-    own = BEVEL * model.faces.typical_areas[faces.parts].min(axis=1)
-    n, smaller = len(faces.parts), np.maximum(areas[faces.faces].min(axis=1), own)
+    centred = (properties.centred[named] | ((properties.along_sides[named] >= LEAST) & (own == 0.0))).astype(float)
+    typical = BEVEL * model.faces.typical_areas[faces.parts].min(axis=1)
+    n, smaller = len(faces.parts), np.maximum(areas[faces.faces].min(axis=1), typical)
     face = np.minimum(median, smaller)  # a small block on a large one has no pillars for corners, a bevel no needles
     reach = SKINS * np.maximum(faces.reach, 0.0)
     return np.column_stack([
         np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), kn, ks,
-        LONE * face, FLOOR * face, np.full(n, reach), centred,
+        LONE * face, FLOOR * face, np.full(n, reach), centred, own,
     ])  # fmt: skip
 
 

@@ -73,11 +73,12 @@ def _law(table: StiffJoint) -> Law:
 
 
 def _layout(table: StiffJoint, case: Case, deforms: bool) -> PointLayout | None:
-    """Where the contact points of a joint are; None: at its two ends."""
+    """Where the contact points of a joint are; None: at its two ends, in space at its vertices."""
     if table.profile is not None:
         return PointLayout(seed=case.seed, **table.profile.ranges)
     points = table.contact_points(case.dimension, deforms, lands=hasattr(case.analysis, "margin"))
-    return None if points == 2 else PointLayout(points)
+    centred = table.centred(case.dimension)
+    return None if points == 2 and not centred else PointLayout(points, centred)
 
 
 def _with_deforming_blocks(model: Model, by_material: np.ndarray, compliance: BlockCompliance | None) -> set[int]:

@@ -204,13 +204,38 @@ def _restore(work, count, area, gx, gy):
         sxx += w * x * x
         sxy += w * x * y
         syy += w * y * y
-    # Of the unknowns about (gx, gy): s0 (1 + λ0) + s·λ = area, s (1 + λ0) + S λ = 0.
+    level, lx, ly = tilted(s0, sx, sy, sxx, sxy, syy, area)
+    for k in range(count):
+        x, y = work[2, k, 0] - gx, work[2, k, 1] - gy
+        work[2, k, SHARE] = work[5, k, 0] * max(level + lx * x + ly * y, 0.0)
+
+
+@inline
+def tilted(s0, sx, sy, sxx, sxy, syy, area):
+    """Factor 1 + λ0 + λ·r, as (1 + λ0, λ), by which areas at places r add up to `area` about the origin.
+
+    Their moments so far: sums of w, w x, w y, w x², w x y, w y²: s0 (1 + λ0) + s·λ = area, s (1 + λ0) + S λ = 0.
+    """
     det = sxx * syy - sxy * sxy
     lx, ly, level = 0.0, 0.0, area / s0
     if det > 1e-9 * (sxx + syy) * (sxx + syy):
         px, py = (sx * syy - sy * sxy) / det, (sy * sxx - sx * sxy) / det  # S⁻¹ s
         level = area / (s0 - sx * px - sy * py)
         lx, ly = -level * px, -level * py
+    return level, lx, ly
+
+
+@inline
+def held_inside(work, count, x, y):
+    """The place of the polygon in row 2, counter-clockwise, that is nearest to (x, y), and how far away it is."""
+    outside, nearest, nx, ny = False, math.inf, x, y
     for k in range(count):
-        x, y = work[2, k, 0] - gx, work[2, k, 1] - gy
-        work[2, k, SHARE] = work[5, k, 0] * max(level + lx * x + ly * y, 0.0)
+        m = k + 1 if k + 1 < count else 0
+        x0, y0 = work[2, k, 0], work[2, k, 1]
+        tx, ty, ax, ay = work[2, m, 0] - x0, work[2, m, 1] - y0, x - x0, y - y0
+        outside = outside or tx * ay - ty * ax < 0.0
+        share = min(max((ax * tx + ay * ty) / (tx * tx + ty * ty), 0.0), 1.0)
+        dx, dy = ax - share * tx, ay - share * ty
+        if dx * dx + dy * dy < nearest:
+            nearest, nx, ny = dx * dx + dy * dy, x0 + share * tx, y0 + share * ty
+    return (nx, ny, math.sqrt(nearest)) if outside else (x, y, 0.0)

@@ -126,9 +126,7 @@ class SpatialGeometry(NamedTuple):
     keys: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
     features: np.ndarray  # corners or edges that make each point, by which it is known again, (n_points,)
     kinds: np.ndarray  # FACES, RIM_OF_A, RIM_OF_B or EDGES, (n_joints,) int8
-    corners: (
-        np.ndarray
-    )  # how many of the points of a joint are its outline; the one after these is its centre, (n_joints,)
+    corners: np.ndarray  # how many of the points of a joint are its outline; those after these lie within, (n_joints,)
     axes: np.ndarray  # unit normal from a to b, and two tangents, (n_joints, 9)
     places: np.ndarray  # of the points, in the coordinates in which they were found [m], (n_points, 3)
     gaps: np.ndarray  # along the normal, positive open [m], (n_points,)
@@ -165,7 +163,7 @@ class SpatialMotion(NamedTuple):
     normals: np.ndarray  # outward unit normals of both, each in the frame of its block, (n_joints, 6)
     tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
-    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 8)
+    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 9)
     edges: (
         np.ndarray
     )  # of joints of two edges: corners of that of a and of that of b, sign of the normal; −1: none, (n, 5)

@@ -3,6 +3,10 @@
 Faces are clipped in the plane across the joint; outside of face joints corners on a face and edges that cross its rim
 have an area of their own. Triangles about the centroid give the area of a corner of the overlap; one at which the
 outline hardly turns gives it to its neighbours, so that nothing jumps where it comes or goes (overlap.fading_areas).
+
+Points within the area of a joint of the start (contact/area_rules.py) belong to block b, as cracks do. One that block a
+no longer covers is held at the rim of the overlap and fades over a length like that of its own area; with what is left
+area and first moment are those of the overlap, but for slivers, where area alone is.
 """
 
 from __future__ import annotations
@@ -10,10 +14,10 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import always_inline, kernel
-from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, simplify
+from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, held_inside, simplify, tilted
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
-from dem_cli.kernels.spatial_features import NONE, height_inside, tangents3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, height_inside, tangents3, turned3, turned_back3
 from dem_cli.kernels.spatial_geometry import STEEP
 from dem_cli.kernels.vec import axpy, dot
 
@@ -25,12 +29,14 @@ LONE = 4  # area of a point outside of face joints [m²]
 FLOOR = 5  # area of a face joint, at least [m²]
 REACH = 6  # how high features outside of face joints may lie over the face [m]
 CENTRED = 7  # 1: face joints have a point at their centroid as well
+OWN = 8  # share of the area that corners have where points of a rule lie within; 0: there are none
 
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
 SLIVER = 1e-6  # of FLOOR: overlaps below it are none; tips sink unseen by about its root
 LOCAL = 1024  # corners of a part that features tell apart
 CAP = 2 * LOCAL + LOCAL**4  # features of caps: from here on, beyond those of crossings
 LABEL = 2  # column of row 2: what a corner of the overlap is
+LEFT_OVER = 0.05  # of its area that a point keeps at least where areas are tilted to where the overlap is
 
 
 @always_inline
@@ -79,6 +85,7 @@ def _clipped(geometry, vertices, joint, frame, along, work):
         lumped += work[2, k, SHARE] * (x * x + y * y)
         work[2, k, SHARE] *= floor
     keep = polar / lumped if geometry.scales[joint, CENTRED] > 0.0 else 1.0
+    keep = geometry.scales[joint, OWN] if geometry.scales[joint, OWN] > 0.0 else keep
     for k in range(count):
         work[2, k, SHARE] *= keep
     return count, (1.0 - keep) * floor * area, axpy(gy, t2, axpy(gx, t1, origin)), keep
@@ -174,6 +181,10 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
             n = frame[1]
             corner, outwards = row3(vertices, found[k, 0]), (-n[0], -n[1], -n[2])
             _sides_near(geometry, vertices, geometry.faces[joint, 1], outwards, corner, width, found[k])
+    if count > 0 and geometry.scales[joint, OWN] > 0.0:
+        return _with_area(
+            geometry, bodies, joint, pair[1], frame, along, count, (centre, centre_area / (1.0 - keep)), out
+        )
     if count > 0 and keep < 1.0:
         n_b, plane = frame[1], row3(vertices, geometry.face_corners[geometry.face_starts[geometry.faces[joint, 1]]])
         centre = axpy(dot(minus3(plane, centre), n_b) / dot(frame[2], n_b), frame[2], centre)
@@ -186,6 +197,60 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
         numbers[count, 2], numbers[count, 3], numbers[count, 4] = arm
         count += 1
     return _with_cap(geometry, joint, count, found, labels, numbers) if count > 0 else 0
+
+
+@always_inline
+def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
+    """Adds the points within the area of a joint; returns how many there are. overlap: centroid, area at least."""
+    work, found, labels, numbers = out
+    vertices, n_b, upwards = bodies.corners, frame[1], frame[2]
+    t1, t2 = tangents3(upwards, along)
+    origin = row3(vertices, geometry.face_corners[geometry.face_starts[geometry.faces[joint, 0]]])
+    plane = row3(vertices, geometry.face_corners[geometry.face_starts[geometry.faces[joint, 1]]])
+    centroid = row3(bodies.positions, b)
+    middle = minus3(overlap[0], origin)
+    gx, gy, first, corners = dot(middle, t1), dot(middle, t2), geometry.cap_starts[joint], count
+    raised = overlap[1] / area_of(work, corners)[0]  # where the overlap is below the floor
+    for k in range(corners):
+        numbers[k, 2], numbers[k, 3] = work[2, k, 0] - gx, work[2, k, 1] - gy
+    for k in range(first, geometry.cap_starts[joint + 1]):
+        place = axpy(1.0, turned3(bodies.turns, b, row3(geometry.cap_arms, k)), minus3(centroid, origin))
+        x, y, away = held_inside(work, corners, dot(place, t1), dot(place, t2))
+        area = geometry.cap_areas[k] - math.sqrt(geometry.cap_areas[k]) * away
+        if area > 0.0:
+            for m in range(5):
+                found[count, m] = NONE
+            labels[count, 0], labels[count, 1] = CAP + k - first, FIXED_TO_B
+            numbers[count, 0], numbers[count, 1], numbers[count, 2], numbers[count, 3] = (
+                raised * area,
+                0.0,
+                x - gx,
+                y - gy,
+            )
+            count += 1
+    s0, sx, sy, sxx, sxy, syy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(count):
+        w, x, y = numbers[k, 0], numbers[k, 2], numbers[k, 3]
+        s0 += w
+        sx += w * x
+        sy += w * y
+        sxx += w * x * x
+        sxy += w * x * y
+        syy += w * y * y
+    level, lx, ly = tilted(s0, sx, sy, sxx, sxy, syy, overlap[1])
+    total = 0.0
+    for k in range(count):
+        numbers[k, 0] *= max(level + lx * numbers[k, 2] + ly * numbers[k, 3], LEFT_OVER * level)
+        total += numbers[k, 0]
+    for k in range(count):
+        x, y = numbers[k, 2], numbers[k, 3]
+        numbers[k, 0] *= overlap[1] / total
+        if k >= corners:
+            place = axpy(y + gy, t2, axpy(x + gx, t1, origin))
+            place = axpy(dot(minus3(plane, place), n_b) / dot(upwards, n_b), upwards, place)
+            arm = turned_back3(bodies.turns, b, minus3(place, centroid))
+            numbers[k, 2], numbers[k, 3], numbers[k, 4] = arm
+    return count
 
 
 @always_inline

@@ -9,9 +9,9 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
-# Contact points of a plane joint whose stiffness is a property, by dimension. With two the moment of a joint is three
-# times too stiff, and walls carry too much (docs/deformable.md); in space they are the corners of its area alone.
-BENDING_POINTS = {2: 5, 3: 2}
+# Contact points of a plane joint in 2D whose stiffness is a property. With two the moment of a joint is three times too
+# stiff, and walls carry too much (docs/deformable.md).
+BENDING_POINTS = 5
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
@@ -35,10 +35,11 @@ class StiffJoint(CaseModel):
     )
     points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
         default=None,
-        description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D the vertices of the area "
-        "of contact, or its centre as well; default: 2; 5 where the joint can crack, 3 where it is elastic; without "
-        "softening also 5 where kn is given or blocks deform (materials.NAME.young), but for time histories; in 3D "
-        "vertices, and the centre as well where the joint can crack or is elastic",
+        description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
+        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2; 5 where the joint can "
+        "crack, 3 where it is elastic; without softening also 5 where kn is given or blocks deform "
+        "(materials.NAME.young), but for time histories; in 3D vertices, and the centre as well where the joint can "
+        "crack or is elastic",
         examples=[5],
     )
 
@@ -54,13 +55,22 @@ class StiffJoint(CaseModel):
         return True
 
     def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
-        """Number of contact points of a plane joint in 2D; in 3D 2 stands for the vertices alone.
+        """Number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are its vertices.
 
         They follow stiffness: where it is a property, the joint has those that its bending needs. Not where blocks land
         on each other: points between the ends take part of the blow, and a block that rocks loses less than Housner's.
         deforms: whether the joint carries the deformation of blocks; lands: whether the analysis is a time history.
         """
+        if isinstance(self.points, int):
+            return self.points
+        if dimension == 3:
+            return 2
         if self.points is not None:
-            return self.points if isinstance(self.points, int) else AREA_POINTS[self.points]
+            return AREA_POINTS[self.points]
         soft = self.bends and not lands and (deforms or self.kn != "auto")
-        return max(self.plane_points, BENDING_POINTS[dimension]) if soft else self.plane_points
+        return max(self.plane_points, BENDING_POINTS) if soft else self.plane_points
+
+    def centred(self, dimension: int) -> bool:
+        """Whether its contact points are the vertices and the centre of an area."""
+        asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
+        return asked and dimension == 3

@@ -15,6 +15,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "interrupts": ("studies.interrupts.study", "Ctrl-C and SIGTERM at random moments of every command"),
     "laws": ("studies.laws.study", "a page and a picture of every joint law"),
     "loads": ("studies.loads.study", "failure loads by limit analysis and by DEM"),
+    "mortar": ("studies.mortar.study", "mortar joints in space: bending and torsion, wallettes at any angle"),
     "motions": ("studies.motions", "artificial accelerograms and response spectra"),
     "motion_in_space": ("studies.motion_in_space.study", "blocks that move in space: exact motions, twins, structures"),
     "paper001": ("studies.paper001.study", "paper 001: walls of regular, Voronoi and coursed stones, a stone house"),

@@ -38,6 +38,9 @@ def extruded_tables(tables: dict[str, Any]) -> dict[str, Any]:
         else:
             sides = [[[[x, y, z] for x, z in part] for y in (-half, half)] for part in block["parts"]]
             block["parts"] = [near + far for near, far in sides]
+    for joint in found.get("joints", {}).values():  # two points at its ends: four at its corners
+        if joint.get("law") not in ("elastic", "mohr-coulomb", "fracture") and "profile" not in joint:
+            joint.setdefault("points", "vertices")
     for key, turned in (("monitor", _monitor), ("settlement", _settlement), ("initial", _initial)):
         for table in _each(found, key):
             turned(table)

@@ -16,17 +16,17 @@ from dem_cli.model.scales import smallest_edge
 KN, KS = 1e9, 4e8
 
 
-def one_joint(centred: bool = False) -> JointProperties:
-    """Every joint with KN and KS; with points at its corners, or at its centre too."""
-    layout = PointLayout(3) if centred else None
+def one_joint(centred: bool = False, points: int = 2) -> JointProperties:
+    """Every joint with KN and KS; with points at its corners, at its centre too, or so many along each side."""
+    layout = PointLayout(points, centred) if centred or points > 2 else None
     table = np.zeros((1, 1), np.int64)
     return JointProperties(
         ("j",), table, np.array([KN]), np.array([KS]), np.zeros((1, 1)), np.zeros((1, 0)), (layout,), np.array([False])
     )
 
 
-def start_joints(model: Model, centred: bool = False) -> JointArrays:
-    return joints_of_start(model, bodies_at_rest(model), one_joint(centred), smallest_edge(model))
+def start_joints(model: Model, centred: bool = False, points: int = 2) -> JointArrays:
+    return joints_of_start(model, bodies_at_rest(model), one_joint(centred, points), smallest_edge(model))
 
 
 def turned(solid: Polyhedron, random: np.random.Generator, angle: float | None = None) -> Polyhedron:

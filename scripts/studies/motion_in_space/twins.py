@@ -41,9 +41,9 @@ def twin_case(file: Path, case: Case, model: Model, *overrides: str) -> LoadedCa
             tables[key] = [_TABLES[key](dict(table)) for table in listed]
     for table in tables.get("motion", []):
         table |= {"file": str((file.parent / table["file"]).resolve())} if "file" in table else {}
-    for joint in tables.get("joints", {}).values():
-        if isinstance(joint.get("points"), int):
-            joint["points"] = "vertices" if joint["points"] == 2 else "vertices+centre"
+    for name, joint in tables.get("joints", {}).items():
+        if joint.get("profile") is None:
+            joint["points"] = "vertices" if case.joints[name].contact_points(2) == 2 else "vertices+centre"
     for table, name in zip(tables.get("monitor", []), monitor_names(case.monitor), strict=True):
         table["name"] = name
     if "direction" in tables.get("analysis", {}):

@@ -90,7 +90,9 @@ def twins(files: list[Path]) -> list[dict[str, Any]]:
 
 def _has_a_twin(case: Case, model: Model) -> bool:
     """Whether joints are plane with points at their ends, and geometry that of the start."""
-    if (~model.fixed).sum() > LARGEST or any(joint.contact_points != 2 for joint in case.joints.values()):
+    if (~model.fixed).sum() > LARGEST or any(
+        joint.contact_points(d) != 2 for joint in case.joints.values() for d in (2, 3)
+    ):
         return False
     try:
         return why_moving(case, model) is None

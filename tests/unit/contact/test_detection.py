@@ -166,7 +166,7 @@ def test_stack_bond_large_displacement():
 
 def test_running_bond_joints_and_areas():
     """Every bed joint is half a block long; stiffness goes with the area of the overlap."""
-    sim = simulation(tables(*running_wall(2, 3), joints={"dry": {"friction": 0.6, "kn": 1e9}}))
+    sim = simulation(tables(*running_wall(2, 3), joints={"dry": {"friction": 0.6, "kn": 1e9, "points": 2}}))
     joints = sim.joints
     flat = np.abs(joints.frames[::2, 1]) > 0.5
     assert (flat.sum(), (~flat).sum()) == (3 + 6, 2 + 3)
@@ -191,7 +191,7 @@ def test_thickness_counts_in_the_area_of_a_joint():
     case = tables(
         block("base", rectangle(-1, -1, 2, 0), fixed=True, thickness=0.5),
         block("b", rectangle(0, 0, 1, 1), thickness=0.2),
-        joints={"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8}},
+        joints={"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8, "points": 2}},
     )
     joints = simulation(case).joints
     assert joints.kn == pytest.approx([1e8, 1e8])
@@ -207,9 +207,9 @@ def test_joints_by_pair_of_materials():
         block("w2", rectangle(2, 0, 3, 1), material="oak"),
         materials={"stone": {"density": 2000.0}, "oak": {"density": 700.0}},
         joints={
-            "dry": {"friction": 0.6, "kn": 1e9},
-            "wood": {"friction": 0.3, "kn": 2e9},
-            "waxed": {"friction": 0.1, "kn": 3e9},
+            "dry": {"friction": 0.6, "kn": 1e9, "points": 2},
+            "wood": {"friction": 0.3, "kn": 2e9, "points": 2},
+            "waxed": {"friction": 0.1, "kn": 3e9, "points": 2},
         },
         interface=[
             {"between": ["oak", "stone"], "joint": "wood"},

@@ -131,8 +131,8 @@ def test_profiles_that_make_no_sense(table, message):
 
 
 def test_points_and_profile_exclude_each_other():
-    assert CoulombJoint(friction=0.6).contact_points == 2
-    assert CoulombJoint(friction=0.6, points=5).contact_points == 5
+    assert CoulombJoint(friction=0.6).contact_points(2) == 2
+    assert CoulombJoint(friction=0.6, points=5).contact_points(2) == 5
     with pytest.raises(ValidationError, match="not allowed with 'profile'"):
         CoulombJoint(friction=0.6, points=3, profile={"sides": 3, "aperture": 1e-4})
     with pytest.raises(ValidationError):

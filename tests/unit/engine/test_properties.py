@@ -20,6 +20,11 @@ ABOVE = CUBE | {"polygon": [[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]}
         ({"law": "coulomb", "friction": 0.6}, 4),
         ({"law": "coulomb", "friction": 0.6, "points": "vertices+centre"}, 5),
         ({"law": "elastic", "kn": 1e9}, 5),
+        ({"law": "coulomb", "friction": 0.6, "kn": 1e9}, 4),
+        ({"law": "coulomb", "friction": 0.6, "points": 3}, 9),
+        ({"law": "coulomb", "friction": 0.6, "kn": 1e9, "points": "vertices"}, 4),
+        ({"law": "coulomb", "friction": 0.6, "points": 5}, 25),
+        ({"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5}, 5),
     ],
 )
 def test_points_of_a_joint_in_space(joint, points):

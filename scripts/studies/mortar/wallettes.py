@@ -1,0 +1,80 @@
+"""Wallettes in four-point bending at different angles of the bed joints (Gazzola, Drysdale and Essawy 1985)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from dem_cli.post import style
+from studies.mortar.specimen import LENGTH, TENSION, WIDTH, blocks_of, strength, wallette
+from studies.solution import from_tables, solve
+from studies.template import table
+
+ANGLES = (0.0, 15.0, 45.0, 75.0, 90.0)
+RATIOS = (0.2, 0.4, 0.6, 0.8, 1.0)
+FINER = (4, 5, 9)
+OF_TESTS = 2.5  # strength at 90° over that at 0°, as paper 002 prints
+
+
+def measure() -> dict[str, Any]:
+    """Strength [MPa], stands and fails, by angle and ks/kn; and with other points at 0 and 90°."""
+    return {
+        "angles": [run(angle, ratio) for angle in ANGLES for ratio in RATIOS],
+        "points": [run(angle, 0.4, points) for points in FINER for angle in (0.0, 90.0)],
+        "dilation": [run(angle, 0.4, dilation_deg=10.0, dilation_slip=1e-4) for angle in (0.0, 45.0, 90.0)],
+    }
+
+
+def run(angle: float, ratio: float, points: int = 3, **joint: Any) -> dict[str, Any]:
+    """One wallette."""
+    summary = solve(from_tables(wallette(angle, ratio, points, **joint))).summary
+    found = summary.get("failure_load_bracket") or [None, None]
+    between = [load if load is None else round(strength(load) / 1e6, 4) for load in found]
+    return {"angle": angle, "ratio": ratio, "points": points, "status": summary["status"], "between": between} | joint
+
+
+def values(found: dict[str, Any]) -> dict[str, str]:
+    """Tables of the page."""
+    stood = {(row["angle"], row["ratio"]): row["between"][0] for row in found["angles"]}
+    return {
+        "angles": table(
+            ["ks/kn", *(f"{angle:g}°" for angle in ANGLES), "90° over 0°"],
+            [
+                [
+                    f"{ratio:g}",
+                    *(f"{stood[angle, ratio]:.3f}" for angle in ANGLES),
+                    f"{stood[90.0, ratio] / stood[0.0, ratio]:.2f}",
+                ]
+                for ratio in RATIOS
+            ],
+        ),
+        "points": table(
+            ["`points`", "0°", "90°"],
+            [[f"{n}", *(f"{r['between'][0]:.3f}" for r in found["points"] if r["points"] == n)] for n in FINER],
+        ),
+        "dilation": ", ".join(f"{row['between'][0]:.3f} MPa at {row['angle']:g}°" for row in found["dilation"]),
+    }
+
+
+def draw(found: dict[str, Any], path: Path) -> None:
+    """Strength over the angle, and three of the specimens."""
+    with style.figure(path, figsize=(9.0, 4.2)) as figure:
+        axes = figure.subplots(1, 4, gridspec_kw={"width_ratios": [3.4, 1, 1, 1]})
+        curve = axes[0]
+        for ratio, colour in zip(RATIOS, ("#9ecae1", "#6baed6", "#3182bd", "#1f5fa8", "#08306b"), strict=True):
+            rows = [row for row in found["angles"] if row["ratio"] == ratio]
+            heights = [row["between"][0] for row in rows]
+            curve.plot(ANGLES, heights, "o-", color=colour, ms=4, label=f"ks/kn = {ratio:g}")
+        curve.axhline(TENSION / 1e6, color=style.GREY, lw=0.8, ls=":")
+        curve.text(90.0, TENSION / 1e6 + 0.01, "ft", ha="right", fontsize=8)
+        curve.plot([90.0], [OF_TESTS * TENSION / 1e6], "s", color=style.REFERENCE, label="paper 002: 2.5 times 0°")
+        curve.set(xlabel="angle of the beds [deg]", ylabel="flexural strength [MPa]", ylim=(0.0, None), xticks=ANGLES)
+        curve.legend(loc="upper left", fontsize=8)
+        for axis, angle in zip(axes[1:], (0.0, 45.0, 90.0), strict=True):
+            for corners in blocks_of(angle):
+                axis.fill(*corners.T, facecolor=style.STONE, edgecolor=style.STONE_EDGE, lw=0.7)
+            axis.set(xlim=(0.0, WIDTH), ylim=(0.0, LENGTH), aspect="equal", title=f"{angle:g}°")
+            axis.axis("off")
+
+
+PICTURES = {"wallettes": draw}
