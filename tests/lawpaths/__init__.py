@@ -61,6 +61,7 @@ class Blocks(NamedTuple):
 
     velocities: np.ndarray  # (n_blocks, n_dof)
     forces: np.ndarray  # (n_blocks, n_dof)
+    stretchings: np.ndarray = np.zeros((0, 0))  # of blocks that deform
 
 
 class Looped(NamedTuple):
