@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
-# Contact points of a plane joint in 2D whose stiffness is a property. With two the moment of a joint is three times too
-# stiff, and walls carry too much (docs/deformable.md).
+# Contact points of a plane joint in 2D that carries the deformation of blocks. With two the moment of a joint is three
+# times too stiff, and walls carry too much (docs/deformable.md).
 BENDING_POINTS = 5
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
@@ -37,8 +37,8 @@ class StiffJoint(CaseModel):
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
         "of the area of contact, or at its vertices alone, or at its centre as well; default: 2; 5 where the joint can "
-        "crack, 3 where it is elastic; without softening also 5 where kn is given or blocks deform "
-        "(materials.NAME.young), but for time histories; in 3D vertices, and the centre as well where the joint can "
+        "crack, 3 where it is elastic; without softening also 5 where blocks deform (materials.NAME.young), "
+        "but for time histories; in 3D vertices, and the centre as well where the joint can "
         "crack or is elastic",
         examples=[5],
     )
@@ -51,13 +51,13 @@ class StiffJoint(CaseModel):
 
     @property
     def bends(self) -> bool:
-        """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
+        """Whether it opens bit by bit as it bends, and has BENDING_POINTS where blocks deform."""
         return True
 
     def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
         """Number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are its vertices.
 
-        They follow stiffness: where it is a property, the joint has those that its bending needs. Not where blocks land
+        Joints that carry the deformation of blocks have those that their bending needs. Not where blocks land
         on each other: points between the ends take part of the blow, and a block that rocks loses less than Housner's.
         deforms: whether the joint carries the deformation of blocks; lands: whether the analysis is a time history.
         """
@@ -67,8 +67,8 @@ class StiffJoint(CaseModel):
             return 2
         if self.points is not None:
             return AREA_POINTS[self.points]
-        soft = self.bends and not lands and (deforms or self.kn != "auto")
-        return max(self.plane_points, BENDING_POINTS) if soft else self.plane_points
+        bends = self.bends and not lands and deforms
+        return max(self.plane_points, BENDING_POINTS) if bends else self.plane_points
 
     def centred(self, dimension: int) -> bool:
         """Whether its contact points are the vertices and the centre of an area."""

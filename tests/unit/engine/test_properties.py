@@ -53,11 +53,11 @@ YOUNG = {"young": 1e9}
     ("joint", "stone", "points"),
     [
         (FRICTION, {}, 2),
-        (GIVEN, {}, 5),
+        (GIVEN, {}, 2),
         (GIVEN | {"points": 2}, {}, 2),
         (GIVEN | SOFTENING, {}, 2),
         (GIVEN | {"law": "elastic", "friction": None}, {}, 3),
-        (GIVEN | {"law": "crushing", "compression": 1e7}, {}, 5),
+        (GIVEN | {"law": "crushing", "compression": 1e7}, {}, 2),
         (GIVEN | {"profile": {"sides": 3, "aperture": 1e-4}}, {}, 4),
         (FRICTION, YOUNG, 5),
         (FRICTION, YOUNG | {"deformation": "none"}, 2),

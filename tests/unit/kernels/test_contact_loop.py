@@ -130,7 +130,7 @@ def moment(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
 def run(n_steps: int, mode: int, other, sim: Simulation, control: np.ndarray, ledger: np.ndarray) -> None:
     """Steps of a twin in space."""
     compiled_advance("fixed", sim.law)(
-        n_steps, mode, 1.0, other.bodies, sim.shape, other.joints, sim.geometry, other.contacts, other.loads,
+        n_steps, mode, 1.0, other.bodies, sim.shape, other.joints, sim.geometry, other.contacts, sim.links, other.loads,
         control, ledger, LIKE[3], LIKE_ROTATION[3],
     )  # fmt: skip
 
