@@ -111,7 +111,7 @@ def test_a_load_that_hangs_on_the_stiffness_says_so(ratio, load, holds):
     settings = replace(DEFAULT, stiffness=replace(DEFAULT.stiffness, statics=ratio))
     path = CASES / "verification" / "wall_21_mu070.toml"
     summary, _ = solve(path, "analysis.kinematics=large", "analysis.follow=0", settings=settings)
-    assert summary["failure_load"] == pytest.approx(load, abs=2e-4)
+    assert summary["failure_load"] == pytest.approx(load, rel=RESOLUTION)  # the last bits of a machine decide within it
     assert summary["softer_joints_hold"] is holds
     assert any("on joints 10 times as soft" in warning for warning in summary["warnings"]) is not holds
 
