@@ -27,7 +27,12 @@ def pushovers() -> list[Path]:
 
 
 def known(tables: dict[str, Any]) -> bool:
-    """Whether all joints are Coulomb's and closed: limit analysis has no other law, and knows the drawing alone."""
+    """Whether all joints are Coulomb's and closed: limit analysis has no other law, and knows the drawing alone.
+
+    Not where displacement is controlled: such cases are about their curves.
+    """
+    if tables["analysis"].get("control") == "displacement":
+        return False
     coulomb = all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
     return coulomb and "imperfection" not in tables
 
