@@ -79,6 +79,7 @@ def test_one_arch_in_all_cases():
     assert arch_table["ring"] == segment["ring_thickness_m"]
     for path in CASES[1:]:
         case = tomllib.loads(path.read_text(encoding="utf-8"))
+        case["joints"]["dry"].pop("points", None)  # two, which is what all of them have
         assert [case[key] for key in ("materials", "joints", "structure")] == [
             first[key] for key in ("materials", "joints", "structure")
         ], path.stem
