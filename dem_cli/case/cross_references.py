@@ -12,7 +12,16 @@ from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
-SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+SELECTING = (
+    "imperfection",
+    "load",
+    "pressure",
+    "fill",
+    "restraint",
+    "settlement",
+    "initial",
+    "monitor",
+)  # that select blocks
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
@@ -44,7 +53,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
-    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
+    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data), *odd_cracks(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -118,6 +127,22 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
         joint = table.get("joint")
         if isinstance(joint, str) and joint not in joints:
             yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
+
+
+def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints within stones that do not exist, and stones in pieces that [[imperfection]] would take for stones."""
+    joints = names(data, "joints")
+    for path, table in entries(data, "structure"):
+        crack, place = table.get("crack"), (*path, "crack")
+        if isinstance(crack, dict):
+            crack, place = crack.get("joint"), (*place, "joint")
+        if isinstance(crack, str) and crack not in joints:
+            yield CaseProblem(place, unknown_name("joint", crack, joints))
+        elif crack is not None and data.get("imperfection"):
+            yield CaseProblem(
+                (*path, "crack"),
+                "not known beside [[imperfection]]: the pieces of a stone would get errors each its own",
+            )
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
