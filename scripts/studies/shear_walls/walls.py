@@ -73,16 +73,16 @@ def draw_tests(axis: Axes, one: Mapping[str, Any]) -> None:
 
 
 def draw_curve(axis: Axes, one: Mapping[str, Any], label: str, **line: Any) -> None:
-    """A curve [mm, kN]; axes begin at nothing."""
+    """A curve [mm, kN]."""
     axis.plot(MM * np.array(one["displacements"]), KN * np.array(one["loads"]), label=label, **line)
-    axis.set_ylim(bottom=0.0)
-    axis.set_xlim(left=0.0)
 
 
 def legend_below(figure: Figure) -> None:
-    """One legend for all panels, with the words of the one that has most."""
+    """One legend for all panels, whose axes begin at nothing."""
     found = dict[str, Any]()
     for axis in figure.axes:
+        axis.set_ylim(bottom=0.0)
+        axis.set_xlim(left=0.0)
         found |= {label: handle for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=min(len(found), 4))
 
