@@ -31,7 +31,7 @@ def restrained(case: Case, model: Model) -> np.ndarray:
         blocks = model.chosen(table.selected, False)
         for k, motion in enumerate(table.fixed):
             columns = [name == motion or (motion == ROTATION and name.startswith(ROTATION)) for name in names]
-            held[np.ix_(blocks, columns)] = True
+            held[np.ix_(blocks, np.flatnonzero(columns))] = True
             if not any(columns):
                 known = either((*names, *(() if ROTATION in names else (ROTATION,))))
                 message = f"{show(motion)} is not allowed in {model.dimension}D; must be {known}"

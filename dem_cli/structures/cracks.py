@@ -67,7 +67,7 @@ def along(corners: np.ndarray) -> np.ndarray:
 
 def _cut(parts: Sequence[Any], normal: np.ndarray, height: float) -> tuple[list[Any], list[Any]]:
     """Parts on both sides of the plane {x: normal · x = height} [m]."""
-    behind, beyond = [], []
+    behind, beyond = list[Any](), list[Any]()
     for part in parts:
         sides = _solid_halves(part, normal, height) if isinstance(part, Polyhedron) else _halves(part, normal, height)
         behind += sides[0]
