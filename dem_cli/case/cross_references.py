@@ -13,6 +13,7 @@ from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
 SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
@@ -44,7 +45,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
-    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
+    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data), *unknown_bars(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -68,12 +69,13 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
     """Materials whose blocks have strains where that is not known: with real masses, which would vibrate far too
-    fast, and beside ties.
+    fast, and beside ties and bars.
     """
     if not isinstance(data.get("materials"), dict):
         return
     reason = f"in kind = {show(kind)}: strains need analyses without time" if kind in WITH_REAL_MASSES else ""
-    reason = reason or ("beside [[tie]]: ties hold on to blocks that keep their shape" if data.get("tie") else "")
+    held = next((key for key in LINKS if data.get(key)), None)
+    reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
     for name, table in data["materials"].items():
         if reason and isinstance(table, dict) and table.get("deformation") == "uniform-strain":
             yield CaseProblem(("materials", name, "deformation"), f"'uniform-strain' is not known {reason}")
@@ -118,6 +120,15 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
         joint = table.get("joint")
         if isinstance(joint, str) and joint not in joints:
             yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
+
+
+def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Bars of [[reinforcement]] tables that do not exist."""
+    known = names(data, "bars")
+    for path, table in entries(data, "reinforcement"):
+        name = table.get("bar")
+        if isinstance(name, str) and name not in known:
+            yield CaseProblem((*path, "bar"), unknown_name("bar", name, known))
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:

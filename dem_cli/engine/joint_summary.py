@@ -9,7 +9,9 @@ import numpy as np
 from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
 from dem_cli.engine import measures
 from dem_cli.engine.simulation import Simulation
+from dem_cli.links.matrices import each
 
+SECTIONS = {"tie": "ties", "reinforcement": "bars"}  # kind of link: key of the summary
 LAST_EQUILIBRIUM, END = "last equilibrium", "end"
 
 
@@ -19,7 +21,7 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
     positions = sim.bodies.positions + sim.origin
     ids = sim.model.block_ids
     if not len(joints.places.area):
-        return {"at": instant, "joints": 0, "open": 0} | _ties(sim)
+        return {"at": instant, "joints": 0, "open": 0} | _links(sim)
     states = joints.at(positions, sim.bodies.orientations, measures.contact_record(sim)).states
 
     def largest(values: np.ndarray) -> dict[str, Any]:
@@ -32,17 +34,13 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
         "slip": largest(np.abs(states.slip)),
         "normal_stress": largest(states.normal_stress),
         "shear_stress": largest(np.abs(states.shear_stress)),
-        **_ties(sim),
+        **_links(sim),
     }
 
 
-def _ties(sim: Simulation) -> dict[str, Any]:
-    """Force, elongation and whether it yielded, of each link by its name; nothing where there are none."""
-    if not sim.links:
-        return {}
-    state = np.concatenate([link.state for link in sim.links])
-    said = {
-        name: {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
-        for name, (plastic, stretch, force) in zip(sim.model.link_names, state.tolist(), strict=True)
-    }
-    return {"ties": said}
+def _links(sim: Simulation) -> dict[str, Any]:
+    """What each link says of itself by its name, ties and bars apart; nothing where there are none."""
+    said: dict[str, dict[str, Any]] = {}
+    for link, number, name in each(sim.links, sim.model.link_names):
+        said.setdefault(SECTIONS[link.kind], {})[name] = link.answer(number)
+    return said

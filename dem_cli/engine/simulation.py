@@ -22,7 +22,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
-from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
+from dem_cli.links.matrices import elastic_energy_of_links, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.uniform_strain import gradients_of
@@ -317,7 +317,7 @@ class Simulation:
         """
         before = elastic_energy_of_links(self.links)
         for link in self.links:
-            follow(link, motion, self.bodies)
+            link.follow(motion, self.bodies)
         self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
         bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
