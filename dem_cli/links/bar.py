@@ -129,7 +129,7 @@ class Bars(NamedTuple):
     slips: np.ndarray  # of the nodes [m], (n,)
     step: np.ndarray  # (n,)
     unbalanced: np.ndarray  # (n,)
-    diagonal: np.ndarray  # (n,)
+    diagonal: np.ndarray  # inverse, (n,)
     drive: np.ndarray  # elongations of elements without slips [m], (n_elements,)
     cosines: np.ndarray  # between an element and the bar at either end, (n_elements, 2)
     stretch: np.ndarray  # (m,)

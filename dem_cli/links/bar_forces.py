@@ -82,15 +82,15 @@ def newton_step(bars, bar):
         step[i] = -bars.unbalanced[i]
         if i > begin:
             beside = -bars.cosines[e, 0] * bars.cosines[e, 1] * bars.tangent[n + e]
-            share = beside / diagonal[i - 1]
+            share = beside * diagonal[i - 1]
             own -= share * beside
             step[i] -= share * step[i - 1]
-        diagonal[i] = own
+        diagonal[i] = 1.0 / own
     for i in range(end - 1, begin - 1, -1):
         if i < end - 1:
             e = i + 1 + bar
             step[i] += bars.cosines[e, 0] * bars.cosines[e, 1] * bars.tangent[n + e] * step[i + 1]
-        step[i] /= diagonal[i]
+        step[i] *= diagonal[i]
     slope = 0.0
     for i in range(begin, end):
         slope += bars.unbalanced[i] * step[i]
