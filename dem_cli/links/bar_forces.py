@@ -20,6 +20,7 @@ ITERATIONS = 40  # of Newton's method; one or two do, and what is left goes on i
 HALVINGS = 12  # of a step that goes too far
 EXACT = 1e-10  # unbalanced force of a node over the largest force in its bar
 SOFTENED = 1e-6  # tangent of a spring at its limit over its stiffness, so that a bar that slides as a whole has one
+TURNS = 4  # of the direction across a joint towards that with nodes that have given way
 TOO_FAR = 0.1  # slope behind a step over that before it, from which on the step was too long
 
 
@@ -186,19 +187,18 @@ def drives_that_move(bars, bodies, like, like_rotation):
             arm_b = axpy(bars.slips[i], along_b, turned_arm(bodies.turns, b, load(bars.arms, c, d, like)))
             centres = axpy(-1.0, load(bodies.positions, a, 0, like), load(bodies.positions, b, 0, like))
             between = axpy(1.0, centres, axpy(-1.0, arm_a, arm_b))
-            side_a = axpy(-dot(between, along_a), along_a, between)
-            side_b = axpy(-dot(between, along_b), along_b, between)
+            # Nodes go by N sin/(kd l) across the bar, towards the line between them, of which that turns the direction.
             row = dowels + 2 * c
-            give_a, give_b = bars.state[row, STRETCH], bars.state[row + 1, STRETCH]  # N over stiffness [m]
-            line = between
-            for _ in range(2):
-                whole = norm(line) + give_a + give_b
-                line = axpy(-give_a / whole, side_a, axpy(-give_b / whole, side_b, between))
-            whole = norm(line) + give_a + give_b
-            arm_a = axpy(give_a / whole, side_a, arm_a)
-            arm_b = axpy(-give_b / whole, side_b, arm_b)
-            length = norm(line)
-            axis = scale(1.0 / length, line)
+            give_a, give_b = bars.state[row, STRETCH], bars.state[row + 1, STRETCH]  # N/(kd l) [m]
+            axis = scale(1.0 / norm(between), between)
+            for _ in range(TURNS):
+                along = axpy(give_b * dot(axis, along_b), along_b, between)
+                along = axpy(give_a * dot(axis, along_a), along_a, along)
+                whole = norm(along)
+                axis = scale(1.0 / whole, along)
+            length = whole - give_a - give_b
+            arm_a = axpy(give_a, axpy(-dot(axis, along_a), along_a, axis), arm_a)
+            arm_b = axpy(-give_b, axpy(-dot(axis, along_b), along_b, axis), arm_b)
             cos_a, cos_b = dot(axis, along_a), dot(axis, along_b)
             bars.cosines[e, 0], bars.cosines[e, 1] = cos_a, cos_b
             bars.drive[e] = length - bars.lengths[c] + cos_a * bars.slips[i - 1] - cos_b * bars.slips[i]
