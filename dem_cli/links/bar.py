@@ -19,7 +19,7 @@ from pydantic import Field
 from dem_cli.case.base import CaseModel, KeyProblem, Name, Positive, Vector
 from dem_cli.links.bar_forces import make_bar_forces
 from dem_cli.links.chain import Chain
-from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Reading, Springs
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
 from dem_cli.links.spans import Spans, spans
 
 FINE, COARSE = 0.2, 0.4  # μ l of elements: by default, and from which on they are too long
@@ -123,6 +123,7 @@ class Bars(NamedTuple):
     state: np.ndarray  # plastic elongation, elongation [m] (of bonds: slip; of dowels: N/kd l), force [N], (m, 3)
     node_blocks: np.ndarray  # block in which each node lies, (n,) int64
     node_arms: np.ndarray  # nodes from its centroid [m], (n, d)
+    tips: np.ndarray  # both ends of each bar from the centroids of their blocks [m], (n_bars, 2, d)
     node_places: np.ndarray  # nodes along their bar from its start [m], (n,)
     reach: np.ndarray  # length of bar that each node holds [m], (n,)
     # what the loop works with
@@ -324,6 +325,21 @@ class Bars(NamedTuple):
             "slid": bool((np.abs(slips[:, PLASTIC]) > SLIPPED * own).any()),
         }
 
+    def outline(self) -> Outline:
+        """From end to end through the nodes; the force at a node is the mean of those in the elements beside it."""
+        blocks, arms, forces, n = [], [], [], len(self.slips)
+        for bar in range(self.n_drawn):
+            begin, end, _ = self.rows(bar)
+            elements = self.state[n + begin + bar : n + end + bar + 1, FORCE]
+            forces += [elements[:1], 0.5 * (elements[:-1] + elements[1:]), elements[-1:]]
+            arms += [self.tips[bar, :1], self.node_arms[begin:end], self.tips[bar, 1:]]
+            blocks += [
+                self.node_blocks[begin : begin + 1],
+                self.node_blocks[begin:end],
+                self.node_blocks[end - 1 : end],
+            ]
+        return Outline(np.diff(self.first) + 2, *map(np.concatenate, (blocks, arms, forces)))
+
     def words(self, number: int, ids: Sequence[str]) -> str:
         """What one is, in a line; ids: of the blocks."""
         begin, end, _ = self.rows(number)
@@ -386,6 +402,7 @@ def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: 
         state=np.zeros((m, N_STATE)),
         node_blocks=blocks,
         node_arms=arms,
+        tips=np.array([[bar.pieces[0].ends[0], bar.pieces[-1].ends[1]] for bar in drawn]),
         node_places=places,
         reach=reach,
         slips=np.zeros(n),

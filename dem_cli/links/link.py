@@ -46,6 +46,15 @@ class Reading(NamedTuple):
     weights: tuple[float, ...]
 
 
+class Outline(NamedTuple):
+    """Links as lines through points, one after the other."""
+
+    counts: np.ndarray  # points of each, (n_links,) int64
+    blocks: np.ndarray  # of each point, or FIXED_POINT, (n_points,) int64
+    arms: np.ndarray  # from the centroid of its block, undeformed; of a fixed point its place [m], (n_points, d)
+    forces: np.ndarray  # axial, tension positive [N], (n_points,)
+
+
 class LinkArrays(Protocol):
     """The elements of one kind, as its compiled function sees them; a NamedTuple of arrays."""
 
@@ -95,6 +104,9 @@ class LinkArrays(Protocol):
 
     def answer(self, number: int) -> dict[str, Any]:
         """The state of one for summary.json."""
+
+    def outline(self) -> Outline:
+        """All as lines through points of their blocks, with the forces of this instant."""
 
     def words(self, number: int, ids: Sequence[str]) -> str:
         """What one is, in a line for people; ids: of the blocks, that of a fixed point last."""

@@ -21,7 +21,7 @@ from dem_cli.kernels.contact_point import push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale
-from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Reading, Springs
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
 from dem_cli.links.material_points import turned_arm
 from dem_cli.links.spans import Spans, spans
 
@@ -201,6 +201,12 @@ class Ties(NamedTuple):
         """Force, elongation and whether it yielded, of one."""
         plastic, stretch, force = self.state[number].tolist()
         return {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
+
+    def outline(self) -> Outline:
+        """From end to end."""
+        n, d = self.axes.shape
+        forces = np.repeat(self.state[:, FORCE], 2)
+        return Outline(np.full(n, 2), self.blocks.ravel(), self.arms.reshape(2 * n, d), forces)
 
     def words(self, number: int, ids: Sequence[str]) -> str:
         """What one is, in a line; ids: of the blocks, that of a fixed point last."""

@@ -225,6 +225,16 @@ JOINT_STATES = {
     ),
     "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _STATE),
 }  # fmt: skip
+_LINK_POINT = ("point of a link",)
+LINKS = {
+    "starts": Described("first point of each tie or bar; the last number is their count", PURE, ("link + 1",)),
+    "blocks": Described("block that takes each point along; −1: none", PURE, _LINK_POINT),
+    "arms": _vector(
+        "point from the centroid of its block, as drawn; of no block from the origin", "m",
+        ("point of a link", "coordinate"),
+    ),
+    "forces": Described("axial force at each point, tension positive", "N", ("frame", "point of a link")),
+}  # fmt: skip
 _ROW = ("row",)
 HISTORY = {
     "step": Described("solver steps so far", PURE, _ROW),
@@ -308,6 +318,11 @@ GROUPS = {  # of results.h5
         "points, but no joint",
         JOINT_PLACES | JOINT_STATES,
     ),
+    "/dem/links": Group(
+        "ties and bars, where there are any: lines through points of blocks, and the forces in them at every frame",
+        LINKS,
+        {"names": "name of each tie and bar", "kinds": "table of the case that each was drawn in"},
+    ),
     "/dem/history": Group("states that the solver reported", HISTORY, {"monitors": "names of the [[monitor]] tables"}),
     "/dem/history/energy": Group("the energy ledger, a value per row of the history", ENERGY),
     "/dem/series": Group(
@@ -360,6 +375,11 @@ JOINT_FIELDS = {
     **{f"CellData/{name}": said for name, said in JOINT_STATES.items() if name != "state"},
     "CellData/state": Described("0 open, 1 sticking, 2 sliding"),
 }
+LINK_FIELDS = {
+    "PointData/force": Described("axial force, tension positive", "N"),
+    "CellData/link": Described("number of the tie or bar, in the order of /dem/links"),
+    "CellData/largest_force": Described("largest axial force of it, tension positive", "N"),
+}
 STEP_FIELDS = {
     "FieldData/load_multiplier": Described("load multiplier λ"),
     "FieldData/control_displacement": Described("largest displacement of any block since the start", "m"),
@@ -371,6 +391,7 @@ VTK_FILES = {  # what each shows, and its fields
     "blocks.vtkhdf": ("blocks, as cells whose corners move", BLOCK_FIELDS),
     "contacts.vtkhdf": ("contact points with their forces", CONTACT_FIELDS),
     "joints.vtkhdf": ("joints as they were drawn, as lines that move with the blocks", JOINT_FIELDS),
+    "links.vtkhdf": ("ties and bars, where there are any, as lines that move with the blocks", LINK_FIELDS),
 }
 
 

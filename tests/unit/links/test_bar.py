@@ -100,7 +100,7 @@ def test_bond_follows_its_closed_form(moves):
     assert np.abs(rows[:, 0] - expected).max() < 0.005 * SB * LONG
     assert rows[-1, 0] == pytest.approx(SB * LONG, rel=1e-9)
     assert rows[0, 0] == pytest.approx(expected[0], rel=5e-3)
-    force, work, lost = rows[-1]
+    _, work, lost = rows[-1]
     assert work - lost - bar.energy() == pytest.approx(0.0, abs=1e-9 * work)
     assert bar.answer(0)["slid"]
 
