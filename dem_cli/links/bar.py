@@ -22,7 +22,7 @@ from dem_cli.links.chain import Chain
 from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
 from dem_cli.links.spans import Spans, spans
 
-FINE, COARSE = 0.2, 0.4  # μ l of elements: by default, and from which on they are too long
+FINE = 0.2  # μ l of elements by default
 KINKED = 0.1  # stiffness across a joint over that along the bar, for masses: the element there turns when blocks slide
 SLIPPED = 1e-9  # of the elastic slip at the strength of the bond: less is round-off
 
@@ -326,19 +326,27 @@ class Bars(NamedTuple):
         }
 
     def outline(self) -> Outline:
-        """From end to end through the nodes; the force at a node is the mean of those in the elements beside it."""
-        blocks, arms, forces, n = [], [], [], len(self.slips)
+        """From end to end through the nodes and on either side of the joints; at a node the mean force beside it."""
+        blocks, arms, forces, counts, n, d = [], [], [], [], len(self.slips), self.axes.shape[1]
         for bar in range(self.n_drawn):
             begin, end, _ = self.rows(bar)
             elements = self.state[n + begin + bar : n + end + bar + 1, FORCE]
-            forces += [elements[:1], 0.5 * (elements[:-1] + elements[1:]), elements[-1:]]
-            arms += [self.tips[bar, :1], self.node_arms[begin:end], self.tips[bar, 1:]]
-            blocks += [
-                self.node_blocks[begin : begin + 1],
-                self.node_blocks[begin:end],
-                self.node_blocks[end - 1 : end],
+            here = self.joints_of(bar)
+            right = np.repeat(self.joints[here] - bar, 2) + np.tile([-1, 0], here.stop - here.start)  # nodes
+            along = self.along[here].reshape(-1, d)
+            half = np.tile([0.5, -0.5], here.stop - here.start)[:, None] * self.reach[right, None]
+            at = np.repeat(self.joints[here] - bar - begin, 2)
+            held, nodes = self.node_blocks[begin:end], self.node_arms[begin:end]
+            means = 0.5 * (elements[:-1] + elements[1:])
+            blocks += [held[:1], np.insert(held, at, self.node_blocks[right]), held[-1:]]
+            arms += [
+                self.tips[bar, :1],
+                np.insert(nodes, at, self.node_arms[right] + half * along, 0),
+                self.tips[bar, 1:],
             ]
-        return Outline(np.diff(self.first) + 2, *map(np.concatenate, (blocks, arms, forces)))
+            forces += [elements[:1], np.insert(means, at, elements[at]), elements[-1:]]
+            counts.append(end - begin + 2 + len(at))
+        return Outline(np.array(counts), np.concatenate(blocks), np.concatenate(arms), np.concatenate(forces))
 
     def words(self, number: int, ids: Sequence[str]) -> str:
         """What one is, in a line; ids: of the blocks."""

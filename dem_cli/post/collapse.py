@@ -184,6 +184,6 @@ def _legend(figure: Any, states: tuple[str, ...], has_line: bool, linked: bool) 
     thrust = "thrust line" if has_line else "joint force"
     handles.append(Line2D([], [], color=style.THRUST, lw=3, alpha=0.8, label=f"{thrust} (thickness: size)"))
     if linked:
-        handles.append(Line2D([], [], color=style.STEEL, lw=3, label="tie or bar (thickness: force)"))
+        handles.append(Line2D([], [], color=style.STEEL, lw=3, label="tie or bar (force)"))
     handles.append(Line2D([], [], color=style.REST, lw=1, ls=(0, (3, 2)), label="undeformed"))
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=9, handlelength=1.8)
