@@ -1,9 +1,10 @@
 """kind = "pushover" with control = "displacement": the capacity curve, and the proof of its peak.
 
-The displacement of the live load grows from gravity to beyond the peak (statics/displacement_control.py), twice: with
-increments as they are asked for, and with coarser ones before, which show whether the peak hangs on them. The state at
-the peak is then held under a constant load a little below, from where the load is raised until failure is proved, as
-under load control: the failure load is one of that history.
+The displacement of the live load grows from gravity to beyond the peak (statics/displacement_control.py), and once more
+up to the peak in longer increments, which show whether it hangs on them. Where it does not, the state at the peak is
+held under a constant load a little below, from where the load is raised until failure is proved, as under load control:
+the failure load is one of that history. Where it does, the load is raised from gravity, and the run says by how much
+the curve misses it.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
 from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
+from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import FALLS, Frame, HistoryRow, Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range
 from dem_cli.statics.compliance import check_moves, compliance
@@ -28,11 +30,14 @@ from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import CURVE, CurveStart
+from dem_cli.statics.warm_start import CURVE, GRAVITY, CurveStart
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
+
+FOLLOWING = "following the capacity curve"
+HANGS = "the peak of the curve hangs on its increments; the load is raised from gravity"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -44,7 +49,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     try:
         if settle(sim, track, job.budget).state == "equilibrium":
             track.flush()
-            found |= _curve_and_peak(job, sim, search, track)
+            _curve_and_peak(job, track, search, found)
         else:
             search.status = FALLS
             track.flush()
@@ -65,27 +70,24 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], answer(search, sim, resolution) | found)
 
 
-def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
-    """The curve, then the bracket around its peak; what is found of the load goes to `search` as it is found."""
-    analysis, settings = job.case.analysis, job.settings.displacement_control
-    at_rest = sim.save()
-    elastic = compliance(sim, job.budget)[0]
+def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
+    """The curve, then the bracket around its peak; what is found goes to `found` and `search` as it is found.
+
+    Raises SolverError where the budget ends.
+    """
+    analysis, sim = job.case.analysis, track.sim
+    at_rest, elastic = sim.save(), compliance(sim, job.budget)[0]
     check_moves(sim, elastic)
-    control = DisplacementControl(sim, job.budget, elastic)
-    coarse = trace(control, analysis.follow, analysis.increments, coarser=settings.coarser)
-    sim.restore(at_rest)
-    curve = trace(control, analysis.follow, analysis.increments, _Shown(job, track, coarse, settings.past))
+    curve, hangs = _curve(job, track, elastic, found)
     end = sim.save()
-    told = curve_answers.summary(job, curve, control.forces, sim.live_scale)
-    told["peak_load_of_coarser_increments"] = coarse.highest.load * sim.live_scale
-    found: dict[str, Any] = {"capacity_curve": told, "displacement_at_failure": curve.highest.largest}
-    job.warnings += _words(curve, coarse, analysis.resolution)
     if analysis.check is not None:
-        found |= curve_answers.CurveCheck(job, sim, analysis.check).run(told, curve, (at_rest, end))
+        found |= curve_answers.CurveCheck(job, sim, analysis.check).run(found["capacity_curve"], curve, (at_rest, end))
     sim.restore(at_rest)
-    search.limits, search.start = RigidLimits(job, sim), {"kind": CURVE, "load": curve.highest.load * sim.live_scale}
+    search.limits, peak = RigidLimits(job, sim), curve.highest.load * sim.live_scale
+    search.start = {"kind": GRAVITY, "note": HANGS} if hangs else {"kind": CURVE, "load": peak}
     wanted = SearchRange(analysis.resolution, analysis.max_load)
-    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(_start(curve, sim))
+    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(None if hangs else _start(curve, sim))
+    job.warnings += _missed(search, peak, analysis.resolution)
     if search.held is not None:
         sim.restore(search.standing)
         found["joint_state"] = joint_state(sim, LAST_EQUILIBRIUM)
@@ -93,7 +95,50 @@ def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad, track: Track
         sim.restore(search.failed_state)
         found |= describe(sim, search.failed_from or search.standing)
     sim.restore(end)
-    return found
+
+
+def _curve(job: Job, track: Track, elastic: float, found: dict[str, Any]) -> tuple[CapacityCurve, bool]:
+    """The curve, and whether its peak hangs on the increments; the simulation is left at its end.
+
+    Raises SolverError where the budget ends; the points up to there are in `found`.
+    """
+    analysis, sim = job.case.analysis, track.sim
+    at_rest, longest = sim.save(), analysis.follow / analysis.increments
+    curve, drawn = CapacityCurve(), _Drawing(track, FOLLOWING, analysis.follow, job.case.output.snapshots)
+    try:
+        control = DisplacementControl(sim, job.budget, elastic, drawn.watch)
+        trace(control, curve, analysis.follow, longest, drawn)
+    except (SolverError, KeyboardInterrupt) as ended:
+        curve.stopped = str(ended) or INTERRUPTED
+        raise
+    finally:
+        drawn.hand_over(curve)
+        told = curve_answers.summary(job, curve, measures.live_force(sim), sim.live_scale)
+        found |= {"capacity_curve": told, "displacement_at_failure": curve.highest.largest}
+        job.warnings += _ends(curve)
+    end = sim.save()
+    sim.restore(at_rest)
+    coarse = _coarser(job, track, elastic, curve)
+    told["peak_load_of_coarser_increments"] = coarse * sim.live_scale
+    sim.restore(end)
+    load = curve.highest.load
+    if abs(coarse - load) <= analysis.resolution * abs(load):
+        return curve, False
+    job.warnings.append(
+        f"the peak hangs on the increments: longer ones change it by {100 * (coarse / load - 1):+.2g} %; "
+        "more of them (analysis.increments) come closer to slow loading"
+    )
+    return curve, True
+
+
+def _coarser(job: Job, track: Track, elastic: float, curve: CapacityCurve) -> float:
+    """Internal multiplier of the peak of a curve in longer increments, to where the other one came to its peak."""
+    settings, analysis = job.settings.displacement_control, job.case.analysis
+    near = curve.first_within(settings.near * analysis.resolution).largest - curve.points[0].largest
+    coarse, drawn = CapacityCurve(), _Drawing(track, "the same curve in longer steps", near, 0)
+    control = DisplacementControl(track.sim, job.budget, elastic, drawn.watch)
+    trace(control, coarse, near, analysis.follow / analysis.increments, coarser=settings.coarser)
+    return coarse.highest.load
 
 
 def _start(curve: CapacityCurve, sim: Simulation) -> CurveStart:
@@ -101,43 +146,64 @@ def _start(curve: CapacityCurve, sim: Simulation) -> CurveStart:
     return CurveStart(curve.highest.load * sim.live_scale, curve.at_peak)
 
 
-class _Shown:
-    """Rows and frames of a curve as it grows; a first, coarser one says how far it goes and where its peak is."""
+class _Drawing:
+    """Rows and frames of a curve as it grows, kept until its peak is known, and how far it is."""
 
-    def __init__(self, job: Job, track: Track, first: CapacityCurve, past: float) -> None:
-        self.track, self.sim, self.past = track, track.sim, past
-        self.until, self.highest = job.case.analysis.follow, first.highest.load
-        self.every = self.until / max(job.case.output.snapshots - 2, 1)
-        self.next_frame, self.stage, self.peaked = self.every, "loading", False
+    def __init__(self, track: Track, doing: str, until: float, wanted: int) -> None:
+        self.sim, self.track, self.doing, self.until, self.wanted = track.sim, track, doing, until, wanted
+        self.start, self.every = measures.largest_displacement(track.sim), until / max(wanted - 2, 1)
+        self.next_frame = self.every
+        self.rows: list[HistoryRow] = []
+        self.frames: list[tuple[int, Frame]] = []  # number of its row, and the frame
+
+    def watch(self) -> None:
+        """Says where the curve is."""
+        largest = measures.largest_displacement(self.sim)
+        share = min((largest - self.start) / self.until, 1.0) if self.until > 0.0 else None
+        self.track.observer.progress(self.doing, self.sim.load * self.sim.live_scale, largest, share)
 
     def __call__(self, point: CurvePoint) -> None:
         """One more point."""
-        if point.load < self.past * self.highest and self.peaked:
-            self.stage = "collapse"
-        self.highest = max(self.highest, point.load)
-        self.peaked = self.peaked or point.load >= self.past * self.highest
-        self.track.write(self.stage)
-        if point.largest >= self.next_frame:
-            self.track.frame(self.stage)
+        self.rows.append(self.track.row("loading"))
+        if point.largest >= self.next_frame and self.wanted > 0:
+            self.frames.append((len(self.rows), measures.frame(self.sim, "loading")))
             self.next_frame = point.largest + self.every
-        share = min(point.largest / self.until, 1.0)
-        load = point.load * self.sim.live_scale
-        self.track.observer.progress("following the capacity curve", load, point.largest, share)
+
+    def hand_over(self, curve: CapacityCurve) -> None:
+        """Hands over all rows and frames: where the load has fallen for good, they are those of the collapse."""
+        near = self.sim.settings.displacement_control.past * curve.highest.load
+        held = max((number for number, point in enumerate(curve.points) if point.load >= near), default=0)
+        frames = dict(self.frames)
+        for number, row in enumerate(self.rows, 1):
+            stage = "loading" if number <= held else "collapse"
+            self.track.observer.row(row._replace(stage=stage))
+            if number in frames:
+                self.track.hand_over(frames[number]._replace(stage=stage))
 
 
-def _words(curve: CapacityCurve, coarse: CapacityCurve, resolution: float) -> list[str]:
-    """Warnings: increments that change the peak, a curve that ends early, one without a peak."""
-    said = []
-    load, other, last = curve.highest.load, coarse.highest.load, curve.points[-1]
-    if abs(other - load) > resolution * abs(load):
-        said.append(
-            f"the peak hangs on the increments: longer ones change it by {100 * (other / load - 1):+.2g} %; "
-            "more of them (analysis.increments) come closer to slow loading"
-        )
+def _ends(curve: CapacityCurve) -> list[str]:
+    """Warnings: a curve that ends early, one without a peak."""
+    last = curve.points[-1]
+    if curve.stopped is not None:
+        return [f"the curve ends at {last.largest:.3g} m, where the run did: its points so far are kept"]
     if not curve.whole:
-        said.append(
+        return [
             f"the curve ends at {last.largest:.3g} m: beyond, nothing comes to rest at a displacement of the live load"
-        )
-    elif curve.peak == len(curve.points) - 1:
-        said.append("the curve still rises where it ends: its peak is further than analysis.follow")
-    return said
+        ]
+    if curve.peak == len(curve.points) - 1:
+        return ["the curve still rises where it ends: its peak is further than analysis.follow"]
+    return []
+
+
+def _missed(search: FailureLoad, peak: float, resolution: float) -> list[str]:
+    """A word where the load that was raised from gravity is not that of the peak, which hangs on the increments."""
+    if search.start.get("kind") == CURVE or not search.found or search.high is None:
+        return []
+    low, high = search.carried, search.high
+    if (1.0 - resolution) * low <= peak <= (1.0 + resolution) * high:
+        return []
+    share, where = (100 * abs(peak / low - 1), "below") if peak < low else (100 * abs(peak / high - 1), "above")
+    return [
+        f"the curve peaks {share:.2g} % {where} the failure load, which was found by raising the load from gravity: "
+        "only its shape counts"
+    ]

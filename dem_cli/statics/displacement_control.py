@@ -27,11 +27,13 @@ if TYPE_CHECKING:
 class DisplacementControl:
     """Moves a structure at rest to displacements of its live load, each a state at rest.
 
-    first: increment that a ramp of the shortest length belongs to [m] of `displacement`.
+    first: increment that a ramp of the shortest length belongs to [m] of `displacement`; watch: called now and then.
     """
 
-    def __init__(self, sim: Simulation, budget: Budget, compliance: float) -> None:
-        self.sim, self.budget, self.settings = sim, budget, sim.settings.displacement_control
+    def __init__(
+        self, sim: Simulation, budget: Budget, compliance: float, watch: Callable[[], None] = lambda: None
+    ) -> None:
+        self.sim, self.budget, self.settings, self.watch = sim, budget, sim.settings.displacement_control, watch
         self.forces = measures.live_force(sim)  # of the live load [N]
         self.origin = measures.live_travel(sim)
         self.first = self.settings.first * compliance / self.forces
@@ -68,16 +70,18 @@ class DisplacementControl:
             sim.prescribe_rate(distance * self.forces * 6.0 * share * (1.0 - share) / (stairs * length))
             sim.advance(length, sim.guided_mode)
         sim.prescribe_rate(0.0)
+        self.watch()
         self.budget.spend(stairs * length, "moving the live load")
         check_finite(sim)
 
     def _rests(self) -> bool:
-        sim, relaxation, calm = self.sim, self.sim.settings.relaxation, 0
-        for _ in range(self.settings.most // relaxation.chunk):
-            sim.advance(relaxation.chunk, sim.guided_mode)
-            self.budget.spend(relaxation.chunk, "holding a displacement of the live load")
-            calm = calm + 1 if sim.unbalanced < self.settings.tolerance else 0
-            if calm == relaxation.looks_at_rest:
+        sim, settings, calm = self.sim, self.settings, 0
+        for _ in range(settings.most // settings.look):
+            sim.advance(settings.look, sim.guided_mode)
+            self.watch()
+            self.budget.spend(settings.look, "holding a displacement of the live load")
+            calm = calm + 1 if sim.unbalanced < settings.tolerance else 0
+            if calm == settings.looks_at_rest:
                 return True
         check_finite(sim)
         return False
@@ -94,17 +98,19 @@ class CurvePoint(NamedTuple):
 class CapacityCurve:
     """The points of a capacity curve from gravity on, and the state at its highest one.
 
-    whole: whether it came as far as was asked for; else its last point is where nothing rests any more.
+    whole: whether it came as far as was asked for; else its last point is where nothing rests any more, or, where
+    stopped says why, where the run ended.
     """
 
     def __init__(self) -> None:
         self.points: list[CurvePoint] = []
-        self.peak, self.at_peak, self.at_first, self.whole = 0, None, None, False
+        self.peak, self.at_peak, self.at_first, self.whole, self.stopped = 0, None, None, False, None
 
     peak: int
     at_peak: SavedState | None
     at_first: SavedState | None  # after the first increment
     whole: bool
+    stopped: str | None
 
     def add(self, point: CurvePoint, sim: Simulation) -> None:
         """One more point; its state is kept where it is the highest so far."""
@@ -124,27 +130,34 @@ class CapacityCurve:
         values = np.array(self.points)
         return values[:, 0], values[:, 1]
 
+    def first_within(self, share: float) -> CurvePoint:
+        """The first point whose load is less than a share below the highest one."""
+        least = self.highest.load - share * abs(self.highest.load)
+        return next(point for point in self.points if point.load >= least)
+
 
 def trace(
     control: DisplacementControl,
+    curve: CapacityCurve,
     until: float,
-    increments: int,
+    longest: float,
     seen: Callable[[CurvePoint], None] = lambda point: None,
     coarser: float = 1.0,
-) -> CapacityCurve:
-    """The curve from where the structure rests under its dead loads until a block moved by `until` [m].
+) -> None:
+    """The curve from where the structure rests under its dead loads until a block moved by `until` [m], into `curve`.
 
-    increments: at least so many to there; they begin as elastic ones and grow. coarser: all so many times as long.
-    Raises SolverError where the budget ends.
+    longest: by how much blocks move in an increment at most [m]; they begin as elastic ones and grow. coarser: all are
+    so many times as long.
+    Raises SolverError where the budget ends; the points up to there are kept.
     """
-    sim, settings, curve = control.sim, control.settings, CapacityCurve()
-    distance, longest = coarser * control.first, coarser * until / increments
+    sim, settings = control.sim, control.settings
+    distance, longest = coarser * control.first, coarser * longest
     last = CurvePoint(0.0, 0.0, measures.largest_displacement(sim))
     curve.add(last, sim)
     start = last.largest
     while last.largest - start < until:
         if not control.go(distance):
-            return curve
+            return
         point = CurvePoint(control.displacement, sim.load, measures.largest_displacement(sim))
         curve.add(point, sim)
         seen(point)
@@ -153,4 +166,3 @@ def trace(
         distance = min(settings.growth * distance, longest / steeper)
         last = point
     curve.whole = True
-    return curve

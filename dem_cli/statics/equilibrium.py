@@ -117,12 +117,14 @@ def settle_or_fail(
     since: np.ndarray | None = None,
     ahead: Ahead = NOTHING_KNOWN,
     most_steps: float = math.inf,
+    change: float | None = None,
 ) -> Verdict:
     """Constant load with combined damping until equilibrium or failure is proven; "unknown" after `most_steps`.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
-    default: where it is now. ahead: what a path says of this load.
+    default: where it is now. ahead: what a path says of this load. change: what is elastic of the way there from an
+    equilibrium near by [m]; None: as much as `scale`.
     """
     relaxation = sim.settings.relaxation
     tolerance = relaxation.tolerance if tolerance is None else tolerance
@@ -131,7 +133,7 @@ def settle_or_fail(
     limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
     motion = FailureTest(sim, scale, *ahead)
-    _ramp(sim, load, scale, budget, doing)
+    _ramp(sim, load, scale if change is None else change, budget, doing)
     done, calm = 0, 0
     for look in count(2):
         while done < relaxation.chunk * round(math.sqrt(2.0) ** look):
