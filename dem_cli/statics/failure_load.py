@@ -172,7 +172,7 @@ class LoadSearch:
             if verdict.state == "equilibrium":
                 return verdict
             start.put_into(sim)
-        return settle_or_fail(sim, load, self.budget, scale, change=self._elastic_change(load))
+        return settle_or_fail(sim, load, self.budget, scale, ahead=Ahead(change=self._elastic_change(load)))
 
     def _fail_above(self, load: float) -> Verdict:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
@@ -294,7 +294,7 @@ class LoadSearch:
             tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
             verdict = settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
-                ahead=self._ahead(load), most_steps=most, change=self._elastic_change(load),
+                ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
@@ -304,13 +304,13 @@ class LoadSearch:
         return self.answer.elastic * abs(load - self.sim.load) if self.answer.start.get("kind") == CURVE else None
 
     def _ahead(self, load: float) -> Ahead:
-        """What a path that was followed says of a load."""
-        limits = self.answer.limits
+        """What a path or a curve that was followed says of a load."""
+        limits, change = self.answer.limits, self._elastic_change(load)
         if limits is not None and self.impossible < np.inf and not limits.slides:
-            return Ahead(reach=self.settings.unslid)  # there is an equilibrium, however softly something rests there
+            return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
         if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
-            return Ahead(load > self.plateau)
-        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load))
+            return Ahead(load > self.plateau, change=change)
+        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load), change)
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""
