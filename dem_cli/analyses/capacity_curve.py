@@ -1,10 +1,9 @@
 """kind = "pushover" with control = "displacement": the capacity curve, and the proof of its peak.
 
-The displacement of the live load grows from gravity to beyond the peak (statics/displacement_control.py), and once more
-up to the peak in longer increments, which show whether it hangs on them. Where it does not, the state at the peak is
-held under a constant load a little below, from where the load is raised until failure is proved, as under load control:
-the failure load is one of that history. Where it does, the load is raised from gravity, and the run says by how much
-the curve misses it.
+The displacement of the live load grows from gravity to beyond the peak (analyses/curve_tracing.py). The state at the
+peak is held under a constant load a little below, from where the load is raised until failure is proved, as under load
+control: the failure load is one of that history. Where the peak hangs on how the displacement grew, the load is raised
+from gravity instead, and the run says by how much the curve misses it.
 """
 
 from __future__ import annotations
@@ -12,19 +11,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
+from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
-from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Frame, HistoryRow, Observer
+from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
@@ -36,7 +33,6 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
 
-FOLLOWING = "following the capacity curve"
 HANGS = "the peak of the curve hangs on its increments; the load is raised from gravity"
 
 
@@ -78,16 +74,24 @@ def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str
     analysis, sim = job.case.analysis, track.sim
     at_rest, elastic = sim.save(), compliance(sim, job.budget)[0]
     check_moves(sim, elastic)
-    curve, hangs = _curve(job, track, elastic, found)
-    end = sim.save()
+    traced = CurveTracing(job, track, elastic)
+    traced.run(found)
+    curve, end = traced.curve, traced.end
     if analysis.check is not None:
         found |= curve_answers.CurveCheck(job, sim, analysis.check).run(found["capacity_curve"], curve, (at_rest, end))
     sim.restore(at_rest)
     search.limits, peak = RigidLimits(job, sim), curve.highest.load * sim.live_scale
-    search.start = {"kind": GRAVITY, "note": HANGS} if hangs else {"kind": CURVE, "load": peak}
+    start = None
+    if traced.hangs:
+        search.start = {"kind": GRAVITY, "note": HANGS}
+    else:
+        assert curve.at_peak is not None
+        start, search.start = CurveStart(peak, curve.at_peak), {"kind": CURVE, "load": peak}
     wanted = SearchRange(analysis.resolution, analysis.max_load)
-    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(None if hangs else _start(curve, sim))
-    job.warnings += _missed(search, peak, analysis.resolution)
+    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(start)
+    if missed := _missed(search, peak, analysis.resolution):
+        job.warnings += missed
+        found |= {"curve_off_the_load": True, "peak_of_curve": peak}
     if search.held is not None:
         sim.restore(search.standing)
         found["joint_state"] = joint_state(sim, LAST_EQUILIBRIUM)
@@ -95,104 +99,6 @@ def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str
         sim.restore(search.failed_state)
         found |= describe(sim, search.failed_from or search.standing)
     sim.restore(end)
-
-
-def _curve(job: Job, track: Track, elastic: float, found: dict[str, Any]) -> tuple[CapacityCurve, bool]:
-    """The curve, and whether its peak hangs on the increments; the simulation is left at its end.
-
-    Raises SolverError where the budget ends; the points up to there are in `found`.
-    """
-    analysis, sim = job.case.analysis, track.sim
-    at_rest, longest = sim.save(), analysis.follow / analysis.increments
-    curve, drawn = CapacityCurve(), _Drawing(track, FOLLOWING, analysis.follow, job.case.output.snapshots)
-    try:
-        control = DisplacementControl(sim, job.budget, elastic, drawn.watch)
-        trace(control, curve, analysis.follow, longest, drawn)
-    except (SolverError, KeyboardInterrupt) as ended:
-        curve.stopped = str(ended) or INTERRUPTED
-        raise
-    finally:
-        drawn.hand_over(curve)
-        told = curve_answers.summary(job, curve, measures.live_force(sim), sim.live_scale)
-        found |= {"capacity_curve": told, "displacement_at_failure": curve.highest.largest}
-        job.warnings += _ends(curve)
-    end = sim.save()
-    sim.restore(at_rest)
-    coarse = _coarser(job, track, elastic, curve)
-    told["peak_load_of_coarser_increments"] = coarse * sim.live_scale
-    sim.restore(end)
-    load = curve.highest.load
-    if abs(coarse - load) <= analysis.resolution * abs(load):
-        return curve, False
-    job.warnings.append(
-        f"the peak hangs on the increments: longer ones change it by {100 * (coarse / load - 1):+.2g} %; "
-        "more of them (analysis.increments) come closer to slow loading"
-    )
-    return curve, True
-
-
-def _coarser(job: Job, track: Track, elastic: float, curve: CapacityCurve) -> float:
-    """Internal multiplier of the peak of a curve in longer increments, to where the other one came to its peak."""
-    settings, analysis = job.settings.displacement_control, job.case.analysis
-    near = curve.first_within(settings.near * analysis.resolution).largest - curve.points[0].largest
-    coarse, drawn = CapacityCurve(), _Drawing(track, "the same curve in longer steps", near, 0)
-    control = DisplacementControl(track.sim, job.budget, elastic, drawn.watch)
-    trace(control, coarse, near, analysis.follow / analysis.increments, coarser=settings.coarser)
-    return coarse.highest.load
-
-
-def _start(curve: CapacityCurve, sim: Simulation) -> CurveStart:
-    assert curve.at_peak is not None
-    return CurveStart(curve.highest.load * sim.live_scale, curve.at_peak)
-
-
-class _Drawing:
-    """Rows and frames of a curve as it grows, kept until its peak is known, and how far it is."""
-
-    def __init__(self, track: Track, doing: str, until: float, wanted: int) -> None:
-        self.sim, self.track, self.doing, self.until, self.wanted = track.sim, track, doing, until, wanted
-        self.start, self.every = measures.largest_displacement(track.sim), until / max(wanted - 2, 1)
-        self.next_frame = self.every
-        self.rows: list[HistoryRow] = []
-        self.frames: list[tuple[int, Frame]] = []  # number of its row, and the frame
-
-    def watch(self) -> None:
-        """Says where the curve is."""
-        largest = measures.largest_displacement(self.sim)
-        share = min((largest - self.start) / self.until, 1.0) if self.until > 0.0 else None
-        self.track.observer.progress(self.doing, self.sim.load * self.sim.live_scale, largest, share)
-
-    def __call__(self, point: CurvePoint) -> None:
-        """One more point."""
-        self.rows.append(self.track.row("loading"))
-        if point.largest >= self.next_frame and self.wanted > 0:
-            self.frames.append((len(self.rows), measures.frame(self.sim, "loading")))
-            self.next_frame = point.largest + self.every
-
-    def hand_over(self, curve: CapacityCurve) -> None:
-        """Hands over all rows and frames: where the load has fallen for good, they are those of the collapse."""
-        near = self.sim.settings.displacement_control.past * curve.highest.load
-        held = max((number for number, point in enumerate(curve.points) if point.load >= near), default=0)
-        frames = dict(self.frames)
-        for number, row in enumerate(self.rows, 1):
-            stage = "loading" if number <= held else "collapse"
-            self.track.observer.row(row._replace(stage=stage))
-            if number in frames:
-                self.track.hand_over(frames[number]._replace(stage=stage))
-
-
-def _ends(curve: CapacityCurve) -> list[str]:
-    """Warnings: a curve that ends early, one without a peak."""
-    last = curve.points[-1]
-    if curve.stopped is not None:
-        return [f"the curve ends at {last.largest:.3g} m, where the run did: its points so far are kept"]
-    if not curve.whole:
-        return [
-            f"the curve ends at {last.largest:.3g} m: beyond, nothing comes to rest at a displacement of the live load"
-        ]
-    if curve.peak == len(curve.points) - 1:
-        return ["the curve still rises where it ends: its peak is further than analysis.follow"]
-    return []
 
 
 def _missed(search: FailureLoad, peak: float, resolution: float) -> list[str]:

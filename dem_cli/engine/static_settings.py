@@ -131,6 +131,13 @@ class DisplacementControlSettings:
     most: int = 20_000  # steps to come to rest, then the increment is tried again in
     shares: int = 4  # parts, and
     tries: int = 2  # once more in parts of these
+    driven: float = 1e-6  # of the displacement of blocks: a monitor that moves less is not moved by the live load
+    approach: tuple[float, ...] = (0.9, 1.0, 1.0)  # shares of what is left, in which a monitor comes to where it should
+    near_target: float = 0.02  # of a step: how near it comes
+    implicit_effort: float = 2e7  # factorisations × points of a curve in implicit increments: about a minute
+    implicit_longer: float = 2.0  # increments there
+    implicit_starts: tuple[float, ...] = (1.0, 1e2)  # first products of the interior point, tried in turn
+    mostly: float = 0.1  # of the increments, that may need ramps
     coarser: float = 2.0  # increments of the curve that the peak is compared with
     near: float = 0.25  # of the resolution: what the load may lack where that curve ends
     past: float = 0.999  # of the highest load so far: a curve that fell below it is past its peak
