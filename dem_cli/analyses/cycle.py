@@ -73,9 +73,11 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
             value = next_value
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
-        point = {"load": load, "displacement": measures.largest_displacement(sim)}
+        point: dict[str, Any] = {"load": load, "displacement": measures.largest_displacement(sim)}
         point["live_displacement"] = states[-1][0]
-        found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
+        if analysis.control == "displacement":
+            point |= {"controlled": target} if analysis.of is None else {"controlled": target, "of": analysis.of}
+        found["turning_points"].append(point)
         turns.append(len(states) - 1)
         displacements, loads = np.array(states).T
         made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
