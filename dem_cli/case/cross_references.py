@@ -61,10 +61,28 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
-    found += strained_blocks(data, analysis.get("kind"))
+    found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
+
+
+def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProblem]:
+    """A monitor that is controlled (analysis.of) and does not exist, or whose value is no displacement with a sign."""
+    if not isinstance(name, str):
+        return
+    monitors = [(path, table) for path, table in entries(data, "monitor") if isinstance(table.get("name"), str)]
+    named = [found for found in monitors if found[1]["name"] == name]
+    if not named:
+        hint = unknown_name("monitor", name, [table["name"] for _, table in monitors])
+        hint = hint if monitors else f"{show(name)} is no name of a [[monitor]]: give one a name"
+        yield CaseProblem(("analysis", "of"), hint)
+    for path, table in named:
+        if table.get("quantity", "displacement") != "displacement":
+            message = f"{show(table['quantity'])} cannot be controlled (analysis.of): only 'displacement' can"
+            yield CaseProblem((*path, "quantity"), message)
+        elif "component" not in table:
+            yield CaseProblem((*path, "component"), "missing; analysis.of controls a displacement with a sign")
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
