@@ -12,7 +12,9 @@ from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
-SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+SELECTING = (  # that select blocks
+    "imperfection", "load", "pressure", "fill", "restraint", "settlement", "initial", "monitor"
+)  # fmt: skip
 LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
@@ -45,7 +47,8 @@ def complete(data: dict[str, Any], title: str) -> None:
 
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
-    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data), *unknown_bars(data)]
+    found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
+    found += [*unknown_bars(data), *odd_cracks(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -147,6 +150,22 @@ def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
         name = table.get("bar")
         if isinstance(name, str) and name not in known:
             yield CaseProblem((*path, "bar"), unknown_name("bar", name, known))
+
+
+def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints within stones that do not exist, and stones in pieces that [[imperfection]] would take for stones."""
+    joints = names(data, "joints")
+    for path, table in entries(data, "structure"):
+        crack, place = table.get("crack"), (*path, "crack")
+        if isinstance(crack, dict):
+            crack, place = crack.get("joint"), (*place, "joint")
+        if isinstance(crack, str) and crack not in joints:
+            yield CaseProblem(place, unknown_name("joint", crack, joints))
+        elif crack is not None and data.get("imperfection"):
+            yield CaseProblem(
+                (*path, "crack"),
+                "not known beside [[imperfection]]: the pieces of a stone would get errors each its own",
+            )
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:

@@ -30,7 +30,7 @@ from dem_cli.case.base import (
 from dem_cli.case.block_table import BlockTable
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
-from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure
+from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
 from dem_cli.case.reference import Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
@@ -240,6 +240,7 @@ class Case(CaseModel):
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     pressure: tuple[Pressure, ...] = Field(default=(), description="pressure on faces: uniform, of water, of earth")
     fill: tuple[Fill, ...] = Field(default=(), description="earth that lies on blocks")
+    restraint: tuple[Restraint, ...] = Field(default=(), description="motions of blocks that are held from outside")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")
     initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")

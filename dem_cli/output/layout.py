@@ -129,6 +129,25 @@ MODEL = {
     "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
     "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
+    "pieces": Described(
+        "stone that each block is a piece of, and the joint within it, by their numbers; -1: a whole stone; where the "
+        "case has stones that can crack alone",
+        PURE,
+        _COMPONENT,
+        ("stone", "joint"),
+    ),
+    "restrained": Described(
+        "whether each motion of the block is held; where the case has restraints alone",
+        PURE,
+        _COMPONENT,
+        _MOVED,
+        Described(
+            "whether each motion of the block is held; where the case has restraints alone",
+            PURE,
+            _COMPONENT,
+            _MOVED_IN_SPACE,
+        ),
+    ),
 }
 _TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
