@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine import MU, scene, solve
+from engine import MU, scene
 from scipy.optimize import brentq
 from studies.space.structures import box, tables
 
@@ -84,7 +84,7 @@ def on_bed(turned_deg: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("azimuth", [90.0, 30.0])
 def test_a_loaded_block_lifts_as_it_slides(azimuth):
-    """v = tan ψ min(u, zdil) − N/kn A under constant N, u = δ − μ N/ks A; the load is μ N, and back it goes down again."""
+    """v = tan ψ min(u, zdil) − N/kn A under constant N, u = δ − μ N/ks A; the load is μ N; on its way back it sinks."""
     surcharge = {"kind": "dead", "block": "b", "force": [0.0, 0.0, -5000.0]}
     pushed = Pushed(sliding(on_bed(azimuth), loads=[surcharge], dilation_slip=REACH))
     pressed = WEIGHT + 5000.0
@@ -102,7 +102,7 @@ def test_a_loaded_block_lifts_as_it_slides(azimuth):
 
 @pytest.mark.parametrize("azimuth", [90.0, 30.0])
 def test_a_block_that_is_held_down_presses_as_it_slides(azimuth):
-    """Under a roof of stiffness k2: v = (kn tan ψ u − W/A)/(kn + k2), N = W + k2 A v; the load grows with it, then not."""
+    """Under a roof of stiffness k2: v = (kn tan ψ u − W/A)/(kn + k2), N = W + k2 A v; the load grows with it."""
     pushed = Pushed(sliding(on_bed(azimuth), roof((-0.2, -0.2), (A + 0.2, T + 0.2)), dilation_slip=REACH))
     for far in (5e-5, 1e-4, 2e-4, 4e-4):
         load, rise = pushed.to(far)
@@ -169,12 +169,11 @@ def test_a_block_that_spins_lifts_by_its_corners():
         turn = rotation_vectors(pushed.sim.bodies.orientations[[pushed.block]])[0]
         assert turn[2] == pytest.approx(far * 1e-6, rel=2e-3)
         assert measures.displacements(pushed.sim)[pushed.block, 2] == pytest.approx(rises[far], rel=3e-3)
-    of_bed = pushed.sim.joints.kn > 0.5 * KN * areas.min()
-    assert (pushed.sim.contacts.normal[of_bed] > 0.0).sum() == 4  # corners alone
+    assert (pushed.sim.contacts.normal[:9] > 0.0).sum() == 4  # of the bed, corners alone
 
 
 def spun(arms: np.ndarray, areas: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Torque [N m] and rise [m] at rotations that grow: points at radii, each an elastic layer that slips and dilates."""
+    """Torque [N m] and rise [m] at rotations that grow: points at radii, each an elastic layer that slips, dilates."""
     slips, torques, rises = np.zeros(len(arms)), [], []
 
     def state(turn: float, rise: float) -> tuple[np.ndarray, np.ndarray]:
