@@ -37,7 +37,7 @@ def wall(words: str, name: str) -> dict[str, Any]:
         if model.dimension == 3:
             own = _around(own[:, [0, 2]])
         outlines.append(np.round(own, 4).ravel().tolist())
-    found = {key: one["value"] for key, one in summary["monitors"].items()}
+    found = dict(zip((str(one.name) for one in loaded.case.monitor), seen.rows[-1].monitors, strict=True))
     return {
         "command": f"dem run cases/validation/{name}.toml", "words": words, "status": summary["status"],
         "closure": float(f"{summary['energy_closure']:.2g}"), "monitors": {k: round(v, 5) for k, v in found.items()},

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from oracle import brittle_plate
+from oracle import brittle_plate, toothed_crack
 
 from dem_cli.post import style
 from studies.mortar import specimen
@@ -27,11 +27,19 @@ def measure() -> dict[str, Any]:
         "angles": [run(angle, ratio) for angle in ANGLES for ratio in RATIOS],
         "points": [run(angle, 0.4, points) for points in FINER for angle in (0.0, 90.0)],
         "dilation": [run(angle, 0.4, dilation_deg=10.0, dilation_slip=1e-4) for angle in (0.0, 45.0, 90.0)],
+        "toothed": [toothed(ratio) for ratio in RATIOS],
         "crack_by_crack": [
             *(crack_by_crack(angle, 0.4, 3) for angle in ANGLES),
             *(crack_by_crack(angle, 0.4, points) for points in FINER for angle in (15.0, 90.0)),
         ],
     }
+
+
+def toothed(ratio: float) -> float:
+    """Strength of a toothed crack between rigid halves, nine points a side [MPa]."""
+    (long, high), thick = specimen.BLOCK, specimen.THICKNESS
+    crack = toothed_crack.Toothed(long / 2.0, high, thick, TENSION, specimen.COHESION, specimen.KN, ratio * specimen.KN)
+    return round(toothed_crack.strength(crack, brittle_plate.lobatto(9)) / 1e6, 3)
 
 
 def crack_by_crack(angle: float, ratio: float, points: int) -> dict[str, Any]:
@@ -96,6 +104,7 @@ def values(found: dict[str, Any]) -> dict[str, str]:
                 ),
             ],
         ),
+        "toothed": ", ".join(f"{value:.2f}" for value in found["toothed"]),
         "skew": ", ".join(
             f"{r['strength']:.3f}" for r in found["crack_by_crack"] if r["points"] != 3 and r["angle"] == 15.0
         ),
