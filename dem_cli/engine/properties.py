@@ -58,7 +58,8 @@ def joint_properties(
         values = _law(table).intact
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
-    deforming = _with_deforming_blocks(model, by_material, compliance)
+    bending = [table.bends for table in case.materials.values()]
+    deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
     layouts = tuple(_layout(table, case, k in deforming) for k, table in enumerate(tables))
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
     own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
@@ -81,9 +82,12 @@ def _layout(table: StiffJoint, case: Case, deforms: bool) -> PointLayout | None:
     return None if points == 2 and not centred else PointLayout(points, centred)
 
 
-def _with_deforming_blocks(model: Model, by_material: np.ndarray, compliance: BlockCompliance | None) -> set[int]:
-    """Named joints that deforming blocks may have."""
-    return set() if compliance is None else set(by_material[model.block_material[compliance.deforms]].ravel().tolist())
+def _with_deforming_blocks(
+    model: Model, by_material: np.ndarray, compliance: BlockCompliance | None, bending: np.ndarray
+) -> set[int]:
+    """Named joints that blocks may have which deform in their joints, or bend by themselves: materials of these."""
+    lumped = [] if compliance is None else model.block_material[compliance.deforms]
+    return set(by_material[np.union1d(lumped, bending).astype(int)].ravel().tolist())
 
 
 def _with_rigid_blocks(

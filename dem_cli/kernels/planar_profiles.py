@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.quadratic import bend_apart, displaced_apart
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
@@ -64,12 +65,13 @@ def make_profiled_forces(
     meets: bool = False,
     rigid: bool = False,
     strains: bool = False,
+    bends: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
-    planar_forces.py.
+    planar_forces.py. bends: blocks have quadratic modes as well (kernels/deformation/quadratic.py).
     """
     press = make_press(law, bonded)
 
@@ -159,6 +161,10 @@ def make_profiled_forces(
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
                         gap, faces = max(gap, 0.0), False
                 depth = gap
+                if bends or (places and bodies.bent.shape[0] > 0):
+                    frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
+                    arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                    gap += displaced_apart(bodies.bent, bodies.turns, a, b, frame, arm_a, arm_b)[0]
                 gap += offset
                 if wrong:
                     gap = max(gap, 0.0)
@@ -184,6 +190,8 @@ def make_profiled_forces(
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
+                if bends:
+                    slide = (slide[0] + dt * displaced_apart(bodies.bending, bodies.turns, a, b, frame, arm_a, arm_b)[1],)
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 force, torque_a, torque_b = add_force(
@@ -191,11 +199,15 @@ def make_profiled_forces(
                 )  # fmt: skip
                 if strains:
                     stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
+                if bends:
+                    pushed = compose(frame, normal, shear, scale(0.0, like))
+                    bend_apart(bodies.triads, bodies.turns, a, b, pushed, arm_a, arm_b)
             if loaded:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}
+    flags |= {"bends": bends}
     return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 

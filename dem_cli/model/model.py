@@ -27,6 +27,7 @@ from dem_cli.model.block_measures import (
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
+NO_SHAPES = np.zeros((0, 6, 2, 6))
 
 
 class ModelArrays(NamedTuple):
@@ -59,10 +60,11 @@ class ModelArrays(NamedTuple):
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
     live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
+    mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), else empty, (n_blocks, 6, 2, 6)
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
-OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads")  # empty where blocks are rigid
+OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes")  # empty where blocks are rigid
 
 
 class Model(ModelArrays):
@@ -183,7 +185,7 @@ class Model(ModelArrays):
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
             links=(),
             link_names=(),
-            **{name: getattr(self, name)[pick] for name in OF_MODES if self.n_modes},
+            **{name: getattr(self, name)[pick] for name in OF_MODES if len(getattr(self, name))},
         )
 
     def parts_alone(self) -> Model:
@@ -194,6 +196,7 @@ class Model(ModelArrays):
             mode_stiffness=NO_MODES,
             dead_mode_loads=NO_MODES,
             live_mode_loads=NO_MODES,
+            mode_shapes=NO_SHAPES,
         )
 
 
