@@ -1,8 +1,8 @@
 """Quadratic modes of blocks in the plane: displacements at contact points as polynomials, generalised forces of the modes.
 
 Over the uniform strain of a block its points are displaced by R u(X), u = Σ a_k φ_k of second degree in the arm X as the block
-sees it (model/quadratic_modes.py). Summed over modes once a step, u has 6 coefficients for each direction; forces at
-points give back Σ f ⊗ (x², x y, y²), beside the dyads of the uniform strain and the force itself.
+sees it (model/quadratic_modes.py). Summed over modes once a step, u has 6 coefficients for each direction, and along a joint three: forces at points
+give back Σ f ⊗ (x², x y, y²), beside the dyads of the uniform strain and the force itself.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.kernels.jit import always_inline, inline
-from dem_cli.kernels.vec import axpy, dot, scale
+from dem_cli.kernels.vec import axpy, dot
 
 N_QUADRATIC, COEFFICIENTS, SECOND = 6, 12, 6  # modes; of u; sums of forces times terms of second degree
 
@@ -67,35 +67,60 @@ def resist_bending(bodies, shape):
 
 
 @always_inline
-def displaced(coefficients, turns, i, arm):
-    """R u at an arm of a block, along the axes of the world."""
+def _line(coefficients, turns, i, arm, along):
+    """R u at arm + t·along as c0 + c1 t + c2 t², vectors along the axes of the world."""
+    c, s, p = turns[i, 0], turns[i, 1], coefficients
+    x, y = c * arm[0] + s * arm[1], c * arm[1] - s * arm[0]
+    dx, dy = c * along[0] + s * along[1], c * along[1] - s * along[0]
+    xx, xy, yy, mixed = x * x, x * y, y * y, x * dy + y * dx
+    u0 = p[i, 0] + p[i, 1] * x + p[i, 2] * y + p[i, 3] * xx + p[i, 4] * xy + p[i, 5] * yy
+    v0 = p[i, 6] + p[i, 7] * x + p[i, 8] * y + p[i, 9] * xx + p[i, 10] * xy + p[i, 11] * yy
+    u1 = p[i, 1] * dx + p[i, 2] * dy + 2.0 * (p[i, 3] * x * dx + p[i, 5] * y * dy) + p[i, 4] * mixed
+    v1 = p[i, 7] * dx + p[i, 8] * dy + 2.0 * (p[i, 9] * x * dx + p[i, 11] * y * dy) + p[i, 10] * mixed
+    u2 = p[i, 3] * dx * dx + p[i, 4] * dx * dy + p[i, 5] * dy * dy
+    v2 = p[i, 9] * dx * dx + p[i, 10] * dx * dy + p[i, 11] * dy * dy
+    return (c * u0 - s * v0, s * u0 + c * v0), (c * u1 - s * v1, s * u1 + c * v1), (c * u2 - s * v2, s * u2 + c * v2)
+
+
+@always_inline
+def line_apart(coefficients, turns, a, b, arm_a, arm_b, along):
+    """How far block b is displaced against a, at a place of their joint and t along it: c0, c1, c2 of `_line`."""
+    of_a, of_b = _line(coefficients, turns, a, arm_a, along), _line(coefficients, turns, b, arm_b, along)
+    return axpy(-1.0, of_a[0], of_b[0]), axpy(-1.0, of_a[1], of_b[1]), axpy(-1.0, of_a[2], of_b[2])
+
+
+@always_inline
+def apart_at(line, t, frame):
+    """The same at one point, across the joint and along it."""
+    moved = axpy(t, axpy(t, line[2], line[1]), line[0])
+    return dot(frame[0], moved), dot(frame[1], moved)
+
+
+@always_inline
+def _push(triads, turns, i, arm, along, sign, force, first, second):
     c, s = turns[i, 0], turns[i, 1]
     x, y = c * arm[0] + s * arm[1], c * arm[1] - s * arm[0]
-    p = coefficients
-    u = p[i, 0] + p[i, 1] * x + p[i, 2] * y + p[i, 3] * (x * x) + p[i, 4] * (x * y) + p[i, 5] * (y * y)
-    v = p[i, 6] + p[i, 7] * x + p[i, 8] * y + p[i, 9] * (x * x) + p[i, 10] * (x * y) + p[i, 11] * (y * y)
-    return c * u - s * v, s * u + c * v
+    dx, dy = c * along[0] + s * along[1], c * along[1] - s * along[0]
+    u0, v0 = sign * (c * force[0] + s * force[1]), sign * (c * force[1] - s * force[0])
+    u1, v1 = sign * (c * first[0] + s * first[1]), sign * (c * first[1] - s * first[0])
+    u2, v2 = sign * (c * second[0] + s * second[1]), sign * (c * second[1] - s * second[0])
+    xx, xy, yy, mixed = x * x, x * y, y * y, x * dy + y * dx
+    triads[i, 0] += u0 * xx + 2.0 * u1 * x * dx + u2 * dx * dx
+    triads[i, 1] += u0 * xy + u1 * mixed + u2 * dx * dy
+    triads[i, 2] += u0 * yy + 2.0 * u1 * y * dy + u2 * dy * dy
+    triads[i, 3] += v0 * xx + 2.0 * v1 * x * dx + v2 * dx * dx
+    triads[i, 4] += v0 * xy + v1 * mixed + v2 * dx * dy
+    triads[i, 5] += v0 * yy + 2.0 * v1 * y * dy + v2 * dy * dy
 
 
 @always_inline
-def displaced_apart(coefficients, turns, a, b, frame, arm_a, arm_b):
-    """Opening and sliding of block b against a at a point, by quadratic modes."""
-    apart = axpy(-1.0, displaced(coefficients, turns, a, arm_a), displaced(coefficients, turns, b, arm_b))
-    return dot(frame[0], apart), dot(frame[1], apart)
+def bend_apart(triads, turns, a, b, arm_a, arm_b, along, sums):
+    """Sums of the forces of a joint onto block b, and against block a; sums: Σ f, Σ f t, Σ f t²."""
+    _push(triads, turns, a, arm_a, along, -1.0, sums[0], sums[1], sums[2])
+    _push(triads, turns, b, arm_b, along, 1.0, sums[0], sums[1], sums[2])
 
 
 @always_inline
-def _push(triads, turns, i, arm, force):
-    c, s = turns[i, 0], turns[i, 1]
-    x, y = c * arm[0] + s * arm[1], c * arm[1] - s * arm[0]
-    u, v = c * force[0] + s * force[1], c * force[1] - s * force[0]
-    for k, term in ((0, x * x), (1, x * y), (2, y * y)):
-        triads[i, k] += u * term
-        triads[i, 3 + k] += v * term
-
-
-@always_inline
-def bend_apart(triads, turns, a, b, force, arm_a, arm_b):
-    """Sums of a contact force onto block b, and against block a."""
-    _push(triads, turns, a, arm_a, scale(-1.0, force))
-    _push(triads, turns, b, arm_b, force)
+def with_force(sums, t, force):
+    """The sums of a joint with the force at one more point."""
+    return axpy(1.0, force, sums[0]), axpy(t, force, sums[1]), axpy(t * t, force, sums[2])

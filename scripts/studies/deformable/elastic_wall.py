@@ -7,7 +7,6 @@ import numpy as np
 from dem_cli import api
 from dem_cli.contact.compatibility import free_columns, relative_motion, strain_motion
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.loads import loads_of
 from dem_cli.engine.properties import joint_properties
 from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge
@@ -27,7 +26,7 @@ def stones(deformation: str) -> list[str]:
 
 
 def displacement(ratio: float, deformation: str) -> float:
-    """Of the beam per newton of a push at its centroid [m], all joints closed; linear. ratio: kn h/E."""
+    """Of the beam per newton of a push that acts evenly in it [m], all joints closed; linear. ratio: kn h/E."""
     from scipy.sparse import coo_array, diags_array
     from scipy.sparse.linalg import spsolve
 
@@ -50,8 +49,7 @@ def displacement(ratio: float, deformation: str) -> float:
     motion = coo_array((rows[used], (places[used], at[used])), shape=(2 * len(rows), total + len(stiffness))).tocsr()
     springs = diags_array(np.column_stack([joints.kn, joints.ks]).ravel())
     inside = diags_array(np.concatenate([np.zeros(total), stiffness]))
-    live = loads_of(model, 1.0, model.shapes.radii, 1.0).live[~model.fixed]
-    forces = np.concatenate([live[:, :n_dof].ravel(), live[:, n_dof:].ravel()])
+    forces = np.concatenate([model.live_loads[~model.fixed].ravel(), np.zeros(len(stiffness))])
     return float(spsolve((motion.T @ springs @ motion + inside).tocsc(), forces) @ forces)
 
 
