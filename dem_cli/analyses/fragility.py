@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.bending_stiffness import bending_doubts
 from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
@@ -57,6 +58,7 @@ class FragilityStudy:
         self.stiffness = rocking_stiffness(case, model, settings)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
+        self.warnings += bending_doubts(case, model, settings)
 
     def run(self) -> Outcome:
         """Rest, all runs, and what they say."""

@@ -195,7 +195,7 @@ def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
         "measured": wanted.measured,
         "computed": computed,
         "factor": factor,
-        "joints": _scaled(sim, factor),
+        "joints": _with_points(job.case, sim, _scaled(sim, factor)),
         **({"young": moduli} if moduli else {}),
         "frequencies_tried": tried,
         "met": met,
@@ -213,6 +213,18 @@ def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
         for name, kn, ks, no in zip(properties.names, properties.kn, properties.ks, free, strict=True)
         if not no
     }
+
+
+def _with_points(case: Case, sim: Simulation, found: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
+    """Beside kn and ks the contact points that they belong to, where the case does not say how many: time histories
+    have others (laws/stiffness.py)."""
+    layouts = zip(sim.properties.names, sim.properties.layouts, strict=True)
+    points = {
+        name: layout.points
+        for name, layout in layouts
+        if name in found and layout and layout.sides is None and case.joints[name].points is None
+    }
+    return {name: more | ({"points": points[name]} if name in points else {}) for name, more in found.items()}
 
 
 def _scaled_moduli(case: Case, factor: float) -> dict[str, float]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
+from dem_cli.dynamics.bending_stiffness import bending_doubts
 from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
@@ -61,6 +62,7 @@ def run(
         )
     if chosen.automatic and outcome.summary["status"] == "ok":
         outcome.summary |= checked(history, motions, chosen, outcome.summary["collapsed"], settings)
+    outcome.summary["warnings"] += bending_doubts(case, model, settings)
     if doubtful(case) and not history.still and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":

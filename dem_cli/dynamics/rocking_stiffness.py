@@ -67,7 +67,7 @@ def rocking_stiffness(case: Case, model: Model, settings: Settings = DEFAULT) ->
     joints, mine = _joints(case, model, softest)
     if not len(joints.kn):
         return RockingStiffness(softest, 0.0, 0.0, True)
-    turn = turn_sideways(model, _rigid(joints, ~mine), settings)
+    turn = turn_sideways(model, rigid_but(joints, mine), settings)
     work, step = _work(case, model, joints, settings)
     most = rocking.work / _rocking_time(case, model)
     shortest = case.analysis.time_step or 0.0
@@ -125,11 +125,11 @@ def _joints(case: Case, model: Model, ratio: float) -> tuple[Joints, np.ndarray]
     return joints, properties.rigid_between(model, joints.blocks)[joints.owners]
 
 
-def _rigid(joints: Joints, points: np.ndarray) -> Joints:
-    """The same with some points so stiff that they do not count: theirs was given."""
-    if not points.any():
+def rigid_but(joints: Joints, points: np.ndarray) -> Joints:
+    """The same with all points but these (n_points,) bool so stiff that they do not count."""
+    if points.all():
         return joints
-    factor = np.where(points, 1e3 * max(1.0, float(joints.kn.max() / joints.kn[points].min())), 1.0)
+    factor = np.where(points, 1.0, 1e3 * max(1.0, float(joints.kn.max() / joints.kn[~points].min())))
     return joints._replace(kn=factor * joints.kn, ks=factor * joints.ks)
 
 

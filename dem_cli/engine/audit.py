@@ -124,9 +124,9 @@ def _cracking(case: Case, sim: Simulation) -> list[str]:
     if sim.contacts.shear.shape[1] < 2:
         return []
     found = []
-    for name, joint in case.joints.items():
-        ratio = CENTRED if joint.centred(3) else STRONGER.get(joint.contact_points(3), 1.0)
-        if getattr(joint, "tension", 0.0) > 0.0 and ratio > 1.0:
+    for name, layout in zip(sim.properties.names, sim.properties.plane, strict=True):
+        ratio = CENTRED if layout.centred else STRONGER.get(layout.points, 1.0)
+        if getattr(case.joints[name], "tension", 0.0) > 0.0 and ratio > 1.0:
             found.append(
                 f"tension of joint '{name}' acts at points that let it hold on after it cracked: in bending the load "
                 f"may be up to {ratio:g} times that of a joint that cracks bit by bit; points = 3 does not"

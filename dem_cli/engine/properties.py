@@ -35,13 +35,18 @@ def law_of(case: Case) -> Law:
 
 
 def joint_properties(
-    case: Case, model: Model, ratio: float = DEFAULT.stiffness.statics, step: float = math.inf
+    case: Case,
+    model: Model,
+    ratio: float = DEFAULT.stiffness.statics,
+    step: float = math.inf,
+    lands: bool | None = None,
 ) -> JointProperties:
     """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
     Blocks of a material with a Young's modulus give way in their joints (contact/block_compliance.py).
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
+    lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
     """
     names, by_material = joint_table(case)
     auto = ratio * stiffness_scale(model)
@@ -60,7 +65,8 @@ def joint_properties(
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
     bending = [table.bends for table in case.materials.values()]
     deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
-    layouts = tuple(_layout(table, case, k in deforming) for k, table in enumerate(tables))
+    lands = hasattr(case.analysis, "margin") if lands is None else lands
+    layouts = tuple(_layout(table, case, k in deforming, lands) for k, table in enumerate(tables))
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
     own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
     pressed = mixed(tuple(laws)).pressed
@@ -73,12 +79,12 @@ def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
 
 
-def _layout(table: StiffJoint, case: Case, deforms: bool) -> PointLayout | None:
+def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointLayout | None:
     """Where the contact points of a joint are; None: at its two ends, in space at its vertices."""
     if table.profile is not None:
         return PointLayout(seed=case.seed, **table.profile.ranges)
-    points = table.contact_points(case.dimension, deforms, lands=hasattr(case.analysis, "margin"))
-    centred = table.centred(case.dimension)
+    points = table.contact_points(case.dimension, deforms, lands)
+    centred = table.centred(case.dimension, deforms, lands)
     return None if points == 2 and not centred else PointLayout(points, centred)
 
 

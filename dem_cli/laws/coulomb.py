@@ -30,11 +30,6 @@ class CoulombJoint(FrictionJoint):
         examples=[{"residual": 0.8, "slip_start": 0.0009, "slip_length": 0.0001}],
     )
 
-    @property
-    def bends(self) -> bool:
-        """Not with softening, whose points are those of the model that it was published for (thesis 7.4)."""
-        return self.softening is None
-
 
 @inline
 def coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):

@@ -9,9 +9,9 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem
 from dem_cli.laws.profile import Profile
 
-# Contact points of a plane joint in 2D that carries the deformation of blocks. With two the moment of a joint is three
-# times too stiff, and walls carry too much (docs/deformable.md).
-BENDING_POINTS = 5
+# Contact points of a plane joint whose stiffness is a property, by dimension; in 3D along each side. With points at its
+# ends or vertices alone its moment is three times too stiff, and walls carry too much (docs/deformable.md).
+BENDING_POINTS = {2: 5, 3: 3}
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
@@ -36,10 +36,9 @@ class StiffJoint(CaseModel):
     points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
-        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2; 5 where the joint can "
-        "crack, 3 where it is elastic; without softening also 5 where blocks deform (materials.NAME.young), "
-        "but for time histories; in 3D vertices, and the centre as well where the joint can "
-        "crack or is elastic",
+        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2, in 3D vertices; 5, in "
+        "3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
+        "crack 5, where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
 
@@ -51,26 +50,33 @@ class StiffJoint(CaseModel):
 
     @property
     def bends(self) -> bool:
-        """Whether it opens bit by bit as it bends, and has BENDING_POINTS where blocks deform."""
+        """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
         return True
+
+    def follows(self, deforms: bool = False, lands: bool = False) -> bool:
+        """Whether its contact points are those that its bending stiffness asks for.
+
+        Not where blocks land on each other: points between the ends take part of the blow, and a block that rocks loses
+        less than Housner's. deforms: whether the joint carries the deformation of blocks; lands: whether the analysis
+        is a time history.
+        """
+        free = self.points is None and self.profile is None
+        return free and self.bends and not lands and (deforms or self.kn != "auto")
 
     def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
         """Number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are its vertices.
 
-        Joints that carry the deformation of blocks have those that their bending needs. Not where blocks land
-        on each other: points between the ends take part of the blow, and a block that rocks loses less than Housner's.
-        deforms: whether the joint carries the deformation of blocks; lands: whether the analysis is a time history.
+        deforms, lands: as in `follows`.
         """
         if isinstance(self.points, int):
             return self.points
+        if self.follows(deforms, lands):
+            return BENDING_POINTS[dimension]
         if dimension == 3:
             return 2
-        if self.points is not None:
-            return AREA_POINTS[self.points]
-        bends = self.bends and not lands and deforms
-        return max(self.plane_points, BENDING_POINTS) if bends else self.plane_points
+        return self.plane_points if self.points is None else AREA_POINTS[self.points]
 
-    def centred(self, dimension: int) -> bool:
-        """Whether its contact points are the vertices and the centre of an area."""
+    def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
+        """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
         asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
-        return asked and dimension == 3
+        return asked and dimension == 3 and not self.follows(deforms, lands)

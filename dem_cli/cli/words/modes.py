@@ -47,6 +47,7 @@ def _calibration(found: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     what = "calibrated" if found["met"] else "not met"
     rows = [(what, f"mode {found['mode']} at {found['measured']:g} Hz: kn and ks times {found['factor']:.4g}; write")]
     for name, values in found["joints"].items():
-        rows.append((f"[joints.{name}]", f"kn = {values['kn']:.5g}, ks = {values['ks']:.5g}"))
+        points = f", points = {values['points']}" if "points" in values else ""
+        rows.append((f"[joints.{name}]", f"kn = {values['kn']:.5g}, ks = {values['ks']:.5g}{points}"))
     rows += [(f"[materials.{name}]", f"young = {young:.5g}") for name, young in found.get("young", {}).items()]
     return rows

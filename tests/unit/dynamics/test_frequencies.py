@@ -23,7 +23,7 @@ BOOK = Path(__file__).resolve().parents[2] / "reference" / "classical_benchmarks
 
 
 def joint(kn: float, ks: float | None = None, **more) -> dict:
-    return {"dry": {"friction": 0.6, "kn": kn, "ks": kn if ks is None else ks, **more}}
+    return {"dry": {"friction": 0.6, "kn": kn, "ks": kn if ks is None else ks, "points": 2, **more}}
 
 
 def stack(n: int, width: float, height: float, kn: float, ks: float, density: float = 2000.0, **more):

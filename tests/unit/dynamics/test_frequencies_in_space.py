@@ -18,6 +18,7 @@ from dem_cli.model.scales import smallest_edge
 
 SIDES = np.array([0.5, 0.8, 1.5])
 TILTED = Rotation.from_rotvec([0.4, -0.7, 0.5])
+CORNERS = {"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8, "points": "vertices"}}  # closed forms are those of corners
 
 
 def stones(turn: Rotation) -> list[dict]:
@@ -31,7 +32,7 @@ def stones(turn: Rotation) -> list[dict]:
 
 
 def case(turn: Rotation, **more) -> dict:
-    return {"dimension": 3, **tables(*stones(turn), joints={"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8}}, **more)}
+    return {"dimension": 3, **tables(*stones(turn), joints=CORNERS, **more)}
 
 
 def found(turn: Rotation):
@@ -98,7 +99,7 @@ def test_rocking_stiffness_in_any_plan(angle):
 @pytest.mark.parametrize("turn", [Rotation.identity(), TILTED])
 def test_a_block_lands_as_it_would_stand(turn):
     """On the largest face, whatever the direction: as fast as where that face lies on a base."""
-    joints = {"dry": {"friction": 0.6, "kn": 1e9, "ks": 4e8}}
+    joints = CORNERS
     corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     far = block("base", (corners - [0.5, 0.5, 9.0]).tolist(), fixed=True)
     flat = SIDES[[1, 2, 0]]  # it lies on 0.8 m x 1.5 m

@@ -29,7 +29,9 @@ def drums(n: int, b: float, h: float, left: float = 0.0, foot: float = 0.0) -> l
 
 def turn(*blocks: dict) -> float:
     """ε of blocks on joints of KN."""
-    case, model = scene(tables(GROUND, *blocks, density=DENSITY, joints={"dry": {"friction": 0.7, "kn": KN}}))
+    case, model = scene(
+        tables(GROUND, *blocks, density=DENSITY, joints={"dry": {"friction": 0.7, "kn": KN, "points": 2}})
+    )
     properties = joint_properties(case, model)
     return turn_sideways(model, joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints)
 

@@ -2,45 +2,55 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from casefiles import CASES
 from engine import block, rectangle, scene, solve, tables
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
 from dem_cli.model.scales import smallest_edge
 
 CUBE = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "y": [0.0, 1.0], "material": "stone"}
 ABOVE = CUBE | {"polygon": [[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]}
 
 
+MORTAR = {"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5}
+
+
 @pytest.mark.parametrize(
-    ("joint", "points"),
+    ("joint", "stone", "points", "lands"),
     [
-        ({"law": "coulomb", "friction": 0.6}, 4),
-        ({"law": "coulomb", "friction": 0.6, "points": "vertices+centre"}, 5),
-        ({"law": "elastic", "kn": 1e9}, 5),
-        ({"law": "coulomb", "friction": 0.6, "kn": 1e9}, 4),
-        ({"law": "coulomb", "friction": 0.6, "points": 3}, 9),
-        ({"law": "coulomb", "friction": 0.6, "kn": 1e9, "points": "vertices"}, 4),
-        ({"law": "coulomb", "friction": 0.6, "points": 5}, 25),
-        ({"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5}, 5),
+        ({"friction": 0.6}, {}, 4, 4),
+        ({"friction": 0.6, "points": "vertices+centre"}, {}, 5, 5),
+        ({"law": "elastic", "kn": 1e9}, {}, 5, 5),
+        ({"friction": 0.6, "kn": 1e9}, {}, 9, 4),
+        ({"friction": 0.6}, {"young": 1e9}, 9, 4),
+        ({"friction": 0.6, "points": 3}, {}, 9, 9),
+        ({"friction": 0.6, "kn": 1e9, "points": "vertices"}, {}, 4, 4),
+        ({"friction": 0.6, "points": 5}, {}, 25, 25),
+        (MORTAR, {}, 5, 5),
+        (MORTAR | {"kn": 1e9}, {}, 9, 5),
+        (MORTAR | {"kn": 1e9, "points": "vertices+centre"}, {}, 5, 5),
     ],
 )
-def test_points_of_a_joint_in_space(joint, points):
-    made = scene(
-        {
-            "dimension": 3,
-            "materials": {"stone": {"density": 2000.0}},
-            "joints": {"dry": joint},
-            "block": [CUBE | {"id": "base", "fixed": True}, ABOVE | {"id": "b"}],
-            "analysis": {"kind": "gravity"},
-        }
-    )
-    properties = joint_properties(made.case, made.model)
-    built = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model))
-    assert len(built.joints.kn) == points
-    assert built.joints.kn.sum() == pytest.approx(properties.kn[0])
+def test_points_of_a_joint_in_space(joint, stone, points, lands):
+    """Where geometry is that of the start, and where it moves, in analyses without time and in time histories."""
+    case = {
+        "dimension": 3,
+        "materials": {"stone": {"density": 2000.0} | stone},
+        "joints": {"dry": joint},
+        "block": [CUBE | {"id": "base", "fixed": True}, ABOVE | {"id": "b"}],
+    }
+    for analysis, count in (({"kind": "gravity"}, points), ({"kind": "time-history", "duration": 1.0}, lands)):
+        made = scene(case | {"analysis": analysis})
+        properties = joint_properties(made.case, made.model)
+        built = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model))
+        assert len(built.joints.kn) == count
+        assert built.joints.kn.sum() == pytest.approx(properties.stiffness_of(np.zeros(1, int), built.geometry.keys)[0])
+        moving = Simulation(made.model, law_of(made.case), properties, "large")
+        assert (moving.joints.kn > 0.0).sum() == count
 
 
 FRICTION = {"friction": 0.6}
@@ -53,11 +63,12 @@ YOUNG = {"young": 1e9}
     ("joint", "stone", "points"),
     [
         (FRICTION, {}, 2),
-        (GIVEN, {}, 2),
+        (GIVEN, {}, 5),
         (GIVEN | {"points": 2}, {}, 2),
-        (GIVEN | SOFTENING, {}, 2),
+        (FRICTION | SOFTENING, {}, 2),
+        (GIVEN | SOFTENING, {}, 5),
         (GIVEN | {"law": "elastic", "friction": None}, {}, 3),
-        (GIVEN | {"law": "crushing", "compression": 1e7}, {}, 2),
+        (GIVEN | {"law": "crushing", "compression": 1e7}, {}, 5),
         (GIVEN | {"profile": {"sides": 3, "aperture": 1e-4}}, {}, 4),
         (FRICTION, YOUNG, 5),
         (FRICTION, YOUNG | {"deformation": "none"}, 2),

@@ -18,7 +18,7 @@ BOOK = "classical_benchmarks"
 def block_on_base(kinematics: str, **joint):
     """The data book's block: 1 × 1 × 1 m, 2000 kg/m3, on kn = 1e9 Pa/m."""
     blocks = [block("base", rectangle(-1, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1))]
-    case = tables(*blocks, joints={"dry": {"friction": 0.6, "kn": KN, **joint}})
+    case = tables(*blocks, joints={"dry": {"friction": 0.6, "kn": KN, "points": 2, **joint}})
     return simulation(case, kinematics)
 
 
@@ -153,7 +153,7 @@ def state_energy_error(kinematics: str, fraction: float, slide: float) -> tuple[
     """
     blocks = [block("base", rectangle(-1, -1, 2, 0), fixed=True)]
     blocks += [block(f"b{i}", rectangle(0, i, 1, i + 1)) for i in range(3)]
-    sim = simulation(tables(*blocks, joints={"dry": {"friction": 0.6, "kn": KN}}), kinematics)
+    sim = simulation(tables(*blocks, joints={"dry": {"friction": 0.6, "kn": KN, "points": 2}}), kinematics)
     sim.advance(8000, slot.HOLD_LOAD)
     sim.rest()
     real_masses(sim)

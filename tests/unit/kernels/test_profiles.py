@@ -100,7 +100,7 @@ def test_forces_are_the_gradient_of_the_energy(shift, x, y, angle):
 
 def test_a_chain_without_rise_is_a_plane_joint():
     """The loop for profiles with two points at the ends does what the loop for plane joints does."""
-    made = scene(stacked(0.3, friction=0.4))
+    made = scene(stacked(0.3, friction=0.4, points=2))
     plain = joint_properties(made.case, made.model, 1e5)
     sims = [
         engine.Simulation(made.model, law_of(made.case), properties, "large")

@@ -22,7 +22,9 @@ def on_a_rim(friction: float = 0.0, chained: bool = False) -> Simulation:
     case = tables(
         block("table", rectangle(-3.0, -1.0, 1.0, 0.0), fixed=True),
         block("cube", rectangle(0.0, 0.0, SIDE, SIDE)),
-        joints={"dry": {"friction": friction, "kn": 2.0 * KN, "ks": 2.0 * KN}},  # a point has half the joint
+        joints={
+            "dry": {"friction": friction, "kn": 2.0 * KN, "ks": 2.0 * KN, "points": 2}
+        },  # a point has half the joint
     )
     made = simulation(case, "large")
     if not chained:

@@ -1,0 +1,52 @@
+"""Bending stiffness of soft joints in time histories: their points at the ends are too stiff, and where that matters.
+
+Blocks land on the ends of their joints, as rigid ones do: points between them take part of the blow. But two points
+resist bending three times as much as the area of a joint does. How much bending counts is the angle ε by which blocks
+turn on their joints when their weight acts sideways (dynamics/rocking_stiffness.py).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.rocking_stiffness import rigid_but, turn_sideways
+from dem_cli.engine.properties import joint_properties
+from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.laws.stiffness import BENDING_POINTS
+from dem_cli.model.model import Model
+from dem_cli.model.scales import origin_of, smallest_edge
+
+if TYPE_CHECKING:
+    from dem_cli.case.schema import Case
+
+
+def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> list[str]:
+    """Words for joints whose stiffness is a property, and that have points at their ends although bending counts.
+
+    None where the case says how many points they have, or where blocks hardly turn further with those of bending.
+    """
+    ends, bending = (joint_properties(case, model, settings.stiffness.dynamics, lands=lands) for lands in (True, False))
+    soft = np.array([one != other for one, other in zip(ends.layouts, bending.layouts, strict=True)])
+    if not soft.any() or model.fixed.all():
+        return []
+    turns = []
+    for properties in (ends, bending):
+        joints = joints_of_start(
+            model, bodies_at_rest(model, origin_of(model)), properties, smallest_edge(model)
+        ).joints
+        if not len(joints.kn):
+            return []
+        own = soft[properties.between(model, joints.blocks)][joints.owners]
+        turns.append(turn_sideways(model, rigid_but(joints, own), settings))
+    if turns[1] - turns[0] <= settings.rocking.doubtful:
+        return []
+    name, where = ends.names[int(soft.argmax())], "its two ends" if model.dimension == 2 else "the corners of its area"
+    points = BENDING_POINTS[model.dimension]
+    return [
+        f"joint '{name}' has its contact points at {where}, on which blocks land as rigid ones do, and bends too little: "
+        f"blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with points = {points} by {turns[1]:.2g}; "
+        f"give points = {points} where vibrations count, points = 2 where blows do"
+    ]
