@@ -73,7 +73,9 @@ def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
-    reason = f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
+    reason = (
+        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
+    )
     reason = reason or ("beside [[tie]]: ties hold on to blocks that keep their shape" if data.get("tie") else "")
     for name, table in materials.items():
         way = table.get("deformation") if isinstance(table, dict) else None

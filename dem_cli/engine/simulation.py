@@ -23,8 +23,8 @@ from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
 from dem_cli.model.model import Model
-from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.quadratic_modes import bent_by
+from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.uniform_strain import covectors_of, gradients_of
 
 

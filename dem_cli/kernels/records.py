@@ -37,7 +37,7 @@ class Bodies(NamedTuple):
     # Of blocks that deform (model/uniform_strain.py), else empty:
     modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
     gradients: np.ndarray = NO_MODES  # deformation gradients R (I + ε), row by row, (n_blocks, d·d)
-    covectors: np.ndarray = NO_MODES  # of blocks in space, F⁻ᵀ of these gradients F, which takes normals along, (n_blocks, 9)
+    covectors: np.ndarray = NO_MODES  # in space, F⁻ᵀ of these gradients, which takes normals along, (n_blocks, 9)
     stretchings: np.ndarray = NO_MODES  # velocity gradients by deformation alone [1 per unit of time], (n_blocks, d·d)
     dyads: np.ndarray = NO_MODES  # Σ contact force ⊗ arm from the centroid, axes of the world [N m], (n_blocks, d·d)
     # Of quadratic modes (kernels/deformation/quadratic.py), in the axes of the block:

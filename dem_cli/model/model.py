@@ -60,7 +60,7 @@ class ModelArrays(NamedTuple):
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
     live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
-    mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), else empty, (n_blocks, 6, 2, 6)
+    mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), (n_blocks, 6, 2, 6)
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane

@@ -1,4 +1,4 @@
-"""Quadratic modes of deformable blocks: bending and bulging beyond uniform strain, their stiffness and loads; 2D, plane stress.
+"""Quadratic modes of deformable blocks: bending and bulging, their stiffness and loads; 2D, plane stress.
 
 u(X) = Σ a_k φ_k(X), φ_k of second degree in X without mean displacement or mean rotation, so that neither weight nor
 motion of the block as a whole does any work on them; pure second degree has no mean strain, so that none couples with
@@ -27,7 +27,11 @@ def terms(arms: np.ndarray) -> np.ndarray:
 
 
 def quadratic_modes(
-    vertices: np.ndarray, part_starts: np.ndarray, part_blocks: np.ndarray, thickness: np.ndarray, young: np.ndarray,
+    vertices: np.ndarray,
+    part_starts: np.ndarray,
+    part_blocks: np.ndarray,
+    thickness: np.ndarray,
+    young: np.ndarray,
     poisson: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness [N/m], (n_blocks, 6), and shapes: coefficients of `terms` for both directions, (n_blocks, 6, 2, 6).
@@ -68,7 +72,9 @@ def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np
     return levels / reach**2, found / reach[:, None, None]
 
 
-def _elasticity(shapes: np.ndarray, points: np.ndarray, weights: np.ndarray, young: float, poisson: float) -> np.ndarray:
+def _elasticity(
+    shapes: np.ndarray, points: np.ndarray, weights: np.ndarray, young: float, poisson: float
+) -> np.ndarray:
     """∫ ε : C : ε of each two fields, plane stress [N/m], (6, 6)."""
     (x, y), zero, one = points.T, np.zeros(len(points)), np.ones(len(points))
     by_x = shapes @ np.stack([zero, one, zero, 2.0 * x, y, zero])  # (6, 2, n_points)

@@ -43,7 +43,7 @@ def mode_loads(arms: np.ndarray, forces: np.ndarray, radii: np.ndarray) -> np.nd
 
 
 def _basis_of(modes: np.ndarray) -> np.ndarray:
-    """B_k of blocks with these amplitudes; behind the first three of blocks in the plane there may be quadratic ones."""
+    """B_k of blocks with these amplitudes; in the plane quadratic modes may come behind them."""
     return _SPATIAL if modes.shape[1] == len(_SPATIAL) else _PLANAR
 
 

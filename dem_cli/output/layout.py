@@ -131,7 +131,9 @@ MODEL = {
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
     "mode_shapes": Described(
         "displacement by each quadratic mode, as coefficients of 1, x, y, x², x y, y² from the centroid; 2D, where "
-        "blocks bend alone", "m, powers of it", ("block", "mode", "direction", "term"),
+        "blocks bend alone",
+        "m, powers of it",
+        ("block", "mode", "direction", "term"),
     ),
     "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
 }

@@ -1,8 +1,9 @@
-"""Quadratic modes of blocks in the plane: displacements at contact points as polynomials, generalised forces of the modes.
+"""Quadratic modes of blocks in the plane: displacements at contact points as polynomials, generalised forces.
 
-Over the uniform strain of a block its points are displaced by R u(X), u = Σ a_k φ_k of second degree in the arm X as the block
-sees it (model/quadratic_modes.py). Summed over modes once a step, u has 6 coefficients for each direction, and along a joint three: forces at points
-give back Σ f ⊗ (x², x y, y²), beside the dyads of the uniform strain and the force itself.
+Over the uniform strain of a block its points are displaced by R u(X), u = Σ a_k φ_k of second degree in the arm X as
+the block sees it (model/quadratic_modes.py). Summed over modes once a step, u has 6 coefficients for each direction,
+and along a joint three: forces at points give back Σ f ⊗ (x², x y, y²), beside the dyads of the uniform strain and the
+force itself.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Finite elements of a wall of rectangular blocks: nine-node quadrilaterals, elastic interfaces between them.
 
 An independent model, beside which blocks that are rigid or deform in few modes are judged: linear elastic, plane
-stress, all joints closed. Interfaces are integrated exactly (consistent mass matrix of a quadratic edge). Plain numpy and scipy.
+stress, all joints closed. Interfaces are integrated exactly (consistent mass matrix of a quadratic edge). Plain numpy
+and scipy.
 """
 
 from __future__ import annotations

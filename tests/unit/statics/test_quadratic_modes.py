@@ -1,4 +1,4 @@
-"""Blocks that bend: against elements that can do just as much, bending through joints exact, turned blocks, refusals."""
+"""Blocks that bend: beside elements that can do just as much, bending through joints, turned blocks, refusals."""
 
 from __future__ import annotations
 
@@ -27,11 +27,12 @@ def column(couple: float, law: str = "elastic", press: float = 0.0) -> dict:
         return {"id": f"b{k}", "fixed": k == 0, "vertices": flat, "thickness": DEEP, "material": material}
 
     top, stone = (BLOCKS + 1) * HIGH, {"young": YOUNG, "poisson": 0.0, "deformation": "quadratic"}
+    strength = {"friction": 0.9} if law == "coulomb" else {}
     forces = [([0.0, WIDE], couple / WIDE), ([WIDE, WIDE], -couple / WIDE), ([WIDE / 2, WIDE], -press)]
     return {
         "gravity": 1e-9,
         "materials": {"stone": {"density": 2000.0} | stone, "iron": {"density": 7000.0}},
-        "joints": {"dry": {"law": law, "kn": KN, "ks": 4e9, "points": 5} | ({"friction": 0.9} if law == "coulomb" else {})},
+        "joints": {"dry": {"law": law, "kn": KN, "ks": 4e9, "points": 5} | strength},
         "block": [box(k) for k in range(BLOCKS + 2)],
         "load": [{"block": f"b{BLOCKS + 1}", "force": [0.0, f], "at": [x, top]} for (x, _), f in forces],
         "analysis": {"kind": "gravity"},
