@@ -89,17 +89,39 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks have strains where that is not known: with real masses, which would vibrate far too
-    fast, and beside ties and bars.
+    """Materials whose blocks deform by themselves where that is not known: with real masses, as they would vibrate far
+    too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
     """
-    if not isinstance(data.get("materials"), dict):
+    materials = data.get("materials")
+    if not isinstance(materials, dict):
         return
-    reason = f"in kind = {show(kind)}: strains need analyses without time" if kind in WITH_REAL_MASSES else ""
+    reason = (
+        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
+    )
     held = next((key for key in LINKS if data.get(key)), None)
     reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
-    for name, table in data["materials"].items():
-        if reason and isinstance(table, dict) and table.get("deformation") == "uniform-strain":
-            yield CaseProblem(("materials", name, "deformation"), f"'uniform-strain' is not known {reason}")
+    for name, table in materials.items():
+        way = table.get("deformation") if isinstance(table, dict) else None
+        path = ("materials", name, "deformation")
+        if way not in ("uniform-strain", "quadratic"):
+            continue
+        if reason:
+            yield CaseProblem(path, f"{show(way)} is not known {reason}")
+        elif way == "quadratic" and data.get("dimension") == 3:
+            yield CaseProblem(path, "'quadratic' is not known in 3D; 'uniform-strain' and 'joints' are")
+        elif way == "quadratic":
+            yield from _unbent_joints(data)
+
+
+def _unbent_joints(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints whose points cannot tell how a block bends."""
+    joints = data.get("joints")
+    for name, joint in joints.items() if isinstance(joints, dict) else ():
+        if isinstance(joint, dict) and joint.get("points") in (2, "vertices"):
+            message = f"{show(joint['points'])} is too few beside deformation = 'quadratic'; must be 3 to 9, best 5"
+            yield CaseProblem(("joints", name, "points"), message)
+        if isinstance(joint, dict) and joint.get("profile") is not None:
+            yield CaseProblem(("joints", name, "profile"), "not allowed beside deformation = 'quadratic'")
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:

@@ -46,17 +46,18 @@ class Material(CaseModel):
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
         default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
-    deformation: Literal["joints", "uniform-strain", "none"] | None = Field(
+    deformation: Literal["joints", "uniform-strain", "quadratic", "none"] | None = Field(
         default=None,
         description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'uniform-strain' "
-        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'none' keeps blocks rigid; "
+        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'quadratic' lets "
+        "it bend and bulge as well (2D), 'none' keeps blocks rigid; "
         "default: joints where young is given. Fixed blocks do not deform",
         examples=["joints"],
     )
 
     @model_validator(mode="after")
     def _deforms_by_its_modulus(self) -> Material:
-        if self.deformation in ("joints", "uniform-strain") and self.young is None:
+        if self.deformation in ("joints", "uniform-strain", "quadratic") and self.young is None:
             message = f"'{self.deformation}' is not allowed without 'young', Young's modulus [Pa]"
             raise KeyProblem(message, "deformation")
         return self
@@ -71,7 +72,12 @@ class Material(CaseModel):
     @property
     def strains(self) -> bool:
         """Whether its blocks have a strain of their own."""
-        return self.deformation == "uniform-strain"
+        return self.deformation in ("uniform-strain", "quadratic")
+
+    @property
+    def bends(self) -> bool:
+        """Whether its blocks bend and bulge as well."""
+        return self.deformation == "quadratic"
 
 
 class Interface(CaseModel):
