@@ -25,6 +25,7 @@ from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.model import NO_PIECES, Model
+from dem_cli.model.quadratic_modes import quadratic_loads, quadratic_modes
 from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
@@ -200,7 +201,14 @@ def _with_modes(case: Case, model: Model) -> Model:
     poisson = np.array([table.poisson for table in tables])[model.block_material]
     volumes = model.shapes.volumes * model.thickness
     stiffness = mode_stiffness(model.dimension, young, poisson, volumes, model.shapes.radii)
-    return model._replace(mode_stiffness=np.where(model.fixed[:, None], 0.0, stiffness))
+    stiffness[model.fixed] = 0.0
+    if not any(table.bends for table in tables):
+        return model._replace(mode_stiffness=stiffness)
+    bends = np.array([table.bends for table in tables])[model.block_material] & ~model.fixed
+    more, shapes = quadratic_modes(
+        model.vertices, model.part_starts, model.part_blocks, model.thickness, np.where(bends, young, 0.0), poisson
+    )
+    return model._replace(mode_stiffness=np.column_stack([stiffness, more]), mode_shapes=shapes)
 
 
 def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
@@ -293,5 +301,8 @@ def _on_modes(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
     total = np.zeros_like(model.mode_stiffness)
     for load in loads:
         arms = load.points - model.centroids[load.blocks]
-        np.add.at(total, load.blocks, mode_loads(arms, load.forces, model.shapes.radii[load.blocks]))
+        found = mode_loads(arms, load.forces, model.shapes.radii[load.blocks])
+        if len(model.mode_shapes):
+            found = np.column_stack([found, quadratic_loads(arms, load.forces, model.mode_shapes[load.blocks])])
+        np.add.at(total, load.blocks, found)
     return np.where(model.mode_stiffness > 0.0, total, 0.0)

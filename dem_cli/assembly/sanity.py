@@ -88,7 +88,7 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
             what = f"block {load.said}" if load.block in model.numbers else f"all of {load.said}"
             message = f"{what} is fixed: a load on it changes nothing"
             yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
-        elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
+        elif (away := _away(case, model, i, beside := BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum())) > beside:
             message = f"{show(load.at)} is {away:.3g} m off block {load.said}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
@@ -202,22 +202,26 @@ def _unsaid(case: Case) -> Iterator[CaseProblem]:
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads at points further from their block than the structure is large."""
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
+    size = np.hypot.reduce(high - low)
     for i in range(len(case.load)):
-        load, away = case.load[i], _away(case, model, i)
-        if away > np.hypot.reduce(high - low):
+        load, away = case.load[i], _away(case, model, i, size)
+        if away > size:
             message = f"{show(load.at)} is {away:.3g} m off block {load.said}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 
 
-def _away(case: Case, model: Model, i: int) -> float:
-    """How far a load acts from its block [m]; 0 on it and within."""
+def _away(case: Case, model: Model, i: int, enough: float) -> float:
+    """How far a load acts from its block [m]; 0 where a corner is nearer than `enough`: the rest takes a solver."""
     load = case.load[i]
     chosen = model.chosen(load.selected, False)
     if load.at is None or load.falls or len(chosen) != 1:
         return 0.0
     number, corners, starts = chosen[0], undeformed(model), model.part_starts
     own = np.flatnonzero(model.part_blocks == number)
+    near = np.concatenate([corners[starts[p] : starts[p + 1]] for p in own]) - np.array(load.at)
+    if np.sqrt((near**2).sum(axis=1)).min() <= enough:
+        return 0.0
     return min(distance(corners[starts[p] : starts[p + 1]], np.array(load.at)) for p in own)
 
 

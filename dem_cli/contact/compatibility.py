@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.geometry.rotation import frames
 from dem_cli.kernels.records import Bodies, Joints
 from dem_cli.model.model import Model
+from dem_cli.model.quadratic_modes import displacements
 from dem_cli.model.uniform_strain import rotated_basis
 
 if TYPE_CHECKING:
@@ -69,5 +70,7 @@ def strain_motion(model: Model, joints: Joints, bodies: Bodies) -> np.ndarray:
     arms = joints.points[:, None] - bodies.positions[blocks]
     turned = rotated_basis(bodies.gradients.reshape(-1, d, d))[blocks]
     moved = np.einsum("psmij,psj->psmi", turned, arms) / model.shapes.radii[blocks][:, :, None, None]
+    if len(model.mode_shapes):
+        moved = np.concatenate([moved, displacements(model.mode_shapes[blocks], arms, bodies.turns[blocks])], axis=2)
     along = np.einsum("pki,psmi->pksm", directions(joints, d), moved)
     return along * np.array([-1.0, 1.0])[:, None]

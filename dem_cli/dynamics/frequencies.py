@@ -20,7 +20,6 @@ from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
-from dem_cli.links.link import FORCE
 from dem_cli.links.matrices import elongations
 from dem_cli.links.matrices import geometric as geometric_of_links
 
@@ -118,7 +117,7 @@ def _with_links(found: System, sim: Simulation, acting: bool) -> csr_array:
         return found.rows
     stiffness = springs.stiffness
     if acting:
-        stiffness = stiffness * np.concatenate([link.state[:, FORCE] != 0.0 for link in sim.links])
+        stiffness = stiffness * np.concatenate([link.acting() for link in sim.links])
     stretch = diags_array(np.sqrt(stiffness)) @ elongations(springs, sim.model.fixed)
     stretch = stretch @ diags_array(np.where(found.held, 0.0, 1.0)) if found.held.any() else stretch
     rows = vstack([found.rows, stretch @ _per_mass(found.masses, found.axes)]).tocsr()

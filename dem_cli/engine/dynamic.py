@@ -169,7 +169,7 @@ class DynamicSimulation(Simulation):
     def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
         """Room for so many samples of blocks and of all links, every so many steps."""
         samples = np.zeros((n_samples, len(blocks), 3, self.bodies.velocities.shape[1]))
-        n_links = sum(len(link.blocks) for link in self.links)
+        n_links = sum(len(link.state) for link in self.links)
         return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
 
     def _still(self, n_steps: int) -> Ground:

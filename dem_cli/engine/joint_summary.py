@@ -11,7 +11,9 @@ from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
 from dem_cli.engine import measures
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
+from dem_cli.links.matrices import each
 
+SECTIONS = {"tie": "ties", "reinforcement": "bars"}  # kind of link: key of the summary
 LAST_EQUILIBRIUM, END = "last equilibrium", "end"
 
 
@@ -39,8 +41,8 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
 
 
 def _beside(sim: Simulation) -> dict[str, Any]:
-    """What else holds blocks: ties, and what restraints give."""
-    return _ties(sim) | _restraints(sim)
+    """What else holds blocks: ties and bars, and what restraints give."""
+    return _links(sim) | _restraints(sim)
 
 
 def _restraints(sim: Simulation) -> dict[str, Any]:
@@ -58,13 +60,9 @@ def _restraints(sim: Simulation) -> dict[str, Any]:
     return {"restraints": said}
 
 
-def _ties(sim: Simulation) -> dict[str, Any]:
-    """Force, elongation and whether it yielded, of each link by its name; nothing where there are none."""
-    if not sim.links:
-        return {}
-    state = np.concatenate([link.state for link in sim.links])
-    said = {
-        name: {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
-        for name, (plastic, stretch, force) in zip(sim.model.link_names, state.tolist(), strict=True)
-    }
-    return {"ties": said}
+def _links(sim: Simulation) -> dict[str, Any]:
+    """What each link says of itself by its name, ties and bars apart; nothing where there are none."""
+    said: dict[str, dict[str, Any]] = {}
+    for link, number, name in each(sim.links, sim.model.link_names):
+        said.setdefault(SECTIONS[link.kind], {})[name] = link.answer(number)
+    return said

@@ -26,7 +26,7 @@ from dem_cli.links.matrices import elongations, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
 
-NO_LINKS = "the path of joints that do not dilate knows no ties"
+NO_LINKS = "the path of joints that do not dilate knows no ties and bars"
 
 
 class Links(NamedTuple):
@@ -103,8 +103,9 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
 
 def links_of(model: Model) -> Links:
     """The links of a model as they were drawn."""
-    springs = joined((link.axial() for link in model.links), model.dead_loads.shape[1])
-    limits = np.concatenate([np.zeros((0, 2)), *(link.limits for link in model.links)])
+    bounded = [link.bounded() for link in model.links]
+    springs = joined((held for held, _ in bounded), model.dead_loads.shape[1])
+    limits = np.concatenate([np.zeros((0, 2)), *(limits for _, limits in bounded)])
     elongation = csr_matrix(elongations(springs, model.fixed))
     if len(model.restrained):
         elongation = csr_matrix(elongation @ diags((~model.held_columns).astype(float)))
