@@ -89,7 +89,10 @@ def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointL
 
 def _with_deforming_blocks(model: Model, by_material: np.ndarray, compliance: BlockCompliance | None) -> set[int]:
     """Named joints that deforming blocks may have."""
-    return set() if compliance is None else set(by_material[model.block_material[compliance.deforms]].ravel().tolist())
+    if compliance is None:
+        return set()
+    within = model.pieces[compliance.deforms, 1] if len(model.pieces) else model.pieces[:, 1]
+    return {*by_material[model.block_material[compliance.deforms]].ravel().tolist(), *within[within >= 0].tolist()}
 
 
 def _with_rigid_blocks(
@@ -99,7 +102,8 @@ def _with_rigid_blocks(
     if compliance is None:
         return np.ones(len(names), bool)
     stiff, free = (np.unique(model.block_material[~compliance.deforms & among]) for among in (True, ~model.fixed))
-    return np.isin(np.arange(len(names)), by_material[np.ix_(stiff, free)])
+    within = model.pieces[~compliance.deforms, 1] if len(model.pieces) else model.pieces[:, 1]
+    return np.isin(np.arange(len(names)), np.append(by_material[np.ix_(stiff, free)], within))
 
 
 def _own_rows(tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, step: float) -> LawRows | None:
