@@ -82,7 +82,7 @@ def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str 
 
 
 def legend_of_links(frames: Sequence[Frame]) -> list[Any]:
-    """Handles for matplotlib: ties and bars, where there are any; a row of five has no room for how large forces are."""
+    """Handles for matplotlib: ties and bars, if any; five in a row leave no room for how large forces are."""
     from matplotlib.lines import Line2D
 
     if all(frame.links is None for frame in frames):
