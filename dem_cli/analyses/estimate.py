@@ -135,8 +135,7 @@ def _joints(case: Case, sim: Simulation) -> Rows:
     number = len(sim.joints.blocks)
     near = "" if sim.kinematics == "fixed" else " (with faces that may meet)"
     rows = [("joints", f"{number:,}{near}, {sim.first_points:,} contact points")]
-    materials = sim.model.block_material[sim.joints.blocks]
-    named = sim.properties.by_material[materials[:, 0], materials[:, 1]]
+    named = sim.properties.between(sim.model, sim.joints.blocks)
     bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], sim.model.dimension - 1]) > BED
     for k, name in enumerate(sim.properties.names):
         here = named == k

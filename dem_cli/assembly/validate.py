@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.assemble import joint_table
 from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
@@ -130,8 +131,8 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     corners = undeformed(model)
     faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
     blocks = model.part_blocks[faces.parts]
-    pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
-    named = np.array([case.joint_between(*pair) for pair in pairs])
+    names, by_material = joint_table(case)
+    named = np.array(names)[model.joints_between(by_material, blocks)]
     found = []
     for name, table in profiles.items():
         layout = PointLayout(seed=case.seed, **table.ranges)

@@ -30,7 +30,7 @@ from dem_cli.case.base import (
 from dem_cli.case.block_table import BlockTable
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
-from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure
+from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
 from dem_cli.case.reference import Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
@@ -46,17 +46,18 @@ class Material(CaseModel):
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
         default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
-    deformation: Literal["joints", "uniform-strain", "none"] | None = Field(
+    deformation: Literal["joints", "uniform-strain", "quadratic", "none"] | None = Field(
         default=None,
         description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'uniform-strain' "
-        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'none' keeps blocks rigid; "
+        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'quadratic' lets "
+        "it bend and bulge as well (2D), 'none' keeps blocks rigid; "
         "default: joints where young is given. Fixed blocks do not deform",
         examples=["joints"],
     )
 
     @model_validator(mode="after")
     def _deforms_by_its_modulus(self) -> Material:
-        if self.deformation in ("joints", "uniform-strain") and self.young is None:
+        if self.deformation in ("joints", "uniform-strain", "quadratic") and self.young is None:
             message = f"'{self.deformation}' is not allowed without 'young', Young's modulus [Pa]"
             raise KeyProblem(message, "deformation")
         return self
@@ -71,7 +72,12 @@ class Material(CaseModel):
     @property
     def strains(self) -> bool:
         """Whether its blocks have a strain of their own."""
-        return self.deformation == "uniform-strain"
+        return self.deformation in ("uniform-strain", "quadratic")
+
+    @property
+    def bends(self) -> bool:
+        """Whether its blocks bend and bulge as well."""
+        return self.deformation == "quadratic"
 
 
 class Interface(CaseModel):
@@ -240,6 +246,7 @@ class Case(CaseModel):
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     pressure: tuple[Pressure, ...] = Field(default=(), description="pressure on faces: uniform, of water, of earth")
     fill: tuple[Fill, ...] = Field(default=(), description="earth that lies on blocks")
+    restraint: tuple[Restraint, ...] = Field(default=(), description="motions of blocks that are held from outside")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")
     initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")

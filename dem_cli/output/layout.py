@@ -41,7 +41,8 @@ class Group(NamedTuple):
 
 def describe(dataset: h5py.Dataset, said: Described) -> None:
     """Write what a dataset holds as its attributes."""
-    named = {"units": said.units, "columns": said.columns, "DIMENSION_LABELS": said.axes}  # the last one is HDF5's own
+    columns = said.columns[: dataset.shape[-1]] if dataset.shape else said.columns  # modes: as many as there are
+    named = {"units": said.units, "columns": columns, "DIMENSION_LABELS": said.axes}  # the last one is HDF5's own
     dataset.attrs.create("meaning", said.meaning, dtype=TEXT)
     for name, words in named.items():
         if isinstance(words, str):
@@ -75,7 +76,7 @@ def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "compone
 def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
     """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
     space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
-    return Described(meaning, unit, axes, ("even", "x - y", "xy"), space)
+    return Described(meaning, unit, axes, ("even", "x - y", "xy", *(f"bending {k}" for k in range(1, 7))), space)
 
 
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
@@ -128,7 +129,32 @@ MODEL = {
     ),
     "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
+    "mode_shapes": Described(
+        "displacement by each quadratic mode, as coefficients of 1, x, y, x², x y, y² from the centroid; 2D, where "
+        "blocks bend alone",
+        "m, powers of it",
+        ("block", "mode", "direction", "term"),
+    ),
     "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
+    "pieces": Described(
+        "stone that each block is a piece of, and the joint within it, by their numbers; -1: a whole stone; where the "
+        "case has stones that can crack alone",
+        PURE,
+        _COMPONENT,
+        ("stone", "joint"),
+    ),
+    "restrained": Described(
+        "whether each motion of the block is held; where the case has restraints alone",
+        PURE,
+        _COMPONENT,
+        _MOVED,
+        Described(
+            "whether each motion of the block is held; where the case has restraints alone",
+            PURE,
+            _COMPONENT,
+            _MOVED_IN_SPACE,
+        ),
+    ),
 }
 _TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {

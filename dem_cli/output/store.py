@@ -13,7 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.model.model import OF_MODES, SPATIAL_MODEL, Model
+from dem_cli.model.model import SPATIAL_MODEL, WHERE_ASKED_FOR, Model
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
@@ -259,7 +259,7 @@ def _links_of(model: Model) -> list[tuple[str, Any]]:
 def _store_model(group: h5py.Group, model: Model) -> None:
     said = declared(MODEL, model.dimension)
     for name, value in model._asdict().items():
-        if name in _UNSAID or (name in (*SPATIAL_MODEL, *OF_MODES) and not len(value)):
+        if name in _UNSAID or (name in (*SPATIAL_MODEL, *WHERE_ASKED_FOR) and not len(value)):
             continue
         if isinstance(value, int):
             group.attrs[name] = value
