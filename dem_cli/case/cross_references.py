@@ -12,7 +12,7 @@ from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
-SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+SELECTING = ("imperfection", "load", "pressure", "fill", "strain", "settlement", "initial", "monitor")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 

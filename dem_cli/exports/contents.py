@@ -11,6 +11,8 @@ import numpy as np
 from dem_cli.geometry import polyhedron
 from dem_cli.model.blocks import Block
 
+NOT_SAID = ("settlement", "motion", "imperfection", "strain", "tie")  # tables that input of other programs leaves out
+
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
