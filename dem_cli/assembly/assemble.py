@@ -16,6 +16,7 @@ from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.assembly.imposed_strains import with_imposed_strains
 from dem_cli.assembly.point_forces import AppliedLoad
+from dem_cli.assembly.restraints import restrained
 from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.wording import show, unknown_name
@@ -23,7 +24,7 @@ from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
-from dem_cli.model.model import Model
+from dem_cli.model.model import NO_PIECES, Model
 from dem_cli.model.quadratic_modes import quadratic_loads, quadratic_modes
 from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
 from dem_cli.structures.placement import aliases, place
@@ -66,7 +67,11 @@ def assembly(case: Case) -> Assembly:
         blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
         body = _bodies(case, blocks, names)._replace(selections=selections.several())
     loads = applied_loads(case, body)
-    body = body._replace(links=tuple(link.laid(body.centroids) for link in drawn), link_names=names_of(case))
+    body = body._replace(
+        links=tuple(link.laid(body.centroids) for link in drawn),
+        link_names=names_of(case),
+        restrained=restrained(case, body),
+    )
     return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts), tuple(loads))
 
 
@@ -173,8 +178,18 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         dead_loads=np.zeros((n, n_dof)),
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
+        pieces=_pieces(case, blocks),
     )
     return _with_modes(case, model)
+
+
+def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
+    """As Model.pieces; nothing where no stone can crack."""
+    if not any(block.crack for block in blocks):
+        return NO_PIECES
+    joints = {name: k for k, name in enumerate(case.joints)}
+    stones = {name: k for k, name in enumerate(dict.fromkeys(block.stone for block in blocks if block.crack))}
+    return np.array([(stones[b.stone], joints[b.crack]) if b.crack else (-1, -1) for b in blocks], np.int64)
 
 
 def _with_modes(case: Case, model: Model) -> Model:

@@ -4,7 +4,8 @@
 
 One copy for limit analysis, natural frequencies, fictitious masses and the elastic path; 2D and 3D alike. A point has
 d rows, its normal first. Columns are degrees of freedom: block by block, translations first, then rotations; as a
-sparse matrix, those of free blocks alone. The transpose gives the forces on the blocks from those at the points.
+sparse matrix, those of free blocks alone, of which those that restraints hold are empty. The transpose gives the forces
+on the blocks from those at the points.
 """
 
 from __future__ import annotations
@@ -39,12 +40,12 @@ def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
 
 
 def free_columns(model: Model, joints: Joints) -> np.ndarray:
-    """Column of each degree of freedom of both blocks of every point, −1: fixed, (n_points, 2 blocks, n_dof)."""
+    """Column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof)."""
     n_dof = model.dead_loads.shape[1]
     column = np.full(model.n_blocks, -1)
     column[~model.fixed] = np.arange(int((~model.fixed).sum())) * n_dof
-    first = column[joints.blocks[joints.owners]]
-    return np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof))
+    blocks = joints.blocks[joints.owners]
+    return np.where(model.held[blocks], -1, column[blocks][:, :, None] + np.arange(n_dof))
 
 
 def compatibility(model: Model, joints: Joints) -> csr_matrix:

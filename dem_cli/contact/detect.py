@@ -13,7 +13,7 @@ from dem_cli.model.model import Model
 
 def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
-    inertias = np.where(model.fixed[:, None], 0.0, model.inertias)
+    inertias = np.where(model.held[:, model.rotations], 0.0, model.inertias)
     axes = matrices(model.principal_axes).reshape(-1, 9)
     stiffness = model.mode_stiffness if model.n_modes else np.zeros((model.n_blocks, 0))
     return BlockShapes(

@@ -91,9 +91,16 @@ def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointL
 def _with_deforming_blocks(
     model: Model, by_material: np.ndarray, compliance: BlockCompliance | None, bending: np.ndarray
 ) -> set[int]:
-    """Named joints that blocks may have which deform in their joints, or bend by themselves: materials of these."""
+    """Named joints that blocks may have which deform in their joints, or bend by themselves: materials of these.
+
+    Within a stone that can crack: the joint of its pieces, where these deform in it.
+    """
     lumped = [] if compliance is None else model.block_material[compliance.deforms]
-    return set(by_material[np.union1d(lumped, bending).astype(int)].ravel().tolist())
+    found = set(by_material[np.union1d(lumped, bending).astype(int)].ravel().tolist())
+    if compliance is None or not len(model.pieces):
+        return found
+    within = model.pieces[compliance.deforms, 1]
+    return found | set(within[within >= 0].tolist())
 
 
 def _with_rigid_blocks(
@@ -103,7 +110,8 @@ def _with_rigid_blocks(
     if compliance is None:
         return np.ones(len(names), bool)
     stiff, free = (np.unique(model.block_material[~compliance.deforms & among]) for among in (True, ~model.fixed))
-    return np.isin(np.arange(len(names)), by_material[np.ix_(stiff, free)])
+    within = model.pieces[~compliance.deforms, 1] if len(model.pieces) else model.pieces[:, 1]
+    return np.isin(np.arange(len(names)), np.append(by_material[np.ix_(stiff, free)], within))
 
 
 def _own_rows(tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, step: float) -> LawRows | None:

@@ -21,7 +21,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
-from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
+from dem_cli.links.matrices import elastic_energy_of_links, joined
 from dem_cli.model.model import Model
 from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
@@ -317,7 +317,7 @@ class Simulation:
         """
         before = elastic_energy_of_links(self.links)
         for link in self.links:
-            follow(link, motion, self.bodies)
+            link.follow(motion, self.bodies)
         self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
         bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
@@ -326,6 +326,39 @@ class Simulation:
         self.taken_back += motion
         angles = np.sqrt((spins**2).sum(axis=1))
         bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
+
+    def move_to(self, motion: np.ndarray, shear: np.ndarray, load: float, friction: float) -> None:
+        """Moves all blocks, at rest, by finite displacements (n_blocks, n_dof) [m, rad] to a state found elsewhere.
+
+        shear: forces along the tangents there [N], (n_points, d − 1); load: internal multiplier there; friction: work
+        that friction took on the way [J]. Loads are booked as growing in proportion; what of their work neither
+        friction nor springs have counts as numerical damping.
+        """
+        bodies, d, spins, before = (
+            self.bodies,
+            self.model.dimension,
+            motion[:, self.model.rotations],
+            self.elastic_energy(),
+        )
+        applied = self.loads.dead + 0.5 * (self.load + load) * self.loads.live
+        bodies.positions[:] += motion[:, :d]
+        bodies.orientations[:] = turned_further(bodies.orientations, spins)
+        bodies.velocities[:] = 0.0
+        self._follow()
+        self.contacts.shear[:] = shear
+        gaps = self.measured().gaps
+        self.contacts.gaps[:] = gaps
+        self.contacts.normal[:] = np.maximum(self.joints.kn * (self.contacts.closure - gaps), 0.0)
+        self.set_load(load)
+        given = float((applied[:, : motion.shape[1]] * motion).sum())
+        self.ledger[slot.EXTERNAL] += given
+        self.ledger[slot.FRICTION] += friction
+        self.ledger[slot.DAMPING] += given - friction - (self.elastic_energy() - before)
+        self.ledger[slot.CONTACT] -= given
+        angles = np.sqrt((spins**2).sum(axis=1))
+        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
+        if self.tracking.due(bodies):
+            self.detect()
 
     def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
         """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""

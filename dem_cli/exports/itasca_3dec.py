@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from dem_cli.exports.contents import NOT_SAID, ExportedBlock, ExportedCase, number, triple
+from dem_cli.exports.contents import ExportedBlock, ExportedCase, number, triple
 
 FIXED = "dem-fixed"
 AUTO_STIFFNESS = 1e4  # kn times the size of a block over its mean pressure under its own weight
@@ -45,7 +45,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
     more = f" and {len(compound) - 1} more" if len(compound) > 1 else ""
     notes += [f"that the parts of '{compound[0]}'{more} move as one (block join)"] if compound else []
     notes += ["deformation of blocks (young)"] if exported.deforms else []
-    return notes + [f"[[{key}]]" for key in NOT_SAID if getattr(case, key, None)]
+    return notes + exported.left_out
 
 
 def _block(block: ExportedBlock) -> list[str]:

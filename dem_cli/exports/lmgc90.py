@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.exports.contents import NOT_SAID, ExportedCase, number, triangles
+from dem_cli.exports.contents import ExportedCase, number, triangles
 
 BODY, SHAPE, ELEMENT = {2: "RBDY2", 3: "RBDY3"}, {2: "POLYG", 3: "POLYR"}, {2: "Rxx2D", 3: "Rxx3D"}
 ALERT = 0.02  # of the shortest edge: contact is looked for so far away
@@ -138,7 +138,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
         f"joint '{name}': of law '{joint.law}' only its friction" for name, joint in case.joints.items()
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
-    notes += [f"[[{key}]]" for key in NOT_SAID if getattr(case, key, None)]
+    notes += exported.left_out
     notes += ["deformation of blocks (young)"] if exported.deforms else []
     turned = _turned(exported)
     more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""

@@ -174,6 +174,8 @@ def make_profiled_forces(
                     gap += apart_at(bent, way, frame)[0]
                 gap += offset
                 if wrong:
+                    if gap < 0.0 and normals[point] > 0.0:  # edges that slid past each other: what pressed is lost
+                        lost += 0.5 * normals[point] * normals[point] / joints.kn[point]
                     gap = max(gap, 0.0)
                 before = gaps[point]
                 gaps[point] = gap
