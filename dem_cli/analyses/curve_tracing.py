@@ -111,7 +111,7 @@ class CurveTracing:
             longer = settings.implicit_longer
             control = self._trace(ImplicitControl, other, until, shown, longer)
             assert isinstance(control, ImplicitControl)
-            if control.ramps <= settings.mostly * control.increments:
+            if control.mostly(other.highest.way):
                 self.in_ramps, self.curve, self.increments, self.end = load, other, IMPLICIT, self.sim.save()
                 self.job.warnings.append(
                     f"{differ}; the curve is that of implicit increments, whose peak is "

@@ -124,7 +124,6 @@ class DisplacementControlSettings:
     first: float = 0.05  # increment, in elastic displacements at an internal multiplier of one
     growth: float = 1.2  # of the next ones
     ramp: int = 200  # steps of the first increment; its rate grows and falls smoothly
-    longest_ramp: int = 2000  # steps
     stairs: int = 10  # rates in a ramp
     tolerance: float = 1e-4  # unbalanced force in own weights at which an increment is at rest
     look: int = 25  # steps from one look at the forces to the next

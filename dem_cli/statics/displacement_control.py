@@ -132,8 +132,7 @@ class DisplacementControl:
     def _ramp(self, distance: float) -> None:
         sim, settings = self.sim, self.settings
         stairs = settings.stairs
-        steps = settings.ramp * math.sqrt(max(abs(distance) / self.first, 1.0))
-        length = max(1, math.ceil(min(steps, settings.longest_ramp) / stairs))
+        length = max(1, math.ceil(settings.ramp * math.sqrt(max(abs(distance) / self.first, 1.0)) / stairs))
         sim.restart_relaxation()
         for stair in range(stairs):
             share = (stair + 0.5) / stairs

@@ -50,7 +50,8 @@ def why_not(sim: Simulation) -> str | None:
 class ImplicitControl(DisplacementControl):
     """Displacement control in implicit increments; one that has no solution is moved in a ramp, as DisplacementControl.
 
-    increments, ramps: how many there were, and how many of them had none; effort: factorisations × points so far.
+    starts: DisplacementControl.way at which each increment began; ramped: of those without a solution; effort:
+    factorisations × points so far.
     """
 
     def __init__(
@@ -62,16 +63,23 @@ class ImplicitControl(DisplacementControl):
         of: Followed | None = None,
     ) -> None:
         super().__init__(sim, budget, compliance, watch, of)
-        self.increments = self.ramps = 0
+        self.starts: list[float] = []
+        self.ramped: list[float] = []
         self.effort = 0.0
 
+    def mostly(self, until: float) -> bool:
+        """Whether most of the increments up to DisplacementControl.way had a solution."""
+        starts, ramped = (sum(way < until for way in ways) for ways in (self.starts, self.ramped))
+        return ramped <= self.settings.mostly * starts
+
     def _ramp(self, distance: float) -> None:
-        self.increments += 1
+        way = self.way
+        self.starts.append(way)
         posed = self._posed()
         found = self._solution(posed, distance) if self.effort < self.settings.implicit_effort else None
         self.watch()
         if found is None:
-            self.ramps += 1
+            self.ramped.append(way)
             super()._ramp(distance)
         else:
             self._move(posed, found)
