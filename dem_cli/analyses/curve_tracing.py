@@ -12,7 +12,7 @@ from dem_cli.analyses import curve_answers
 from dem_cli.engine import measures
 from dem_cli.errors import SolverError
 from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
-from dem_cli.statics.implicit_control import ImplicitControl, why_not
+from dem_cli.statics.implicit_control import ImplicitControl, StiffControl, why_not
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -50,6 +50,7 @@ class CurveTracing:
         self.of, self.at_rest = followed(job, track), track.sim.save()
         self.longest = job.case.analysis.follow / job.case.analysis.increments
         self.curve, self.increments, self.hangs = CapacityCurve(), RAMPS, False
+        self.kind = StiffControl if why_not(self.sim) is None else DisplacementControl
         self.coarse: float | None = None  # peak in longer ramps, internal multiplier
         self.in_ramps: float | None = None  # peak in ramps, where the curve is not theirs
 
@@ -62,7 +63,7 @@ class CurveTracing:
         """
         until, drawn = self.job.case.analysis.follow, self._drawing(FOLLOWING)
         try:
-            self._trace(DisplacementControl, self.curve, until, drawn)
+            self._trace(self.kind, self.curve, until, drawn)
             self.end = self.sim.save()
             self.coarse = self._coarser()
             drawn = self._checked(until, drawn)
@@ -94,7 +95,7 @@ class CurveTracing:
         """Internal multiplier of the peak in longer ramps, to where the curve came to its own."""
         settings, resolution = self.job.settings.displacement_control, self.job.case.analysis.resolution
         near, coarse = self.curve.first_within(settings.near * resolution).way, CapacityCurve()
-        self._trace(DisplacementControl, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
+        self._trace(self.kind, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
         return coarse.highest.load
 
     def _checked(self, until: float, drawn: _Drawing) -> _Drawing:

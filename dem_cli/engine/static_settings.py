@@ -136,6 +136,14 @@ class DisplacementControlSettings:
     near_target: float = 0.02  # of a step: how near it comes
     implicit_effort: float = 2e7  # factorisations × points of a curve in implicit increments: about a minute
     implicit_longer: float = 2.0  # increments there
+    implicit_rounds: int = 4  # one of them and, where it ends further out of balance than so many own weights, ...
+    implicit_near: float = 1e-2  # ... others without a displacement
+    long_ramp: tuple[float, ...] = (
+        0.0,
+        0.0,
+        2000.0,
+        2000.0,
+    )  # steps, by dimension, from which on increments are implicit
     implicit_starts: tuple[float, ...] = (1.0, 1e2)  # first products of the interior point, tried in turn
     mostly: float = 0.1  # of the increments, that may need ramps
     coarser: float = 2.0  # increments of the curve that the peak is compared with
