@@ -50,6 +50,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_loose_cracks(case),
         *_loose_ends(case),
         *_unspanned(case),
         *_unsaid(case),
@@ -147,11 +148,23 @@ def _is_unit(force: float) -> bool:
 
 
 def _unused_joints(case: Case) -> Iterator[CaseProblem]:
-    """Joints that lie between no two materials: most often an [[interface]] is missing."""
+    """Joints that lie between no two materials, nor in stones: most often an [[interface]] is missing."""
     names, by_material = joint_table(case)
+    within = {table.cracks.joint for table in case.structure if table.cracks is not None}
     for k, name in enumerate(names):
-        if not (by_material == k).any():
+        if not (by_material == k).any() and name not in within:
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _loose_cracks(case: Case) -> Iterator[CaseProblem]:
+    """Joints within stones that hold no tension: the stones are in pieces from the start."""
+    for i, table in enumerate(case.structure):
+        if table.cracks is None:
+            continue
+        joint = case.joints[table.cracks.joint]
+        if joint.law != "elastic" and not getattr(joint, "tension", None):
+            message = f"joint {show(table.cracks.joint)} has no tension: the pieces of a stone are stones of their own"
+            yield CaseProblem(("structure", i, "crack"), message)
 
 
 def _loose_ends(case: Case) -> Iterator[CaseProblem]:

@@ -11,12 +11,12 @@ import math
 from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
-from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap, turned3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
 from dem_cli.kernels.vec import axpy, dot
 
 # Columns of SpatialMotion.numbers beyond area, share and arm: what a new point has from the nearest one before.
-PRESSED, SLID_1, SLID_2 = 5, 6, 7  # overlap and elastic slip that its forces stand for [m]
+SLACK, SLID_1, SLID_2 = 5, 6, 7  # gap at which its spring is slack, and elastic slip that its shear stands for [m]
 PATH, CLOSURE = 8, 9  # slip path, closure taken back [m]
 CLOSED = 10  # how far it has closed since forces were found [m]
 LEFT = 11  # memory of the law, from here on ...
@@ -59,7 +59,7 @@ def _energy(joints, contacts, point):
 def _place_of(bodies, b, kind, ends, row, share, arm):
     """About where a point is, in a slot or found. kind, ends[row], share, arm: as SpatialMotion has them."""
     if kind == FIXED_TO_B:
-        return axpy(1.0, turned3(bodies.turns, b, arm), row3(bodies.positions, b))
+        return axpy(1.0, carried3(bodies, b, arm), row3(bodies.positions, b))
     start = row3(bodies.corners, ends[row, 0])
     if kind == CROSSING:
         return axpy(max(share, 0.0), minus3(row3(bodies.corners, ends[row, 1]), start), start)
@@ -138,12 +138,15 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
     Forces are those of the last step, so that the gap by which it has closed since then belongs to this one.
     """
     numbers, heir = geometry.numbers, geometry.heirs[k]
-    for m in range(PRESSED, LEFT + remembers):
+    for m in range(SLACK, LEFT + remembers):
         numbers[k, m] = 0.0
     if heir == NONE:
+        numbers[k, SLACK] = -math.inf
         return
     numbers[k, CLOSED] = contacts.gaps[heir] - _gap_of(joints, geometry, bodies, joint, heir, frame)
-    numbers[k, PRESSED] = contacts.normal[heir] / joints.kn[heir]
+    numbers[k, SLACK] = -math.inf
+    if contacts.normal[heir] != 0.0:
+        numbers[k, SLACK] = contacts.gaps[heir] + contacts.normal[heir] / joints.kn[heir]
     numbers[k, SLID_1] = contacts.shear[heir, 0] / joints.ks[heir]
     numbers[k, SLID_2] = contacts.shear[heir, 1] / joints.ks[heir]
     numbers[k, PATH], numbers[k, CLOSURE] = contacts.slip[heir], contacts.closure[heir]
@@ -174,7 +177,9 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
     contacts.slip[point], contacts.closure[point] = numbers[k, PATH], numbers[k, CLOSURE]
     for m in range(remembers):
         contacts.memory[point, m] = numbers[k, LEFT + m]
-    deep = numbers[k, PRESSED] if bonded else max(numbers[k, CLOSURE] - gap, 0.0)
+    deep = max(numbers[k, CLOSURE] - gap, 0.0)
+    if bonded:  # a joint that carries tension or dilates: by its own gap as well, and none where the nearest has none
+        deep = numbers[k, SLACK] - gap if numbers[k, SLACK] > -math.inf else 0.0
     contacts.normal[point] = joints.kn[point] * deep
     if deep != 0.0:
         contacts.shear[point, 0] = joints.ks[point] * numbers[k, SLID_1]
@@ -199,7 +204,7 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
     """
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
-    frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+    frame, along = frame_of(geometry, bodies, joint, a, b)
     first, last = joints.starts[joint], joints.starts[joint + 1]
     count = min(_found(geometry, bodies, joint, (a, b), frame, along, last - first), last - first)
     before, after = 0.0, 0.0

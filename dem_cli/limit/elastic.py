@@ -141,7 +141,9 @@ class Elastic:
         self.work = np.empty((2, *self.outer[0].shape))
         i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
         used, n = (i >= 0) & (j >= 0), len(self.columns)
-        keys, place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
+        own = np.arange(n) * (n + 1)  # the diagonal is there even of what restraints hold
+        keys = np.unique(np.concatenate([j[used].astype(np.int64) * n + i[used], own]))
+        place = np.searchsorted(keys, j[used].astype(np.int64) * n + i[used])
         self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
         self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
         self.place[used.ravel()] = place

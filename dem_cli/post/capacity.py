@@ -39,7 +39,8 @@ def capacity_axis(results: Results) -> CapacityAxis:
     """What the loads of a run are drawn against."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
-    name = (curve or next(iter(summary.get("turning_points") or []), {})).get("of")
+    turns: list[dict[str, Any]] = summary.get("turning_points") or [{}]
+    name = (curve or turns[0]).get("of")
     if name is not None and name in results.monitors:
         return _of_monitor(results, name, curve)
     if (curve or "turning_points" in summary) and "live_displacement" in history:

@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 from engine import simulation, solve
-from studies.mortar.specimen import blocks_of
+from oracle import brittle_plate, toothed_crack
+from studies.mortar.specimen import blocks_of, strength, wallette
+from studies.mortar.wallettes import crack_by_crack
 from studies.space.structures import box, tables
 
 from dem_cli.contact.spatial_motion import place
@@ -114,3 +116,27 @@ def test_wallettes_cover_their_outline():
     for angle, missing in ((0.0, 0.0), (15.0, 0.03), (45.0, 0.03), (90.0, 0.0)):
         area = sum(polygon.properties(corners).area for corners in blocks_of(angle))
         assert (1.0 - missing) * 0.8 * 1.6 - 1e-9 <= area <= 0.8 * 1.6 + 1e-9
+
+
+@pytest.mark.parametrize("angle", [15.0, 90.0])
+def test_a_wallette_is_as_strong_as_crack_by_crack(angle):
+    """Another program, without steps or dynamics: 15° lies below 0° in both, 90° far above."""
+    summary, _ = solve(wallette(angle, 0.4))
+    low, high = (strength(load) / 1e6 for load in summary["failure_load_bracket"])
+    other = crack_by_crack(angle, 0.4, 3)
+    assert low * 0.98 < other["strength"] < high * 1.025
+    assert other["first"] <= other["strength"]
+    assert (other["strength"] < 0.322) is (angle == 15.0)
+
+
+def test_crack_by_crack_finds_the_strength_of_a_bed_joint():
+    found = crack_by_crack(0.0, 0.4, 5)
+    assert found["first"] == pytest.approx(0.322, abs=1e-4)
+    assert crack_by_crack(0.0, 0.4, 3)["strength"] == pytest.approx(0.322, abs=1e-4)
+
+
+def test_soft_beds_of_a_toothed_crack_turn_about_the_pressed_edge():
+    """Heads are gone when the far corner of the bed fails, at c a √(a² + 4 t²)/(h t); its other points add little."""
+    crack = toothed_crack.Toothed(0.2, 0.2, 0.15, TENSION, COHESION, 1e11, 1e8)
+    found = toothed_crack.strength(crack, brittle_plate.lobatto(9))
+    assert found == pytest.approx(toothed_crack.beds_alone(crack), rel=0.03)

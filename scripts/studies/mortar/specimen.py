@@ -62,6 +62,12 @@ def lines_of_load(blocks: list[np.ndarray]) -> list[dict[str, Any]]:
     return loads
 
 
+def held_of(blocks: list[np.ndarray]) -> int:
+    """The lowest block in the middle."""
+    low = [i for i, corners in enumerate(blocks) if corners[:, 1].min() < 1e-9]
+    return min(low, key=lambda i: abs(blocks[i][:, 0].mean() - WIDTH / 2.0))
+
+
 def _crossings(corners: np.ndarray, z: float) -> list[float]:
     """Where a level line crosses the outline of a polygon, in order."""
     ends = zip(corners, np.roll(corners, -1, axis=0), strict=True)
@@ -76,8 +82,7 @@ def wallette(angle: float, ratio: float, points: int = 3, **joint: Any) -> dict[
     ratio: ks/kn. Gravity is 1 m/s², so that blocks have a weight by which their equilibrium can be judged: 1.1 kPa.
     """
     pieces = blocks_of(angle)
-    low = [i for i, corners in enumerate(pieces) if corners[:, 1].min() < 1e-9]
-    held = min(low, key=lambda i: abs(pieces[i][:, 0].mean() - WIDTH / 2.0))
+    held = held_of(pieces)
     blocks = [
         {"id": f"b{i}", "material": "block", "polygon": corners.round(12).tolist(), "y": [0.0, THICKNESS]}
         | ({"fixed": True} if i == held else {})

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from studies.mortar import joints, wallettes
+from studies.mortar import cycles, joints, pressure_wall, settlement, wallettes
 from studies.study import SectionedStudy
 
-STUDY = SectionedStudy("mortar", "Mortar joints in bending out of the plane of a wall", (joints, wallettes))
+PARTS = (joints, wallettes, pressure_wall, settlement, cycles)
+STUDY = SectionedStudy(
+    "mortar", "Joints of mortar: plates out of plane, walls under pressure, settlement, cycles", PARTS
+)
