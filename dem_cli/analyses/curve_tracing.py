@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.track import Track
     from dem_cli.output.record import Frame, HistoryRow
 
-RAMPS, IMPLICIT = "ramps", "implicit"  # how increments were made
+RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"
 FOLLOWING, AGAIN, BY_INCREMENTS = (
     "following the capacity curve",
@@ -64,7 +64,9 @@ class CurveTracing:
         """
         until, drawn = self.job.case.analysis.follow, self._drawing(FOLLOWING)
         try:
-            self._trace(self.kind, self.curve, until, drawn)
+            control = self._trace(self.kind, self.curve, until, drawn)
+            if isinstance(control, StiffControl) and control.starts:
+                self.increments = MIXED
             self.end = self.sim.save()
             self.coarse = self._coarser()
             drawn = self._checked(until, drawn)

@@ -138,12 +138,8 @@ class DisplacementControlSettings:
     implicit_longer: float = 2.0  # increments there
     implicit_rounds: int = 4  # one of them and, where it ends further out of balance than so many own weights, ...
     implicit_near: float = 1e-2  # ... others without a displacement
-    long_ramp: tuple[float, ...] = (
-        0.0,
-        0.0,
-        2000.0,
-        2000.0,
-    )  # steps, by dimension, from which on increments are implicit
+    # Steps of a ramp, by dimension, from which on an increment is implicit: in space solutions are dear and rarer.
+    long_ramp: tuple[float, ...] = (0.0, 0.0, 2e3, 2e4)
     implicit_starts: tuple[float, ...] = (1.0, 1e2)  # first products of the interior point, tried in turn
     mostly: float = 0.1  # of the increments, that may need ramps
     coarser: float = 2.0  # increments of the curve that the peak is compared with
