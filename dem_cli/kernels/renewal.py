@@ -11,7 +11,7 @@ import math
 from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
-from dem_cli.kernels.spatial_features import NONE, feature_of, frame_of, on_cap, turned3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
 from dem_cli.kernels.vec import axpy, dot
 
@@ -59,7 +59,7 @@ def _energy(joints, contacts, point):
 def _place_of(bodies, b, kind, ends, row, share, arm):
     """About where a point is, in a slot or found. kind, ends[row], share, arm: as SpatialMotion has them."""
     if kind == FIXED_TO_B:
-        return axpy(1.0, turned3(bodies.turns, b, arm), row3(bodies.positions, b))
+        return axpy(1.0, carried3(bodies, b, arm), row3(bodies.positions, b))
     start = row3(bodies.corners, ends[row, 0])
     if kind == CROSSING:
         return axpy(max(share, 0.0), minus3(row3(bodies.corners, ends[row, 1]), start), start)
@@ -204,7 +204,7 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
     """
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
-    frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+    frame, along = frame_of(geometry, bodies, joint, a, b)
     first, last = joints.starts[joint], joints.starts[joint + 1]
     count = min(_found(geometry, bodies, joint, (a, b), frame, along, last - first), last - first)
     before, after = 0.0, 0.0
