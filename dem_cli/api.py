@@ -23,7 +23,7 @@ def make_case_model() -> type[Case]:
     from dem_cli.analyses.registry import ANALYSES
     from dem_cli.calibrate.table import Calibration
     from dem_cli.laws.registry import LAWS
-    from dem_cli.links.registry import LINKS
+    from dem_cli.links.registry import LINKS, PROFILES
     from dem_cli.motion.table import MOTIONS
     from dem_cli.structures.registry import GENERATORS
     from dem_cli.tables.damping import DampingTable
@@ -37,7 +37,7 @@ def make_case_model() -> type[Case]:
         DampingTable,
         InitialState,
         MOTIONS,
-        {key: link.parameters for key, link in LINKS.items()},
+        {key: link.parameters for key, link in LINKS.items()} | PROFILES,
     )
 
 

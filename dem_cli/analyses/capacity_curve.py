@@ -1,9 +1,9 @@
 """kind = "pushover" with control = "displacement": the capacity curve, and the proof of its peak.
 
-The displacement of the live load grows from gravity to beyond the peak (statics/displacement_control.py), twice: with
-increments as they are asked for, and with coarser ones before, which show whether the peak hangs on them. The state at
-the peak is then held under a constant load a little below, from where the load is raised until failure is proved, as
-under load control: the failure load is one of that history.
+The displacement of the live load grows from gravity to beyond the peak (analyses/curve_tracing.py). The state at the
+peak is held under a constant load a little below, from where the load is raised until failure is proved, as under load
+control: the failure load is one of that history. Where the peak hangs on how the displacement grew, the load is raised
+from gravity instead, and the run says by how much the curve misses it.
 """
 
 from __future__ import annotations
@@ -11,28 +11,29 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
+from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import CURVE, CurveStart
+from dem_cli.statics.warm_start import CURVE, GRAVITY, CurveStart
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
+
+HANGS = "the peak of the curve hangs on its increments; the load is raised from gravity"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -44,7 +45,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     try:
         if settle(sim, track, job.budget).state == "equilibrium":
             track.flush()
-            found |= _curve_and_peak(job, sim, search, track)
+            _curve_and_peak(job, track, search, found)
         else:
             search.status = FALLS
             track.flush()
@@ -65,27 +66,32 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], answer(search, sim, resolution) | found)
 
 
-def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
-    """The curve, then the bracket around its peak; what is found of the load goes to `search` as it is found."""
-    analysis, settings = job.case.analysis, job.settings.displacement_control
-    at_rest = sim.save()
-    elastic = compliance(sim, job.budget)[0]
+def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
+    """The curve, then the bracket around its peak; what is found goes to `found` and `search` as it is found.
+
+    Raises SolverError where the budget ends.
+    """
+    analysis, sim = job.case.analysis, track.sim
+    at_rest, elastic = sim.save(), compliance(sim, job.budget)[0]
     check_moves(sim, elastic)
-    control = DisplacementControl(sim, job.budget, elastic)
-    coarse = trace(control, analysis.follow, analysis.increments, coarser=settings.coarser)
-    sim.restore(at_rest)
-    curve = trace(control, analysis.follow, analysis.increments, _Shown(job, track, coarse, settings.past))
-    end = sim.save()
-    told = curve_answers.summary(job, curve, control.forces, sim.live_scale)
-    told["peak_load_of_coarser_increments"] = coarse.highest.load * sim.live_scale
-    found: dict[str, Any] = {"capacity_curve": told, "displacement_at_failure": curve.highest.largest}
-    job.warnings += _words(curve, coarse, analysis.resolution)
+    traced = CurveTracing(job, track, elastic)
+    traced.run(found)
+    curve, end = traced.curve, traced.end
     if analysis.check is not None:
-        found |= curve_answers.CurveCheck(job, sim, analysis.check).run(told, curve, (at_rest, end))
+        found |= curve_answers.CurveCheck(job, sim, analysis.check).run(found["capacity_curve"], curve, (at_rest, end))
     sim.restore(at_rest)
-    search.limits, search.start = RigidLimits(job, sim), {"kind": CURVE, "load": curve.highest.load * sim.live_scale}
+    search.limits, peak = RigidLimits(job, sim), curve.highest.load * sim.live_scale
+    start = None
+    if traced.hangs:
+        search.start = {"kind": GRAVITY, "note": HANGS}
+    else:
+        assert curve.at_peak is not None
+        start, search.start = CurveStart(peak, curve.at_peak), {"kind": CURVE, "load": peak}
     wanted = SearchRange(analysis.resolution, analysis.max_load)
-    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(_start(curve, sim))
+    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(start)
+    if missed := _missed(search, peak, analysis.resolution):
+        job.warnings += missed
+        found |= {"curve_off_the_load": True, "peak_of_curve": peak}
     if search.held is not None:
         sim.restore(search.standing)
         found["joint_state"] = joint_state(sim, LAST_EQUILIBRIUM)
@@ -93,51 +99,17 @@ def _curve_and_peak(job: Job, sim: Simulation, search: FailureLoad, track: Track
         sim.restore(search.failed_state)
         found |= describe(sim, search.failed_from or search.standing)
     sim.restore(end)
-    return found
 
 
-def _start(curve: CapacityCurve, sim: Simulation) -> CurveStart:
-    assert curve.at_peak is not None
-    return CurveStart(curve.highest.load * sim.live_scale, curve.at_peak)
-
-
-class _Shown:
-    """Rows and frames of a curve as it grows; a first, coarser one says how far it goes and where its peak is."""
-
-    def __init__(self, job: Job, track: Track, first: CapacityCurve, past: float) -> None:
-        self.track, self.sim, self.past = track, track.sim, past
-        self.until, self.highest = job.case.analysis.follow, first.highest.load
-        self.every = self.until / max(job.case.output.snapshots - 2, 1)
-        self.next_frame, self.stage, self.peaked = self.every, "loading", False
-
-    def __call__(self, point: CurvePoint) -> None:
-        """One more point."""
-        if point.load < self.past * self.highest and self.peaked:
-            self.stage = "collapse"
-        self.highest = max(self.highest, point.load)
-        self.peaked = self.peaked or point.load >= self.past * self.highest
-        self.track.write(self.stage)
-        if point.largest >= self.next_frame:
-            self.track.frame(self.stage)
-            self.next_frame = point.largest + self.every
-        share = min(point.largest / self.until, 1.0)
-        load = point.load * self.sim.live_scale
-        self.track.observer.progress("following the capacity curve", load, point.largest, share)
-
-
-def _words(curve: CapacityCurve, coarse: CapacityCurve, resolution: float) -> list[str]:
-    """Warnings: increments that change the peak, a curve that ends early, one without a peak."""
-    said = []
-    load, other, last = curve.highest.load, coarse.highest.load, curve.points[-1]
-    if abs(other - load) > resolution * abs(load):
-        said.append(
-            f"the peak hangs on the increments: longer ones change it by {100 * (other / load - 1):+.2g} %; "
-            "more of them (analysis.increments) come closer to slow loading"
-        )
-    if not curve.whole:
-        said.append(
-            f"the curve ends at {last.largest:.3g} m: beyond, nothing comes to rest at a displacement of the live load"
-        )
-    elif curve.peak == len(curve.points) - 1:
-        said.append("the curve still rises where it ends: its peak is further than analysis.follow")
-    return said
+def _missed(search: FailureLoad, peak: float, resolution: float) -> list[str]:
+    """A word where the load that was raised from gravity is not that of the peak, which hangs on the increments."""
+    if search.start.get("kind") == CURVE or not search.found or search.high is None:
+        return []
+    low, high = search.carried, search.high
+    if (1.0 - resolution) * low <= peak <= (1.0 + resolution) * high:
+        return []
+    share, where = (100 * abs(peak / low - 1), "below") if peak < low else (100 * abs(peak / high - 1), "above")
+    return [
+        f"the curve peaks {share:.2g} % {where} the failure load, which was found by raising the load from gravity: "
+        "only its shape counts"
+    ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.analyses.curve_tracing import followed
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
@@ -55,7 +56,7 @@ def values_between(start: float, end: float, step: float) -> np.ndarray:
 def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> None:
     """Every value of the path, after each of whose steps all forces balance; what is found goes to `found` at once."""
     analysis = job.case.analysis
-    go = WAYS[analysis.control](job, sim)
+    go = WAYS[analysis.control](job, track)
     value, states, turns = 0.0, [(0.0, 0.0)], [0]
     at_rest = measures.live_travel(sim)
     for turn, target in enumerate(analysis.path):
@@ -72,9 +73,11 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
             value = next_value
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
-        point = {"load": load, "displacement": measures.largest_displacement(sim)}
+        point: dict[str, Any] = {"load": load, "displacement": measures.largest_displacement(sim)}
         point["live_displacement"] = states[-1][0]
-        found["turning_points"].append(point if analysis.control == "load" else point | {"controlled": target})
+        if analysis.control == "displacement":
+            point |= {"controlled": target} if analysis.of is None else {"controlled": target, "of": analysis.of}
+        found["turning_points"].append(point)
         turns.append(len(states) - 1)
         displacements, loads = np.array(states).T
         made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
@@ -82,8 +85,9 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     found["status"] = "ok"
 
 
-def _by_load(job: Job, sim: Simulation) -> Callable[[float], bool]:
+def _by_load(job: Job, track: Track) -> Callable[[float], bool]:
     """Goes to a multiplier, a proven equilibrium."""
+    sim = track.sim
     elastic = compliance(sim)[1]
     step = job.case.analysis.step / sim.live_scale
 
@@ -94,12 +98,13 @@ def _by_load(job: Job, sim: Simulation) -> Callable[[float], bool]:
     return go
 
 
-def _by_displacement(job: Job, sim: Simulation) -> Callable[[float], bool]:
-    """Goes to a displacement of the live load [m], to rest."""
+def _by_displacement(job: Job, track: Track) -> Callable[[float], bool]:
+    """Goes to a displacement of the live load or of a monitor [m], to rest."""
+    sim, near = track.sim, job.settings.displacement_control.near_target * job.case.analysis.step
     elastic = compliance(sim)[0]
     check_moves(sim, elastic)
-    control = DisplacementControl(sim, job.budget, elastic)
-    return lambda displacement: control.go(displacement - control.displacement)
+    control = DisplacementControl(sim, job.budget, elastic, of=followed(job, track))
+    return lambda displacement: control.go_to(displacement, near)
 
 
 WAYS = {"load": _by_load, "displacement": _by_displacement}  # of analysis.control

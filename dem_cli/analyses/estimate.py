@@ -17,7 +17,8 @@ from dem_cli.engine.measures import shares_of_blocks
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
-from dem_cli.links.link import FORCE
+from dem_cli.links.matrices import each
+from dem_cli.links.registry import LINKS
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
 
@@ -72,26 +73,18 @@ def describe(case: Case, model: Model) -> Rows:
         *_runs(case),
         ("cost", _cost(case, sim)),
         ("load", _load(case, model)),
-        *_ties(model),
+        *_links(model),
         ("monitors", _monitors(case)),
     ]
 
 
-def _ties(model: Model) -> Rows:
-    """Ties and the like: between which blocks, how long and stiff, and what they carry."""
-    rows: Rows = []
-    names, ids = iter(model.link_names), (*model.block_ids, "a fixed point")  # FIXED_POINT is -1
-    for link in model.links:
-        force = link.state[:, FORCE]
-        for (a, b), length, stiffness, limit, held in zip(
-            link.blocks, link.lengths, link.stiffness, link.limits, force, strict=True
-        ):
-            most = f"up to {limit[1]:.4g} N" if np.isfinite(limit[1]) else "without limit"
-            both = "tension and compression" if limit[0] < 0.0 else "tension"
-            start = f", prestress {held:.4g} N" if held else ""
-            held_by = f"'{ids[a]}' to " + (f"'{ids[b]}'" if b >= 0 else ids[b])
-            rows.append((f"tie {next(names)}", f"{held_by}, {length:.4g} m, {stiffness:.4g} N/m, {both} {most}{start}"))
-    return rows
+def _links(model: Model) -> Rows:
+    """Ties and bars: between which blocks, how long and stiff, and what they carry."""
+    ids = (*model.block_ids, "a fixed point")  # FIXED_POINT is -1
+    return [
+        (f"{LINKS[link.kind].word} {name}", link.words(number, ids))
+        for link, number, name in each(model.links, model.link_names)
+    ]
 
 
 def _shaking(case: Case, model: Model) -> Rows:
@@ -105,7 +98,7 @@ def _shaking(case: Case, model: Model) -> Rows:
         *_joints(case, sim),
         *_stiffness(case, sim),
         *describe_shaking(case, sim),
-        *_ties(model),
+        *_links(model),
         ("monitors", _monitors(case)),
     ]
 
@@ -142,8 +135,7 @@ def _joints(case: Case, sim: Simulation) -> Rows:
     number = len(sim.joints.blocks)
     near = "" if sim.kinematics == "fixed" else " (with faces that may meet)"
     rows = [("joints", f"{number:,}{near}, {sim.first_points:,} contact points")]
-    materials = sim.model.block_material[sim.joints.blocks]
-    named = sim.properties.by_material[materials[:, 0], materials[:, 1]]
+    named = sim.properties.between(sim.model, sim.joints.blocks)
     bed = np.abs(sim.joints.frames[sim.joints.starts[:-1], sim.model.dimension - 1]) > BED
     for k, name in enumerate(sim.properties.names):
         here = named == k

@@ -15,6 +15,7 @@ from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
 from dem_cli.assembly.point_forces import AppliedLoad
+from dem_cli.assembly.restraints import restrained
 from dem_cli.assembly.selection import BlockNames, Selections
 from dem_cli.case.base import KeyProblem
 from dem_cli.case.wording import show, unknown_name
@@ -22,7 +23,8 @@ from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
-from dem_cli.model.model import Model
+from dem_cli.model.model import NO_PIECES, Model
+from dem_cli.model.quadratic_modes import quadratic_loads, quadratic_modes
 from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
 from dem_cli.structures.placement import aliases, place
 from dem_cli.structures.registry import generated_blocks
@@ -64,7 +66,11 @@ def assembly(case: Case) -> Assembly:
         blocks, doubts = IMPERFECT[case.dimension](case, body, blocks)
         body = _bodies(case, blocks, names)._replace(selections=selections.several())
     loads = applied_loads(case, body)
-    body = body._replace(links=tuple(link.laid(body.centroids) for link in drawn), link_names=names_of(case))
+    body = body._replace(
+        links=tuple(link.laid(body.centroids) for link in drawn),
+        link_names=names_of(case),
+        restrained=restrained(case, body),
+    )
     return Assembly(_with_loads(case, body, loads), tuple(blocks), tuple(doubts), tuple(loads))
 
 
@@ -171,8 +177,18 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         dead_loads=np.zeros((n, n_dof)),
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
+        pieces=_pieces(case, blocks),
     )
     return _with_modes(case, model)
+
+
+def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
+    """As Model.pieces; nothing where no stone can crack."""
+    if not any(block.crack for block in blocks):
+        return NO_PIECES
+    joints = {name: k for k, name in enumerate(case.joints)}
+    stones = {name: k for k, name in enumerate(dict.fromkeys(block.stone for block in blocks if block.crack))}
+    return np.array([(stones[b.stone], joints[b.crack]) if b.crack else (-1, -1) for b in blocks], np.int64)
 
 
 def _with_modes(case: Case, model: Model) -> Model:
@@ -184,7 +200,14 @@ def _with_modes(case: Case, model: Model) -> Model:
     poisson = np.array([table.poisson for table in tables])[model.block_material]
     volumes = model.shapes.volumes * model.thickness
     stiffness = mode_stiffness(model.dimension, young, poisson, volumes, model.shapes.radii)
-    return model._replace(mode_stiffness=np.where(model.fixed[:, None], 0.0, stiffness))
+    stiffness[model.fixed] = 0.0
+    if not any(table.bends for table in tables):
+        return model._replace(mode_stiffness=stiffness)
+    bends = np.array([table.bends for table in tables])[model.block_material] & ~model.fixed
+    more, shapes = quadratic_modes(
+        model.vertices, model.part_starts, model.part_blocks, model.thickness, np.where(bends, young, 0.0), poisson
+    )
+    return model._replace(mode_stiffness=np.column_stack([stiffness, more]), mode_shapes=shapes)
 
 
 def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
@@ -277,5 +300,8 @@ def _on_modes(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
     total = np.zeros_like(model.mode_stiffness)
     for load in loads:
         arms = load.points - model.centroids[load.blocks]
-        np.add.at(total, load.blocks, mode_loads(arms, load.forces, model.shapes.radii[load.blocks]))
+        found = mode_loads(arms, load.forces, model.shapes.radii[load.blocks])
+        if len(model.mode_shapes):
+            found = np.column_stack([found, quadratic_loads(arms, load.forces, model.mode_shapes[load.blocks])])
+        np.add.at(total, load.blocks, found)
     return np.where(model.mode_stiffness > 0.0, total, 0.0)

@@ -1,12 +1,13 @@
-"""Links as they were drawn, [[tie]]: from ends in space to material points of blocks."""
+"""Links as they were drawn, [[tie]] and [[reinforcement]]: from points in space to material points of blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.drawn_bars import drawn_bar
 from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 from dem_cli.links.link import FIXED_POINT, Link, LinkEnds
@@ -23,11 +24,11 @@ class DrawnLinks(NamedTuple):
 
     link: Link
     tables: Sequence[Any]
-    ends: Sequence[LinkEnds]  # points from the centroids of their blocks
+    drawn: Sequence[Any]  # LinkEnds or DrawnBar, points from the centroids of their blocks
 
     def laid(self, centroids: np.ndarray) -> Any:
         """Their arrays, where the blocks lie [m], (n_blocks, d)."""
-        return self.link.made(self.tables, self.ends, centroids)
+        return self.link.made(self.tables, self.drawn, centroids)
 
 
 def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
@@ -35,9 +36,9 @@ def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
     found, problems = [], list[CaseProblem]()
     for key, link in LINKS.items():
         tables = getattr(case, key)
-        ends = [_ends(table, (key, i), model, problems) for i, table in enumerate(tables)]
+        drawn = [DRAWN[key](case, table, (key, i), model, problems) for i, table in enumerate(tables)]
         if tables:
-            found.append(DrawnLinks(link, tables, [end for end in ends if end is not None]))
+            found.append(DrawnLinks(link, tables, [one for one in drawn if one is not None]))
     if problems:
         raise CaseError(problems)
     return found
@@ -45,10 +46,12 @@ def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
 
 def names_of(case: Case) -> tuple[str, ...]:
     """Names of all links of a case, in the order of their arrays."""
-    return tuple(table.id or f"{key}-{i + 1}" for key in LINKS for i, table in enumerate(getattr(case, key)))
+    return tuple(
+        table.id or f"{link.word}-{i + 1}" for key, link in LINKS.items() for i, table in enumerate(getattr(case, key))
+    )
 
 
-def _ends(table: Any, path: KeyPath, model: Model, problems: list[CaseProblem]) -> LinkEnds | None:
+def _ends(case: Case, table: Any, path: KeyPath, model: Model, problems: list[CaseProblem]) -> LinkEnds | None:
     """Blocks and points of one; None: something is wrong."""
     points = np.array(table.ends, float)
     first = _holding(model, (*path, "block"), table.block, points[0], (*path, "ends", 0), problems)
@@ -97,3 +100,8 @@ def _holding(
 
 def _others(ids: Sequence[str], inside: np.ndarray) -> str:
     return f"; it lies in {listing([ids[i] for i in inside])}" if len(inside) else "; it lies in no block"
+
+
+DRAWN: dict[str, Callable[[Case, Any, KeyPath, Model, list[CaseProblem]], Any]] = {
+    "tie": _ends, "reinforcement": drawn_bar
+}  # fmt: skip

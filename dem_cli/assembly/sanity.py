@@ -50,6 +50,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_loose_cracks(case),
         *_loose_ends(case),
         *_unspanned(case),
         *_unsaid(case),
@@ -87,7 +88,7 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
             what = f"block {load.said}" if load.block in model.numbers else f"all of {load.said}"
             message = f"{what} is fixed: a load on it changes nothing"
             yield CaseProblem(("load", i, "block" if load.structure is None else "structure"), message)
-        elif (away := _away(case, model, i)) > BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum():
+        elif (away := _away(case, model, i, beside := BESIDE * 2.0 * model.shapes.radii[chosen[:1]].sum())) > beside:
             message = f"{show(load.at)} is {away:.3g} m off block {load.said}: an arm that turns it"
             yield CaseProblem(("load", i, "at"), message)
 
@@ -147,11 +148,23 @@ def _is_unit(force: float) -> bool:
 
 
 def _unused_joints(case: Case) -> Iterator[CaseProblem]:
-    """Joints that lie between no two materials: most often an [[interface]] is missing."""
+    """Joints that lie between no two materials, nor in stones: most often an [[interface]] is missing."""
     names, by_material = joint_table(case)
+    within = {table.cracks.joint for table in case.structure if table.cracks is not None}
     for k, name in enumerate(names):
-        if not (by_material == k).any():
+        if not (by_material == k).any() and name not in within:
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _loose_cracks(case: Case) -> Iterator[CaseProblem]:
+    """Joints within stones that hold no tension: the stones are in pieces from the start."""
+    for i, table in enumerate(case.structure):
+        if table.cracks is None:
+            continue
+        joint = case.joints[table.cracks.joint]
+        if joint.law != "elastic" and not getattr(joint, "tension", None):
+            message = f"joint {show(table.cracks.joint)} has no tension: the pieces of a stone are stones of their own"
+            yield CaseProblem(("structure", i, "crack"), message)
 
 
 def _loose_ends(case: Case) -> Iterator[CaseProblem]:
@@ -189,22 +202,26 @@ def _unsaid(case: Case) -> Iterator[CaseProblem]:
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
     """Loads at points further from their block than the structure is large."""
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
+    size = np.hypot.reduce(high - low)
     for i in range(len(case.load)):
-        load, away = case.load[i], _away(case, model, i)
-        if away > np.hypot.reduce(high - low):
+        load, away = case.load[i], _away(case, model, i, size)
+        if away > size:
             message = f"{show(load.at)} is {away:.3g} m off block {load.said}; "
             message += f"the structure lies between {low.round(6).tolist()} and {high.round(6).tolist()}"
             yield CaseProblem(("load", i, "at"), message)
 
 
-def _away(case: Case, model: Model, i: int) -> float:
-    """How far a load acts from its block [m]; 0 on it and within."""
+def _away(case: Case, model: Model, i: int, enough: float) -> float:
+    """How far a load acts from its block [m]; 0 where a corner is nearer than `enough`: the rest takes a solver."""
     load = case.load[i]
     chosen = model.chosen(load.selected, False)
     if load.at is None or load.falls or len(chosen) != 1:
         return 0.0
     number, corners, starts = chosen[0], undeformed(model), model.part_starts
     own = np.flatnonzero(model.part_blocks == number)
+    near = np.concatenate([corners[starts[p] : starts[p + 1]] for p in own]) - np.array(load.at)
+    if np.sqrt((near**2).sum(axis=1)).min() <= enough:
+        return 0.0
     return min(distance(corners[starts[p] : starts[p + 1]], np.array(load.at)) for p in own)
 
 

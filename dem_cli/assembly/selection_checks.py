@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from dem_cli.case.selection import Selection
 
 NOT_FIXED = "only a fixed block can be moved"
+NOT_HELD = "only blocks that can move have motions to hold"
 NOT_FREE = "only blocks that can move have a start"
 
 
@@ -23,6 +24,9 @@ def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
         yield from _of_kind(
             model, _key(("settlement", i), settlement), (settlement.selected, settlement.said), True, NOT_FIXED
         )
+    for i, restraint in enumerate(case.restraint):
+        named = restraint.selected, restraint.said
+        yield from _of_kind(model, _key(("restraint", i), restraint), named, False, NOT_HELD)
     for i, table in enumerate(case.initial):
         for k, name in enumerate(table.names):
             path = _key(("initial", i), table) if table.blocks is None else ("initial", i, "blocks", k)

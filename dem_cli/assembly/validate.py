@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.assemble import joint_table
 from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
@@ -18,6 +20,8 @@ from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import unturned
+from dem_cli.links.matrices import each
+from dem_cli.links.registry import LINKS
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
@@ -66,10 +70,10 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 
 
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors at a point where there is no block, of blocks that share no joint, or of a tie that there is not."""
+    """Monitors at a point where there is no block, of blocks that share no joint, or of links that there are not."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
     return (
-        tie_problems(case, model)
+        link_problems(case, model)
         + shared_problems(case, model)
         + [
             CaseProblem(
@@ -82,15 +86,22 @@ def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
     )
 
 
-def tie_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors of ties that the case has not, and names of ties that are used twice."""
+def link_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors of ties and bars that the case has not, or beyond the end of a bar, and names that are used twice."""
+    found, links = list[CaseProblem](), list(each(model.links, model.link_names))
+    for i, monitor in enumerate(case.monitor):
+        for key, name in (("tie", monitor.tie), ("bar", monitor.bar)):
+            known = {there: link for link, _, there in links if LINKS[link.kind].word == key}
+            if name is not None and name not in known:
+                found.append(CaseProblem(("monitor", i, key), unknown_name(key, name, list(known))))
+        long = next((link.length(k) for link, k, name in links if name == monitor.bar), math.inf)
+        if monitor.at is not None and monitor.at > long * (1.0 + 1e-9):
+            message = f"{show(monitor.at)} is not allowed; bar {show(monitor.bar)} is {long:.6g} m long"
+            found.append(CaseProblem(("monitor", i, "at"), message))
+    paths = [(key, i, "id") for key in LINKS for i in range(len(getattr(case, key)))]
     names = model.link_names
-    twice = [i for i, name in enumerate(names) if name in names[:i]]
-    return [
-        CaseProblem(("monitor", i, "tie"), unknown_name("tie", monitor.tie, list(names)))
-        for i, monitor in enumerate(case.monitor)
-        if monitor.tie is not None and monitor.tie not in names
-    ] + [CaseProblem(("tie", i, "id"), f"{show(names[i])} is used twice; give another") for i in twice]
+    twice = [(path, name) for k, (path, name) in enumerate(zip(paths, names)) if name in names[:k]]
+    return found + [CaseProblem(path, f"{show(name)} is used twice; give another") for path, name in twice]
 
 
 def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
@@ -120,8 +131,8 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     corners = undeformed(model)
     faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
     blocks = model.part_blocks[faces.parts]
-    pairs = [tuple(model.material_names[m] for m in model.block_material[pair]) for pair in blocks]
-    named = np.array([case.joint_between(*pair) for pair in pairs])
+    names, by_material = joint_table(case)
+    named = np.array(names)[model.joints_between(by_material, blocks)]
     found = []
     for name, table in profiles.items():
         layout = PointLayout(seed=case.seed, **table.ranges)

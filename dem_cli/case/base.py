@@ -15,6 +15,7 @@ from dem_cli.case.vector import VectorLength
 
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
+Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 Name = Annotated[str, Field(min_length=1)]
 Pair = tuple[float, float]  # two numbers, whatever the dimension of the case
 Vector = Annotated[tuple[float, ...], VectorLength(2, 3)]  # a point, vector or force in the space of the case
@@ -44,6 +45,23 @@ class CaseModel(BaseModel):
         return as_tuples(table)
 
 
+class Crack(CaseModel):
+    """structure.crack: where blocks can crack, and the bonded joint that holds their pieces together until then."""
+
+    joint: Name = Field(description="a name in [joints]: of a law with tension, such as fracture", examples=["crack"])
+    at: Annotated[tuple[Share, ...], Field(min_length=1, max_length=25)] = Field(
+        default=(0.5,),
+        description="where each block is cut across its length, in shares of it, ascending [-]",
+        examples=[[0.33, 0.67]],
+    )
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Crack:
+        if any(second <= first for first, second in zip(self.at, self.at[1:], strict=False)):
+            raise KeyProblem(f"{list(self.at)} is not allowed; the shares ascend", "at")
+        return self
+
+
 class StructureBase(CaseModel):
     """What every generator accepts. A subclass adds `kind: Literal["..."] = "..."` and its own keys.
 
@@ -67,6 +85,13 @@ class StructureBase(CaseModel):
         default=0.0,
         description="turned about its origin, counter-clockwise; in 3D in plan, about the vertical [deg]",
         examples=[5.0],
+    )
+
+    crack: Name | Crack | None = Field(
+        default=None,
+        description="every block that can move is cut across its length into pieces that the joint of this name holds "
+        "together: at mid length, or where a table says; default: blocks do not crack",
+        examples=["crack"],
     )
 
     @model_validator(mode="before")
@@ -94,6 +119,11 @@ class StructureBase(CaseModel):
     def rotation(self) -> float:
         """Turn about the origin [rad], counter-clockwise."""
         return math.radians(self.rotation_deg)
+
+    @property
+    def cracks(self) -> Crack | None:
+        """Where its blocks can crack; None: nowhere."""
+        return Crack(joint=self.crack) if isinstance(self.crack, str) else self.crack
 
     @property
     def on_ground(self) -> bool:

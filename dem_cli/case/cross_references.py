@@ -12,7 +12,10 @@ from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
-SELECTING = ("imperfection", "load", "pressure", "fill", "settlement", "initial", "monitor")  # that select blocks
+SELECTING = (  # that select blocks
+    "imperfection", "load", "pressure", "fill", "restraint", "settlement", "initial", "monitor"
+)  # fmt: skip
+LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
@@ -45,6 +48,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
     found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
+    found += [*unknown_bars(data), *odd_cracks(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -60,23 +64,64 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
-    found += strained_blocks(data, analysis.get("kind"))
+    found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
 
 
-def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks have strains where that is not known: with real masses, which would vibrate far too
-    fast, and beside ties.
-    """
-    if not isinstance(data.get("materials"), dict):
+def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProblem]:
+    """A monitor that is controlled (analysis.of) and does not exist, or whose value is no displacement with a sign."""
+    if not isinstance(name, str):
         return
-    reason = f"in kind = {show(kind)}: strains need analyses without time" if kind in WITH_REAL_MASSES else ""
-    reason = reason or ("beside [[tie]]: ties hold on to blocks that keep their shape" if data.get("tie") else "")
-    for name, table in data["materials"].items():
-        if reason and isinstance(table, dict) and table.get("deformation") == "uniform-strain":
-            yield CaseProblem(("materials", name, "deformation"), f"'uniform-strain' is not known {reason}")
+    monitors = [(path, table) for path, table in entries(data, "monitor") if isinstance(table.get("name"), str)]
+    named = [found for found in monitors if found[1]["name"] == name]
+    if not named:
+        hint = unknown_name("monitor", name, [table["name"] for _, table in monitors])
+        hint = hint if monitors else f"{show(name)} is no name of a [[monitor]]: give one a name"
+        yield CaseProblem(("analysis", "of"), hint)
+    for path, table in named:
+        if table.get("quantity", "displacement") != "displacement":
+            message = f"{show(table['quantity'])} cannot be controlled (analysis.of): only 'displacement' can"
+            yield CaseProblem((*path, "quantity"), message)
+        elif "component" not in table:
+            yield CaseProblem((*path, "component"), "missing; analysis.of controls a displacement with a sign")
+
+
+def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
+    """Materials whose blocks deform by themselves where that is not known: with real masses, as they would vibrate far
+    too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
+    """
+    materials = data.get("materials")
+    if not isinstance(materials, dict):
+        return
+    reason = (
+        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
+    )
+    held = next((key for key in LINKS if data.get(key)), None)
+    reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
+    for name, table in materials.items():
+        way = table.get("deformation") if isinstance(table, dict) else None
+        path = ("materials", name, "deformation")
+        if way not in ("uniform-strain", "quadratic"):
+            continue
+        if reason:
+            yield CaseProblem(path, f"{show(way)} is not known {reason}")
+        elif way == "quadratic" and data.get("dimension") == 3:
+            yield CaseProblem(path, "'quadratic' is not known in 3D; 'uniform-strain' and 'joints' are")
+        elif way == "quadratic":
+            yield from _unbent_joints(data)
+
+
+def _unbent_joints(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints whose points cannot tell how a block bends."""
+    joints = data.get("joints")
+    for name, joint in joints.items() if isinstance(joints, dict) else ():
+        if isinstance(joint, dict) and joint.get("points") in (2, "vertices"):
+            message = f"{show(joint['points'])} is too few beside deformation = 'quadratic'; must be 3 to 9, best 5"
+            yield CaseProblem(("joints", name, "points"), message)
+        if isinstance(joint, dict) and joint.get("profile") is not None:
+            yield CaseProblem(("joints", name, "profile"), "not allowed beside deformation = 'quadratic'")
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
@@ -118,6 +163,31 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
         joint = table.get("joint")
         if isinstance(joint, str) and joint not in joints:
             yield CaseProblem((*path, "joint"), unknown_name("joint", joint, joints))
+
+
+def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Bars of [[reinforcement]] tables that do not exist."""
+    known = names(data, "bars")
+    for path, table in entries(data, "reinforcement"):
+        name = table.get("bar")
+        if isinstance(name, str) and name not in known:
+            yield CaseProblem((*path, "bar"), unknown_name("bar", name, known))
+
+
+def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints within stones that do not exist, and stones in pieces that [[imperfection]] would take for stones."""
+    joints = names(data, "joints")
+    for path, table in entries(data, "structure"):
+        crack, place = table.get("crack"), (*path, "crack")
+        if isinstance(crack, dict):
+            crack, place = crack.get("joint"), (*place, "joint")
+        if isinstance(crack, str) and crack not in joints:
+            yield CaseProblem(place, unknown_name("joint", crack, joints))
+        elif crack is not None and data.get("imperfection"):
+            yield CaseProblem(
+                (*path, "crack"),
+                "not known beside [[imperfection]]: the pieces of a stone would get errors each its own",
+            )
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:

@@ -1,4 +1,4 @@
-"""[[load]], [[pressure]], [[fill]]: forces at points and along lines, pressure on faces, earth that lies on blocks."""
+"""[[load]], [[pressure]], [[fill]], [[restraint]]: forces at points and along lines, pressure, earth, motions held."""
 
 from __future__ import annotations
 
@@ -278,4 +278,21 @@ class GroundTable(CaseModel):
     )
     material: str = Field(
         default="", description="a name in [materials]; may be left out when there is only one", examples=["rock"]
+    )
+
+
+Motion = Literal["x", "y", "z", "rotation", "rotation_x", "rotation_y", "rotation_z"]
+
+
+class Restraint(Selection):
+    """[[restraint]]: motions of blocks that something outside holds, such as the turning of a beam that is guided.
+
+    The centroid of each block does not move along what is held, and the block does not turn about it. What holds it
+    gives whatever force or moment that takes and does no work; where the base moves, it moves along.
+    """
+
+    fixed: Annotated[tuple[Motion, ...], Field(min_length=1)] = Field(
+        description="what is held: 'x', 'y', 'rotation'; in 3D also 'z', 'rotation' about all axes or 'rotation_x', "
+        "'rotation_y', 'rotation_z' about one",
+        examples=[["rotation"]],
     )

@@ -15,6 +15,7 @@ SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in t
 NO_SLIP = (5.0, 10.0)  # friction coefficients that are written where joints must not slip; and from LOCKED on
 LOCKED = 90.0  # no angle in degrees
 MANY = 10  # blocks: so many are not as large as one that stands for a whole wall
+COARSE = 0.4  # element of a bar times μ: from here on the stiffness of bond is more than 5 % off
 VERTICAL = 1e-3  # horizontal share of a direction that counts as none
 
 
@@ -77,6 +78,7 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     yield from _live_doubts(case)
+    yield from _bar_doubts(case)
     vary = getattr(case.analysis, "vary", None)
     if case.load and isinstance(vary, str) and vary.rpartition(".")[2] == "thickness":
         message = "thickness is the depth out of plane, and point loads do not grow with it; a width is in 'block'"
@@ -105,6 +107,18 @@ def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
         also = (f"friction = {show(value)}",) if tangent else ()
         if key in USUAL and value and (text := USUAL[key].doubt(value, *also)):
             yield CaseProblem((*path, key), text)
+
+
+def _bar_doubts(case: Case) -> Iterator[CaseProblem]:
+    """Elements of bars so long that bond acts too stiffly."""
+    for i, table in enumerate(case.reinforcement):
+        decay = case.bars[table.bar].decay
+        if table.element is not None and decay * table.element > COARSE:
+            message = (
+                f"{show(table.element)} m is long beside 1/μ = √(EA/bond_stiffness) = {1.0 / decay:.3g} m: bond acts "
+            )
+            message += f"too stiffly (by 5 % at 0.4/μ, as its square); 0.2/μ = {0.2 / decay:.3g} m is the default"
+            yield CaseProblem(("reinforcement", i, "element"), message)
 
 
 def _live_doubts(case: Case) -> Iterator[CaseProblem]:

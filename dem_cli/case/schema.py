@@ -30,7 +30,7 @@ from dem_cli.case.base import (
 from dem_cli.case.block_table import BlockTable
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
-from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure
+from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
 from dem_cli.case.reference import Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
@@ -46,17 +46,18 @@ class Material(CaseModel):
     poisson: Annotated[float, Field(ge=0.0, lt=0.5)] = Field(
         default=0.2, description="Poisson's ratio of blocks that deform [-]", examples=[0.2]
     )
-    deformation: Literal["joints", "uniform-strain", "none"] | None = Field(
+    deformation: Literal["joints", "uniform-strain", "quadratic", "none"] | None = Field(
         default=None,
         description="how blocks deform: 'joints' lumps half of each block into the joints on it, 'uniform-strain' "
-        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'none' keeps blocks rigid; "
+        "gives each block one strain of its own, linear elastic (in 2D in plane stress), 'quadratic' lets "
+        "it bend and bulge as well (2D), 'none' keeps blocks rigid; "
         "default: joints where young is given. Fixed blocks do not deform",
         examples=["joints"],
     )
 
     @model_validator(mode="after")
     def _deforms_by_its_modulus(self) -> Material:
-        if self.deformation in ("joints", "uniform-strain") and self.young is None:
+        if self.deformation in ("joints", "uniform-strain", "quadratic") and self.young is None:
             message = f"'{self.deformation}' is not allowed without 'young', Young's modulus [Pa]"
             raise KeyProblem(message, "deformation")
         return self
@@ -71,7 +72,12 @@ class Material(CaseModel):
     @property
     def strains(self) -> bool:
         """Whether its blocks have a strain of their own."""
-        return self.deformation == "uniform-strain"
+        return self.deformation in ("uniform-strain", "quadratic")
+
+    @property
+    def bends(self) -> bool:
+        """Whether its blocks bend and bulge as well."""
+        return self.deformation == "quadratic"
 
 
 class Interface(CaseModel):
@@ -101,8 +107,8 @@ class Settlement(Selection):
         return tuple(math.radians(angle) for angle in degrees)
 
 
-PLACES = ("block", "structure", "point", "between", "tie")  # where a monitor may be
-OF_LINKS = ("force", "elongation")
+PLACES = ("block", "structure", "point", "between", "tie", "bar")  # where a monitor may be
+OF_LINKS = {"tie": ("force", "elongation"), "bar": ("force", "slip")}
 AT_JOINTS = ("opening", "slip")
 OF_POINTS = ("displacement", "velocity", "acceleration")
 
@@ -129,6 +135,12 @@ class Monitor(Selection):
         examples=[["arch-3", "arch-4"]],
     )
     tie: str | None = Field(default=None, description="for force and elongation: id of a [[tie]]", examples=["north"])
+    bar: str | None = Field(
+        default=None, description="for force and slip: id of a [[reinforcement]], with at", examples=["corner-1"]
+    )
+    at: NonNegative | None = Field(
+        default=None, description="of a bar: how far along it from its start [m]", examples=[0.6]
+    )
     quantity: Literal[
         "displacement", "rotation", "velocity", "acceleration", "opening", "slip", "force", "elongation"
     ] = Field(
@@ -136,7 +148,8 @@ class Monitor(Selection):
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
         "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length; "
-        "of a tie: force [N], tension positive, or elongation [m] since it was drawn",
+        "of a tie: force [N], tension positive, or elongation [m] since it was drawn; of a bar: force, or slip [m] "
+        "along it against its block",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
@@ -153,13 +166,16 @@ class Monitor(Selection):
         given = [key for key in PLACES if getattr(self, key) is not None]
         if len(given) != 1:
             found = " and ".join(f"'{key}'" for key in given) + " are" if given else "none of them is"
-            raise ValueError(f"{found} given; a monitor has one of 'block', 'structure', 'point', 'between' and 'tie'")
-        allowed = {"between": AT_JOINTS, "tie": OF_LINKS}.get(given[0], (*OF_POINTS, "rotation"))
+            listed = ", ".join(f"'{key}'" for key in PLACES[:-1])
+            raise ValueError(f"{found} given; a monitor has one of {listed} and '{PLACES[-1]}'")
+        if (self.at is None) == (self.bar is not None):
+            raise KeyProblem("missing; how far along the bar [m]" if self.bar else "not used without bar", "at")
+        allowed = {"between": AT_JOINTS, **OF_LINKS}.get(given[0], (*OF_POINTS, "rotation"))
         if self.quantity not in allowed:
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
             listed = ", ".join(f"'{name}'" for name in allowed)
             raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
-        if self.quantity in (*AT_JOINTS, *OF_LINKS) and self.component is not None:
+        if self.quantity not in (*OF_POINTS, "rotation") and self.component is not None:
             article = "an" if self.quantity[0] in "aeiou" else "a"
             raise KeyProblem(
                 f"'{self.component}' is not allowed; {article} {self.quantity} has no component", "component"
@@ -176,6 +192,8 @@ class Monitor(Selection):
             return " | ".join(self.between)
         if self.tie is not None:
             return self.tie
+        if self.bar is not None:
+            return f"{self.bar} at {self.at:g}"
         return self.selected or f"({', '.join(f'{x:g}' for x in self.point or ())})"
 
 
@@ -228,12 +246,15 @@ class Case(CaseModel):
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     pressure: tuple[Pressure, ...] = Field(default=(), description="pressure on faces: uniform, of water, of earth")
     fill: tuple[Fill, ...] = Field(default=(), description="earth that lies on blocks")
+    restraint: tuple[Restraint, ...] = Field(default=(), description="motions of blocks that are held from outside")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")
     initial: tuple[Any, ...] = Field(default=(), description="blocks that start a time history tilted or moving")
     analysis: Any = Field(description="what is computed")
     output: Output = Field(default=Output(), description="what is kept")
     tie: tuple[Any, ...] = Field(default=(), description="rods and cables between points of blocks")
+    bars: dict[str, Any] = Field(default={}, description="kinds of reinforcing bars by name")
+    reinforcement: tuple[Any, ...] = Field(default=(), description="bars in blocks, held by bond")
     monitor: tuple[Monitor, ...] = Field(default=(), description="numbers followed through the run")
     reference: Annotated[tuple[Reference, ...], OneOrMoreSchema()] = Field(
         default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
@@ -296,7 +317,7 @@ def case_model(
     """The class of case files in which these kinds exist: kind -> class of its parameters.
 
     calibration, damping, initial: classes of the tables of these names; None: there is no such table.
-    motions: kinds of the [motion] tables; links: tables of links by their key.
+    motions: kinds of the [motion] tables; links: tables of links, and those by name that they name, by their key.
     """
     structure = one_of(structures, "kind")
     joint = one_of(laws, "law", default="coulomb")
@@ -318,7 +339,8 @@ def case_model(
         ),
     }
     for key, table in (links or {}).items():
-        narrowed[key] = (sequence_of(table), Field(default=(), description=fields[key].description))
+        several: Any = sequence_of(table) if fields[key].default == () else GenericAlias(dict, (str, table))
+        narrowed[key] = (several, Field(default=fields[key].default, description=fields[key].description))
     return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
 
 

@@ -20,9 +20,9 @@ def command(kind: str, output: str | None) -> None:
     KIND: arch, arched-wall, block, bridge, column, facade or wall, to be pushed; out-of-plane, bonded-wall: walls
     in 3D of one leaf and of two; building: a house; import: blocks of another program; voronoi-wall, coursed-wall,
     herringbone-wall, wall-section: rubble, irregular courses, stones aslant, three leaves; drums, temple-front,
-    vault: round columns, what they carry, groin vaults and domes; retaining: a wall under earth pressure; colonnade
-    or shaken (an arch): in an earthquake; safety: how far an arch is from failure; sweep: walls of several kinds,
-    for `dem sweep`. Such as: dem new wall > wall.toml
+    vault: round columns, what they carry, groin vaults and domes; retaining: a wall under earth pressure;
+    reinforced-wall: one with bars; colonnade or shaken (an arch): in an earthquake; safety: how far an arch is from
+    failure; sweep: walls of several kinds, for `dem sweep`. Such as: dem new wall > wall.toml
     """
     text = (TEMPLATES / f"{kind}.toml").read_text(encoding="utf-8")
     if output is None:

@@ -4,7 +4,8 @@
 
 One copy for limit analysis, natural frequencies, fictitious masses and the elastic path; 2D and 3D alike. A point has
 d rows, its normal first. Columns are degrees of freedom: block by block, translations first, then rotations; as a
-sparse matrix, those of free blocks alone. The transpose gives the forces on the blocks from those at the points.
+sparse matrix, those of free blocks alone, of which those that restraints hold are empty. The transpose gives the forces
+on the blocks from those at the points.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from dem_cli.geometry.rotation import frames
 from dem_cli.kernels.records import Bodies, Joints
 from dem_cli.model.model import Model
+from dem_cli.model.quadratic_modes import displacements
 from dem_cli.model.uniform_strain import rotated_basis
 
 if TYPE_CHECKING:
@@ -38,12 +40,12 @@ def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
 
 
 def free_columns(model: Model, joints: Joints) -> np.ndarray:
-    """Column of each degree of freedom of both blocks of every point, −1: fixed, (n_points, 2 blocks, n_dof)."""
+    """Column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof)."""
     n_dof = model.dead_loads.shape[1]
     column = np.full(model.n_blocks, -1)
     column[~model.fixed] = np.arange(int((~model.fixed).sum())) * n_dof
-    first = column[joints.blocks[joints.owners]]
-    return np.where(first[:, :, None] < 0, -1, first[:, :, None] + np.arange(n_dof))
+    blocks = joints.blocks[joints.owners]
+    return np.where(model.held[blocks], -1, column[blocks][:, :, None] + np.arange(n_dof))
 
 
 def compatibility(model: Model, joints: Joints) -> csr_matrix:
@@ -68,5 +70,7 @@ def strain_motion(model: Model, joints: Joints, bodies: Bodies) -> np.ndarray:
     arms = joints.points[:, None] - bodies.positions[blocks]
     turned = rotated_basis(bodies.gradients.reshape(-1, d, d))[blocks]
     moved = np.einsum("psmij,psj->psmi", turned, arms) / model.shapes.radii[blocks][:, :, None, None]
+    if len(model.mode_shapes):
+        moved = np.concatenate([moved, displacements(model.mode_shapes[blocks], arms, bodies.turns[blocks])], axis=2)
     along = np.einsum("pki,psmi->pksm", directions(joints, d), moved)
     return along * np.array([-1.0, 1.0])[:, None]

@@ -13,12 +13,13 @@ from dem_cli.model.model import Model
 
 def block_shape(model: Model) -> BlockShapes:
     """The constant geometry that the kernels read."""
-    inertias = np.where(model.fixed[:, None], 0.0, model.inertias)
+    inertias = np.where(model.held[:, model.rotations], 0.0, model.inertias)
     axes = matrices(model.principal_axes).reshape(-1, 9)
     stiffness = model.mode_stiffness if model.n_modes else np.zeros((model.n_blocks, 0))
     return BlockShapes(
-        model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii, inertias, axes, stiffness
-    )
+        model.vertex_blocks, np.ascontiguousarray(model.vertices), model.shapes.radii, inertias, axes, stiffness,
+        model.mode_shapes.reshape(len(model.mode_shapes), 72),
+    )  # fmt: skip
 
 
 def world_corners(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:

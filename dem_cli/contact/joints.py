@@ -106,8 +106,7 @@ class JointProperties(NamedTuple):
 
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """The named joint of each pair of blocks (n, 2), (n,) int64."""
-        materials = model.block_material[blocks]
-        return self.by_material[materials[:, 0], materials[:, 1]]
+        return model.joints_between(self.by_material, blocks)
 
     def rigid_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""

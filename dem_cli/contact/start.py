@@ -11,8 +11,9 @@ from dem_cli.contact.joint_planes import in_planes
 from dem_cli.contact.joints import JointArrays, JointProperties
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import turns_of, unturned
-from dem_cli.kernels.records import Bodies, Contacts
+from dem_cli.kernels.records import NO_MODES, Bodies, Contacts
 from dem_cli.model.model import Model
+from dem_cli.model.quadratic_modes import TERMS
 
 TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 
@@ -40,7 +41,18 @@ def _unstrained(model: Model) -> dict[str, np.ndarray]:
         return {}
     n, d = model.n_blocks, model.dimension
     one, zero = np.tile(np.eye(d).ravel(), (n, 1)), np.zeros((n, d * d))
-    return {"modes": np.zeros((n, model.n_modes)), "gradients": one, "stretchings": zero, "dyads": zero.copy()}
+    return {
+        "modes": np.zeros((n, model.n_modes)), "gradients": one, "covectors": one.copy() if d == 3 else NO_MODES,
+        "stretchings": zero, "dyads": zero.copy(), **_unbent(model),
+    }  # fmt: skip
+
+
+def _unbent(model: Model) -> dict[str, np.ndarray]:
+    """Fields of quadratic modes; none where no block has them."""
+    if not len(model.mode_shapes):
+        return {}
+    n, two = model.n_blocks, 2 * TERMS
+    return {"bent": np.zeros((n, two)), "bending": np.zeros((n, two)), "triads": np.zeros((n, two // 2))}
 
 
 def close_touching(contacts: Contacts, smallest: float) -> None:

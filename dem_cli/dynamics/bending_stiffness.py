@@ -46,7 +46,7 @@ def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> li
     name, where = ends.names[int(soft.argmax())], "its two ends" if model.dimension == 2 else "the corners of its area"
     points = BENDING_POINTS[model.dimension]
     return [
-        f"joint '{name}' has its contact points at {where}, on which blocks land as rigid ones do, and bends too little: "
+        f"joint '{name}' has its points at {where}, on which blocks land as rigid ones do, and bends too little: "
         f"blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with points = {points} by {turns[1]:.2g}; "
         f"give points = {points} where vibrations count, points = 2 where blows do"
     ]

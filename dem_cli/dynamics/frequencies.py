@@ -20,7 +20,6 @@ from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
-from dem_cli.links.link import FORCE
 from dem_cli.links.matrices import elongations
 from dem_cli.links.matrices import geometric as geometric_of_links
 
@@ -44,6 +43,7 @@ class System(NamedTuple):
     masses: np.ndarray  # and principal moments of inertia [kg, kg m2], (n_free_blocks, n_dof)
     axes: np.ndarray  # from principal axes to those of the world, (n_free_blocks, r, r)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
+    held: np.ndarray  # columns that restraints hold: nothing is in them, (n_free,) bool
     settings: FrequencySettings
 
     @property
@@ -117,8 +117,9 @@ def _with_links(found: System, sim: Simulation, acting: bool) -> csr_array:
         return found.rows
     stiffness = springs.stiffness
     if acting:
-        stiffness = stiffness * np.concatenate([link.state[:, FORCE] != 0.0 for link in sim.links])
+        stiffness = stiffness * np.concatenate([link.acting() for link in sim.links])
     stretch = diags_array(np.sqrt(stiffness)) @ elongations(springs, sim.model.fixed)
+    stretch = stretch @ diags_array(np.where(found.held, 0.0, 1.0)) if found.held.any() else stretch
     rows = vstack([found.rows, stretch @ _per_mass(found.masses, found.axes)]).tocsr()
     rows.eliminate_zeros()
     return rows
@@ -147,7 +148,7 @@ def springs_of(
     rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ _per_mass(masses, axes)
     rows = rows.tocsr()
     rows.eliminate_zeros()
-    return System(rows, None, masses, axes, blocks, settings)
+    return System(rows, None, masses, axes, blocks, model.held_columns, settings)
 
 
 def principal_directions(model: Model, orientations: np.ndarray | None = None) -> np.ndarray:
@@ -247,10 +248,10 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
     masses, (n_free, n_dof) = found.masses, found.masses.shape
     entries = np.bincount(found.rows.indices, minlength=n_free * n_dof)
     strained = (entries > 0).reshape(n_free, n_dof).any(axis=1)  # blocks that touch anything
-    held = np.repeat(strained, n_dof)
-    values, held_vectors = _lowest(found.matrix[held][:, held], count, found.settings)
+    joined = np.repeat(strained, n_dof) & ~found.held
+    values, joined_vectors = _lowest(found.matrix[joined][:, joined], count, found.settings)
     flat = np.zeros((len(values), n_free * n_dof))
-    flat[:, held] = held_vectors.T
+    flat[:, joined] = joined_vectors.T
     vectors = flat.reshape(len(values), n_free, n_dof)
     still = values == 0.0
     loose = ~strained | ((vectors[still] ** 2).sum(axis=2) > found.settings.equal).any(axis=0)
@@ -262,7 +263,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
         frequencies=np.sqrt(values[~still]) / (2.0 * np.pi),
         shapes=shapes,
         effective_masses=shares**2,
-        mechanisms=int(still.sum() + (~held).sum()),
+        mechanisms=int(still.sum() + (~joined & ~found.held).sum()),
         loose=found.blocks[loose],
     )
 

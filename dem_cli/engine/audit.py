@@ -64,7 +64,7 @@ def max_of(shares: tuple[float, float]) -> float:
 
 def weightless(sim: Simulation) -> list[str]:
     """The first block whose own loads are lost beside those of the others, by which equilibrium is judged."""
-    dead, live = sim.loads.dead[sim.free], sim.loads.live[sim.free]
+    dead, live = sim.model.dead_loads[sim.free], sim.loads.live[sim.free]
     d = sim.model.dimension
     light = np.flatnonzero(np.sqrt((dead[:, :d] ** 2).sum(axis=1)) < own_weights(dead, live, d))
     if not len(light):

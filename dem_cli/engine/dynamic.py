@@ -45,7 +45,7 @@ class DynamicSimulation(Simulation):
     ):
         self.damping = damping
         self.real, self.dt = False, 1.0
-        self.masses = np.where(model.fixed[:, None], 0.0, _masses(model))
+        self.masses = np.where(model.held, 0.0, _masses(model))
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
             self.masses[:, model.rotations] = 0.0
         super().__init__(model, law, properties, "large", settings=settings)
@@ -68,7 +68,7 @@ class DynamicSimulation(Simulation):
         model = self.model
         self.rest()
         self.real, self.dt, self.time = True, dt, 0.0
-        self.loads.inverse_masses[:] = np.where(model.fixed[:, None], 0.0, 1.0 / _masses(model))
+        self.loads.inverse_masses[:] = np.where(model.held, 0.0, 1.0 / _masses(model))
         self.loads.speed_limits[:] = np.inf
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
         self.control[slot.MASS_RATE] = self.damping.mass
@@ -169,7 +169,7 @@ class DynamicSimulation(Simulation):
     def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
         """Room for so many samples of blocks and of all links, every so many steps."""
         samples = np.zeros((n_samples, len(blocks), 3, self.bodies.velocities.shape[1]))
-        n_links = sum(len(link.blocks) for link in self.links)
+        n_links = sum(len(link.state) for link in self.links)
         return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
 
     def _still(self, n_steps: int) -> Ground:

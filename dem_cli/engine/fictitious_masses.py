@@ -22,7 +22,8 @@ def fictitious_masses(
     free_fall: float = DEFAULT.relaxation.free_fall,
     links: Springs | None = None,
 ) -> None:
-    """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks.
+    """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks and what
+    restraints hold.
 
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety). Where blocks turn in space, all three
@@ -37,6 +38,7 @@ def fictitious_masses(
     weights = np.ones(inverse_out.shape)
     weights[:, model.rotations] = 1.0 / shape.radii[:, None]
     free = np.broadcast_to(~model.fixed[:, None], inverse_out.shape).copy()
+    free[:, : model.rotations.stop] &= ~model.held
     free[:, model.rotations.stop :] &= shape.mode_stiffness > 0.0
     reach = np.zeros(rows.shape[:2])
     for side in (0, 1):

@@ -6,10 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.assembly.restraints import MOTIONS
 from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
 from dem_cli.engine import measures
 from dem_cli.engine.simulation import Simulation
+from dem_cli.kernels import records as slot
+from dem_cli.links.matrices import each
 
+SECTIONS = {"tie": "ties", "reinforcement": "bars"}  # kind of link: key of the summary
 LAST_EQUILIBRIUM, END = "last equilibrium", "end"
 
 
@@ -19,7 +23,7 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
     positions = sim.bodies.positions + sim.origin
     ids = sim.model.block_ids
     if not len(joints.places.area):
-        return {"at": instant, "joints": 0, "open": 0} | _ties(sim)
+        return {"at": instant, "joints": 0, "open": 0} | _beside(sim)
     states = joints.at(positions, sim.bodies.orientations, measures.contact_record(sim)).states
 
     def largest(values: np.ndarray) -> dict[str, Any]:
@@ -32,17 +36,33 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
         "slip": largest(np.abs(states.slip)),
         "normal_stress": largest(states.normal_stress),
         "shear_stress": largest(np.abs(states.shear_stress)),
-        **_ties(sim),
+        **_beside(sim),
     }
 
 
-def _ties(sim: Simulation) -> dict[str, Any]:
-    """Force, elongation and whether it yielded, of each link by its name; nothing where there are none."""
-    if not sim.links:
+def _beside(sim: Simulation) -> dict[str, Any]:
+    """What else holds blocks: ties and bars, and what restraints give."""
+    return _links(sim) | _restraints(sim)
+
+
+def _restraints(sim: Simulation) -> dict[str, Any]:
+    """What restraints give to each block, forces [N] and moments about its centroid [N m]; nothing without any."""
+    model = sim.model
+    if not len(model.restrained):
         return {}
-    state = np.concatenate([link.state for link in sim.links])
+    columns, names = slice(model.rotations.stop), MOTIONS[model.dimension]
+    dead, live = sim.control[slot.DEAD_FACTOR], sim.control[slot.LIVE_FACTOR] * sim.live_scale
+    given = -(sim.bodies.forces[:, columns] + dead * model.dead_loads + live * model.live_loads)
     said = {
-        name: {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
-        for name, (plastic, stretch, force) in zip(sim.model.link_names, state.tolist(), strict=True)
+        model.block_ids[k]: {name: float(given[k, i]) for i, name in enumerate(names) if model.restrained[k, i]}
+        for k in np.flatnonzero(model.restrained.any(axis=1)).tolist()
     }
-    return {"ties": said}
+    return {"restraints": said}
+
+
+def _links(sim: Simulation) -> dict[str, Any]:
+    """What each link says of itself by its name, ties and bars apart; nothing where there are none."""
+    said: dict[str, dict[str, Any]] = {}
+    for link, number, name in each(sim.links, sim.model.link_names):
+        said.setdefault(SECTIONS[link.kind], {})[name] = link.answer(number)
+    return said

@@ -24,6 +24,8 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
     force_scales[:] = 1.0 / own_weights(dead, live, d)[:, None]
     arms = np.clip(model.shapes.widths, narrowest_arm * radii, radii)  # small moments turn a needle over
     force_scales[:, model.rotations] /= arms[:, None]
+    for loads in (dead, live):  # what restraints take does no work
+        loads[:, : model.rotations.stop][model.held] = 0.0
     return Loads(
         dead=np.ascontiguousarray(dead),
         live=np.ascontiguousarray(live),

@@ -9,11 +9,13 @@ from typing import NamedTuple
 from dem_cli.kernels.advance import make_advance
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.drift import (
+    drift_bent_corners,
     drift_centroids,
     drift_corners,
     drift_solids,
     drift_strained_centroids,
     drift_strained_corners,
+    drift_strained_solids,
     drift_tumbling,
 )
 from dem_cli.kernels.planar_forces import make_planar_forces
@@ -30,7 +32,7 @@ class Drifts(NamedTuple):
 
     in_pseudo_time: Callable
     in_time: Callable  # with real masses, in seconds
-    strained: Callable | None = None  # in pseudo-time, of blocks that deform
+    strained: Callable  # in pseudo-time, of blocks that deform
 
 
 def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
@@ -42,7 +44,10 @@ def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
 
 
 FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law
-DRIFTS = {2: Drifts(drift_corners, drift_corners, drift_strained_corners), 3: Drifts(drift_solids, drift_tumbling)}
+DRIFTS = {
+    2: Drifts(drift_corners, drift_corners, drift_strained_corners),
+    3: Drifts(drift_solids, drift_tumbling, drift_strained_solids),
+}
 
 
 @cache
@@ -53,24 +58,29 @@ def compiled_advance(
     dimension: int = 2,
     links: tuple[str, ...] = (),
     strains: bool = False,
+    bends: bool = False,
 ):
     """The stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its first call.
 
-    links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows.
+    links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows; bends: in
+    quadratic modes as well.
     """
     if strains:
-        return _strained_advance(kinematics, law, profiled, dimension)
+        return _strained_advance(kinematics, law, profiled, dimension, bends)
     if kinematics == "fixed":
         return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids, _pull(links, False))
     forces = FORCES[dimension](law, profiled, rigid=True)
     return make_advance(forces, DRIFTS[dimension].in_pseudo_time, _pull(links, True))
 
 
-def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int):
+def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int, bends: bool):
     if kinematics == "fixed":
-        return make_advance(make_contact_forces(law.function, law.bonded, True), drift_strained_centroids, strains=True)
+        forces = make_contact_forces(law.function, law.bonded, True, bends)
+        return make_advance(forces, drift_strained_centroids, strains=True, bends=bends)
+    if bends:  # tables ask for joints of more than two points, in the plane
+        forces = make_profiled_forces(law.function, law.bonded, rigid=True, strains=True, bends=True)
+        return make_advance(forces, drift_bent_corners, strains=True, moves=True, bends=True)
     forces, drift = FORCES[dimension](law, profiled, rigid=True, strains=True), DRIFTS[dimension].strained
-    assert drift is not None  # tables refuse what is not known
     return make_advance(forces, drift, strains=True, moves=True)
 
 

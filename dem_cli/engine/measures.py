@@ -12,9 +12,10 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
+from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
-from dem_cli.output.record import ContactRecord, Energy, Frame
+from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, LinkRecord
 
 NET, ALL = 0, 1  # of Contacts.exchanged
 
@@ -216,8 +217,18 @@ def frame(sim: Simulation, stage: str) -> Frame:
     return Frame(
         stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
         quaternions(bodies.orientations), sim.speeds.copy(), contact_record(sim), sim.time,
-        block_stresses(sim),
+        block_stresses(sim), link_record(sim),
     )  # fmt: skip
+
+
+def link_record(sim: Simulation) -> LinkRecord | None:
+    """Ties and bars now; None: there are none."""
+    if not sim.links:
+        return None
+    outlines = [link.outline() for link in sim.links]
+    counts, blocks, arms, forces = (np.concatenate(parts) for parts in zip(*outlines, strict=True))
+    arms = np.where(blocks[:, None] == FIXED_POINT, arms + sim.origin, arms)
+    return LinkRecord(LinkPlaces(np.concatenate([[0], np.cumsum(counts)]), blocks, arms), forces)
 
 
 def block_stresses(sim: Simulation) -> np.ndarray | None:

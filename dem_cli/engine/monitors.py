@@ -14,7 +14,8 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
 from dem_cli.kernels.records import NO_LINKS
-from dem_cli.links.link import FORCE, N_STATE, STRETCH
+from dem_cli.links.link import N_STATE, Reading
+from dem_cli.links.matrices import reading_of
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.scales import origin_of
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from dem_cli.contact.between import StartJoints
     from dem_cli.engine.simulation import Simulation
 
-OF_LINKS = {"force": FORCE, "elongation": STRETCH}  # quantity: column of the state of a link
 OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
 
 
@@ -133,11 +133,12 @@ class Monitors:
         self._joints: StartJoints | None = None
         self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
         self._at_points: list[PointMonitor] = []
-        self._of_links: list[tuple[int, int, int]] = []  # monitor, number of the link, column of its state
+        self._of_links: list[tuple[int, Reading]] = []  # monitor, and what it reads
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
-            if table.tie is not None:
-                self._of_links.append((column, model.link_names.index(table.tie), OF_LINKS[table.quantity]))
+            if (link := table.tie or table.bar) is not None:
+                number = model.link_names.index(link)
+                self._of_links.append((column, reading_of(model.links, number, table.quantity, table.at or 0.0)))
             elif table.between is None:
                 self._at_points.append(self._point_monitor(column, table, found))
             else:
@@ -174,15 +175,15 @@ class Monitors:
                 monitor.fill(out, motion, base)
             if self._at_joints is not None:
                 self._at_joints.fill(out, motion)
-            for column, link, what in self._of_links:
-                out[:, column] = links[:, link, what]
+            for column, (rows, what, weights) in self._of_links:
+                out[:, column] = links[:, list(rows), what] @ np.array(weights)
         return out
 
     def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
         found = list[tuple[int, ...]]()
         for monitor in self.tables:
-            if monitor.tie is not None:
+            if monitor.tie is not None or monitor.bar is not None:
                 found.append(())
             elif monitor.point is None:
                 chosen = [self.model.chosen(name, False) for name in monitor.between or (monitor.selected,)]

@@ -63,7 +63,8 @@ def joint_properties(
         values = _law(table).intact
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
-    deforming = _with_deforming_blocks(model, by_material, compliance)
+    bending = [table.bends for table in case.materials.values()]
+    deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
     lands = hasattr(case.analysis, "margin") if lands is None else lands
     layouts = tuple(_layout(table, case, k in deforming, lands) for k, table in enumerate(tables))
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
@@ -87,9 +88,19 @@ def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointL
     return None if points == 2 and not centred else PointLayout(points, centred)
 
 
-def _with_deforming_blocks(model: Model, by_material: np.ndarray, compliance: BlockCompliance | None) -> set[int]:
-    """Named joints that deforming blocks may have."""
-    return set() if compliance is None else set(by_material[model.block_material[compliance.deforms]].ravel().tolist())
+def _with_deforming_blocks(
+    model: Model, by_material: np.ndarray, compliance: BlockCompliance | None, bending: np.ndarray
+) -> set[int]:
+    """Named joints that blocks may have which deform in their joints, or bend by themselves: materials of these.
+
+    Within a stone that can crack: the joint of its pieces, where these deform in it.
+    """
+    lumped = [] if compliance is None else model.block_material[compliance.deforms]
+    found = set(by_material[np.union1d(lumped, bending).astype(int)].ravel().tolist())
+    if compliance is None or not len(model.pieces):
+        return found
+    within = model.pieces[compliance.deforms, 1]
+    return found | set(within[within >= 0].tolist())
 
 
 def _with_rigid_blocks(
@@ -99,7 +110,8 @@ def _with_rigid_blocks(
     if compliance is None:
         return np.ones(len(names), bool)
     stiff, free = (np.unique(model.block_material[~compliance.deforms & among]) for among in (True, ~model.fixed))
-    return np.isin(np.arange(len(names)), by_material[np.ix_(stiff, free)])
+    within = model.pieces[~compliance.deforms, 1] if len(model.pieces) else model.pieces[:, 1]
+    return np.isin(np.arange(len(names)), np.append(by_material[np.ix_(stiff, free)], within))
 
 
 def _own_rows(tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, step: float) -> LawRows | None:

@@ -14,7 +14,6 @@ from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.tracking import JointTracking
-from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
@@ -22,10 +21,11 @@ from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
-from dem_cli.links.matrices import elastic_energy_of_links, follow, joined
+from dem_cli.links.matrices import elastic_energy_of_links, joined
 from dem_cli.model.model import Model
+from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
-from dem_cli.model.uniform_strain import gradients_of
+from dem_cli.model.uniform_strain import covectors_of, gradients_of
 
 
 class Simulation:
@@ -45,7 +45,6 @@ class Simulation:
         tilting: bool = False,
         settings: Settings = DEFAULT,
     ):
-        _require_known(model, kinematics)
         self.settings, relaxation = settings, settings.relaxation
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
@@ -199,8 +198,9 @@ class Simulation:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
         model = self.model
         loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links, model.n_modes > 0
-        )
+            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+            model.n_modes > 0, len(model.mode_shapes) > 0,
+        )  # fmt: skip
         done: int = loop(
             n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
@@ -317,7 +317,7 @@ class Simulation:
         """
         before = elastic_energy_of_links(self.links)
         for link in self.links:
-            follow(link, motion, self.bodies)
+            link.follow(motion, self.bodies)
         self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
         bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
         bodies.positions[:] += motion[:, :d]
@@ -326,6 +326,39 @@ class Simulation:
         self.taken_back += motion
         angles = np.sqrt((spins**2).sum(axis=1))
         bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
+
+    def move_to(self, motion: np.ndarray, shear: np.ndarray, load: float, friction: float) -> None:
+        """Moves all blocks, at rest, by finite displacements (n_blocks, n_dof) [m, rad] to a state found elsewhere.
+
+        shear: forces along the tangents there [N], (n_points, d − 1); load: internal multiplier there; friction: work
+        that friction took on the way [J]. Loads are booked as growing in proportion; what of their work neither
+        friction nor springs have counts as numerical damping.
+        """
+        bodies, d, spins, before = (
+            self.bodies,
+            self.model.dimension,
+            motion[:, self.model.rotations],
+            self.elastic_energy(),
+        )
+        applied = self.loads.dead + 0.5 * (self.load + load) * self.loads.live
+        bodies.positions[:] += motion[:, :d]
+        bodies.orientations[:] = turned_further(bodies.orientations, spins)
+        bodies.velocities[:] = 0.0
+        self._follow()
+        self.contacts.shear[:] = shear
+        gaps = self.measured().gaps
+        self.contacts.gaps[:] = gaps
+        self.contacts.normal[:] = np.maximum(self.joints.kn * (self.contacts.closure - gaps), 0.0)
+        self.set_load(load)
+        given = float((applied[:, : motion.shape[1]] * motion).sum())
+        self.ledger[slot.EXTERNAL] += given
+        self.ledger[slot.FRICTION] += friction
+        self.ledger[slot.DAMPING] += given - friction - (self.elastic_energy() - before)
+        self.ledger[slot.CONTACT] -= given
+        angles = np.sqrt((spins**2).sum(axis=1))
+        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
+        if self.tracking.due(bodies):
+            self.detect()
 
     def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
         """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""
@@ -343,6 +376,9 @@ class Simulation:
         bodies.turns[:] = turns_of(bodies.orientations)
         if self.model.n_modes:
             bodies.gradients[:] = gradients_of(bodies.modes, shape.radii, bodies.turns)
+            if self.model.dimension == 3:
+                bodies.covectors[:] = covectors_of(bodies.gradients)
+            bodies.bent[:] = bent_by(bodies.modes, self.model.mode_shapes)
             bodies.corners[:] = strained_corners(shape, bodies)
         else:
             bodies.corners[:] = world_corners(shape, bodies.positions, bodies.orientations)
@@ -426,13 +462,3 @@ class Simulation:
         """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
         turned = rotation_vectors(self.bodies.orientations)
         return np.column_stack([self.bodies.positions, turned * self.shape.radii[:, None]])
-
-
-def _require_known(model: Model, kinematics: str) -> None:
-    """Raises CaseError where blocks in space deform while geometry moves: faces that turn by strain are not known."""
-    if model.n_modes and kinematics == "large" and model.dimension == 3:
-        message = (
-            "geometry that moves is not known in 3D where blocks deform (deformation = 'uniform-strain'); "
-            "give kinematics = 'fixed', without follow"
-        )
-        raise CaseError([CaseProblem(("analysis", "kinematics"), message)])

@@ -49,6 +49,7 @@ class LoadSearchSettings:
     first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
     growth: float = 1.5  # of the next ones
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
+    hold_start: int = 20_000  # steps of the fast way to rest there, before it is held with combined damping
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
@@ -123,12 +124,23 @@ class DisplacementControlSettings:
     first: float = 0.05  # increment, in elastic displacements at an internal multiplier of one
     growth: float = 1.2  # of the next ones
     ramp: int = 200  # steps of the first increment; its rate grows and falls smoothly
+    longest_ramp: int = 2000  # steps
     stairs: int = 10  # rates in a ramp
     tolerance: float = 1e-4  # unbalanced force in own weights at which an increment is at rest
+    look: int = 25  # steps from one look at the forces to the next
+    looks_at_rest: int = 3  # one after the other, at which they balance
     most: int = 20_000  # steps to come to rest, then the increment is tried again in
     shares: int = 4  # parts, and
     tries: int = 2  # once more in parts of these
+    driven: float = 1e-6  # of the displacement of blocks: a monitor that moves less is not moved by the live load
+    approach: tuple[float, ...] = (0.9, 1.0, 1.0)  # shares of what is left, in which a monitor comes to where it should
+    near_target: float = 0.02  # of a step: how near it comes
+    implicit_effort: float = 2e7  # factorisations × points of a curve in implicit increments: about a minute
+    implicit_longer: float = 2.0  # increments there
+    implicit_starts: tuple[float, ...] = (1.0, 1e2)  # first products of the interior point, tried in turn
+    mostly: float = 0.1  # of the increments, that may need ramps
     coarser: float = 2.0  # increments of the curve that the peak is compared with
+    near: float = 0.25  # of the resolution: what the load may lack where that curve ends
     past: float = 0.999  # of the highest load so far: a curve that fell below it is past its peak
 
 

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
 
+NOT_CARRIED = ("settlement", "motion", "imperfection", "tie", "restraint")  # tables that no other program gets
+
+
 class ExportedBlock(NamedTuple):
     """One block in space; blocks of a case in the plane are upright prisms, half of the thickness to either side."""
 
@@ -50,6 +53,13 @@ class ExportedCase:
         dead[:, d - 1] += model.masses * self.case.gravity
         dead[np.abs(dead) <= 1e-9 * np.abs(model.dead_loads).max(initial=0.0)] = 0.0
         return dead, np.zeros_like(dead) if self.leans else model.live_loads.copy()
+
+    @property
+    def left_out(self) -> list[str]:
+        """What of the case is in no export: tables, and the joints within stones that can crack."""
+        tables = [f"[[{key}]]" for key in NOT_CARRIED if getattr(self.case, key, None)]
+        joints = dict.fromkeys(block.crack for block in self.blocks if block.crack)
+        return [*tables, *(f"joint '{name}' within stones: pieces have that of their materials" for name in joints)]
 
     @property
     def deforms(self) -> bool:

@@ -45,7 +45,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
     more = f" and {len(compound) - 1} more" if len(compound) > 1 else ""
     notes += [f"that the parts of '{compound[0]}'{more} move as one (block join)"] if compound else []
     notes += ["deformation of blocks (young)"] if exported.deforms else []
-    return notes + [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
+    return notes + exported.left_out
 
 
 def _block(block: ExportedBlock) -> list[str]:

@@ -138,7 +138,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
         f"joint '{name}': of law '{joint.law}' only its friction" for name, joint in case.joints.items()
         if joint.law != "coulomb" or getattr(joint, "softening", None) or getattr(joint, "profile", None)
     ]  # fmt: skip
-    notes += [f"[[{key}]]" for key in ("settlement", "motion", "imperfection", "tie") if getattr(case, key, None)]
+    notes += exported.left_out
     notes += ["deformation of blocks (young)"] if exported.deforms else []
     turned = _turned(exported)
     more = f" and {len(turned) - 1} more" if len(turned) > 1 else ""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from dem_cli.kernels.deformation.quadratic import bend, resist_bending
 from dem_cli.kernels.deformation.uniform_strain import resist, stretch
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
@@ -185,10 +186,11 @@ def make_advance(
     link_forces: Callable | None = None,
     strains: bool = False,
     moves: bool = False,
+    bends: bool = False,
 ) -> Callable:
     """The compiled stepping loop for one contact loop, one way to move the blocks and the links that there are.
 
-    strains: blocks deform; moves: on geometry that moves.
+    strains: blocks deform; moves: on geometry that moves; bends: in quadratic modes as well.
     """
     linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
@@ -219,11 +221,15 @@ def make_advance(
             forces[:] = 0.0
             if strains:
                 stretch(bodies, shape, like, moves)
+            if bends:
+                bend(bodies, shape)
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if linked:
                 ledger[FRICTION] += pull(links, bodies, like, like_rotation)
             if strains:
                 resist(bodies, shape, like, moves)
+            if bends:
+                resist_bending(bodies, shape)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
                 factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
@@ -261,5 +267,5 @@ def make_advance(
         return done
 
     named(advance.py_func, contact_forces, drift, *(part for part in (link_forces,) if part is not None),
-          *["strains"] * strains, *["moves"] * moves)  # fmt: skip
+          *["strains"] * strains, *["moves"] * moves, *["bends"] * bends)  # fmt: skip
     return advance

@@ -14,16 +14,17 @@ import numpy as np
 from dem_cli.kernels.contact_point import make_press, push_apart
 from dem_cli.kernels.deformation.joint_spread import add_leverage, add_spread_dyads, no_leverage, spread_at, spread_of
 from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
-def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = False) -> Callable:
+def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    strains: blocks deform (kernels/deformation).
+    strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D.
     """
     press = make_press(law, bonded)
 
@@ -48,6 +49,10 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 spread = spread_of(frame, gradient_a, gradient_b, dt)
                 leverage = no_leverage(like)
+            if bends:
+                line = line_apart(bodies.bending, bodies.turns, a, b, arm_a, arm_b, frame[1])
+                nothing = scale(0.0, like)
+                sums = (nothing, nothing, nothing)
             opens, slides = components(frame, scale(dt, moved))
             spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
             push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
@@ -58,6 +63,9 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 if strains:
                     spread_open, spread_along = spread_at(spread, place)
                     opened += spread_open
+                if bends:
+                    bent_open, bent_along = apart_at(line, place[0], frame)
+                    opened += dt * bent_open
                 gap = gaps[point] + opened
                 gaps[point] = gap
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
@@ -65,6 +73,8 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 slide = sliding_at(slides, spin, place)
                 if strains:
                     slide = axpy(1.0, spread_along, slide)
+                if bends:
+                    slide = (slide[0] + dt * bent_along,)
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 push += normal
@@ -72,12 +82,17 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 twist = add_moment_at(place, normal, shear, twist)
                 if strains:
                     leverage = add_leverage(leverage, place, normal, shear)
+                if bends:
+                    sums = with_force(sums, place[0], compose(frame, normal, shear, scale(0.0, like)))
             force, couple = compose(frame, push, rub, scale(0.0, like)), seen_outside(frame, twist)
             torque_a, torque_b = axpy(1.0, moment(arm_a, force), couple), axpy(1.0, moment(arm_b, force), couple)
             push_apart(forces, a, b, force, torque_a, torque_b)
             if strains:
                 stretch_apart(bodies.dyads, a, b, force, arm_a, arm_b)
                 add_spread_dyads(bodies.dyads, a, b, frame, leverage)
+            if bends:
+                bend_apart(bodies.triads, bodies.turns, a, b, arm_a, arm_b, frame[1], sums)
         return lost
 
-    return named(contact_forces, law, "bonded" if bonded else "", "strains" if strains else "")
+    return named(contact_forces, law, "bonded" if bonded else "", "strains" if strains else "",
+                 *["bends"] * bends)  # fmt: skip

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from dem_cli.kernels.deformation.matrices import inverse, load_matrix, store_matrix, transposed
+from dem_cli.kernels.deformation.quadratic import store_bends
 from dem_cli.kernels.deformation.uniform_strain import deform, store_gradient, stretching_speed
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.spin import (
@@ -131,6 +133,14 @@ def drift_strained_corners(bodies, shape, dt, like):
 
 
 @inline
+def drift_bent_corners(bodies, shape, dt, like):
+    """As drift_strained_corners, of blocks that have quadratic modes as well; these move no corner."""
+    largest = drift_strained_corners(bodies, shape, dt, like)
+    store_bends(bodies, shape)
+    return largest
+
+
+@inline
 def _go(bodies, shape, i, dt, like, spin):
     """Moves a centroid in space and adds to its travel; returns the travel of the farthest corner [m]."""
     speed = load(bodies.velocities, i, 0, like)
@@ -141,9 +151,9 @@ def _go(bodies, shape, i, dt, like, spin):
 
 
 @inline
-def _take_corners(bodies, shape):
-    """Corners of blocks in space where these have gone to."""
-    corners, positions, turns = bodies.corners, bodies.positions, bodies.turns
+def _take_corners(bodies, shape, turns):
+    """Corners of blocks in space where these have gone to; turns: rotations, or gradients of blocks that deform."""
+    corners, positions = bodies.corners, bodies.positions
     corner_blocks, arms = shape.corner_blocks, shape.corner_arms
     for number in range(corners.shape[0]):
         i = np.uint64(number)
@@ -164,7 +174,25 @@ def drift_solids(bodies, shape, dt, like):
         largest = max(largest, _go(bodies, shape, i, dt, like, spin))
         turn_further(orientations, i, half_turn(spin, dt))
         store_turn(bodies.turns, i, orientations)
-    _take_corners(bodies, shape)
+    _take_corners(bodies, shape, bodies.turns)
+    return largest
+
+
+@inline
+def drift_strained_solids(bodies, shape, dt, like):
+    """As drift_solids, of blocks that deform: x = c + R (I + ε) X, so that faces stay plane."""
+    velocities, orientations, largest = bodies.velocities, bodies.orientations, 0.0
+    deform(bodies, dt)
+    for number in range(velocities.shape[0]):
+        i = np.uint64(number)
+        spin, further = load(velocities, i, 3, like), dt * stretching_speed(bodies, i, like)
+        bodies.travel[i] += further
+        largest = max(largest, _go(bodies, shape, i, dt, like, spin))
+        turn_further(orientations, i, half_turn(spin, dt))
+        store_turn(bodies.turns, i, orientations)
+        store_gradient(bodies, shape, i, like)
+        store_matrix(bodies.covectors, i, transposed(inverse(load_matrix(bodies.gradients, i, like))))
+    _take_corners(bodies, shape, bodies.gradients)
     return largest
 
 
@@ -195,5 +223,5 @@ def drift_tumbling(bodies, shape, dt, like):
         change = combined(principal, scale(2.0, axpy(-1.0, before, mean)))
         store(velocities, i, 3, axpy(1.0, change, turned(spin, turn)))
         store_mobility(mobilities, i, principal, moments)
-    _take_corners(bodies, shape)
+    _take_corners(bodies, shape, bodies.turns)
     return largest

@@ -17,6 +17,7 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
@@ -64,12 +65,13 @@ def make_profiled_forces(
     meets: bool = False,
     rigid: bool = False,
     strains: bool = False,
+    bends: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
-    planar_forces.py.
+    planar_forces.py. bends: blocks have quadratic modes as well (kernels/deformation/quadratic.py).
     """
     press = make_press(law, bonded)
 
@@ -143,6 +145,13 @@ def make_profiled_forces(
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
+            if bends or (places and bodies.bent.shape[0] > 0):
+                end_a, end_b = axpy(-1.0, xa, b1), axpy(-1.0, xb, b1)
+                bent = line_apart(bodies.bent, bodies.turns, a, b, end_a, end_b, tb)
+            if bends:
+                bending = line_apart(bodies.bending, bodies.turns, a, b, end_a, end_b, tb)
+                nothing = scale(0.0, like)
+                sums = (nothing, nothing, nothing)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -159,8 +168,14 @@ def make_profiled_forces(
                     if along <= 0.0 or along >= length_a:  # beyond the corner of a, which carries there
                         gap, faces = max(gap, 0.0), False
                 depth = gap
+                if bends or (places and bodies.bent.shape[0] > 0):
+                    frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
+                    way = _along(b1, place, tb)
+                    gap += apart_at(bent, way, frame)[0]
                 gap += offset
                 if wrong:
+                    if gap < 0.0 and normals[point] > 0.0:  # edges that slid past each other: what pressed is lost
+                        lost += 0.5 * normals[point] * normals[point] / joints.kn[point]
                     gap = max(gap, 0.0)
                 before = gaps[point]
                 gaps[point] = gap
@@ -184,6 +199,8 @@ def make_profiled_forces(
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
+                if bends:
+                    slide = (slide[0] + dt * apart_at(bending, way, frame)[1],)
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 lost += work
                 force, torque_a, torque_b = add_force(
@@ -191,11 +208,16 @@ def make_profiled_forces(
                 )  # fmt: skip
                 if strains:
                     stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
+                if bends:
+                    sums = with_force(sums, way, compose(frame, normal, shear, scale(0.0, like)))
             if loaded:
                 push_apart(forces, a, b, force, torque_a, torque_b)
+                if bends:
+                    bend_apart(bodies.triads, bodies.turns, a, b, end_a, end_b, tb, sums)
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}
+    flags |= {"bends": bends}
     return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 

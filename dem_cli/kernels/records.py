@@ -37,8 +37,13 @@ class Bodies(NamedTuple):
     # Of blocks that deform (model/uniform_strain.py), else empty:
     modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
     gradients: np.ndarray = NO_MODES  # deformation gradients R (I + ε), row by row, (n_blocks, d·d)
+    covectors: np.ndarray = NO_MODES  # in space, F⁻ᵀ of these gradients, which takes normals along, (n_blocks, 9)
     stretchings: np.ndarray = NO_MODES  # velocity gradients by deformation alone [1 per unit of time], (n_blocks, d·d)
     dyads: np.ndarray = NO_MODES  # Σ contact force ⊗ arm from the centroid, axes of the world [N m], (n_blocks, d·d)
+    # Of quadratic modes (kernels/deformation/quadratic.py), in the axes of the block:
+    bent: np.ndarray = NO_MODES  # displacement as a polynomial of the place, (n_blocks, 12)
+    bending: np.ndarray = NO_MODES  # its rate, (n_blocks, 12)
+    triads: np.ndarray = NO_MODES  # Σ contact force ⊗ (x², x y, y²) [N m²], (n_blocks, 6)
 
 
 class BlockShapes(NamedTuple):
@@ -50,6 +55,7 @@ class BlockShapes(NamedTuple):
     inertias: np.ndarray  # moments of inertia, principal ones in space; 0 of supports [kg m²], (n_blocks, r)
     axes: np.ndarray  # from the principal axes to those of the block, matrices row by row, (n_blocks, 9); 2D (0, 9)
     mode_stiffness: np.ndarray = NO_MODES  # of blocks that deform, 0: rigid ones among them [N/m], (n_blocks, m)
+    bends: np.ndarray = NO_MODES  # of quadratic modes: coefficients of each (model/quadratic_modes.py), (n_blocks, 72)
 
 
 class MovingJoints(NamedTuple):

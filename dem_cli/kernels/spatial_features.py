@@ -38,6 +38,30 @@ def turned_back3(turns, block, v):
 
 
 @always_inline
+def carried3(bodies, block, arm):
+    """An arm of the undeformed block, from its centroid, where the block is now."""
+    if bodies.gradients.shape[0] > 0:
+        return turned3(bodies.gradients, block, arm)
+    return turned3(bodies.turns, block, arm)
+
+
+@always_inline
+def carried_back3(bodies, block, arm):
+    """What `carried3` made it of."""
+    if bodies.covectors.shape[0] > 0:
+        return turned_back3(bodies.covectors, block, arm)
+    return turned_back3(bodies.turns, block, arm)
+
+
+@always_inline
+def _normal3(bodies, block, normal):
+    """Unit normal of a face of the undeformed block where the block is now."""
+    if bodies.covectors.shape[0] > 0:
+        return near_unit3(turned3(bodies.covectors, block, normal))
+    return turned3(bodies.turns, block, normal)
+
+
+@always_inline
 def mixed(x, v, w):
     """x of one vector and the rest of another one."""
     return axpy(x, v, axpy(-x, w, w))
@@ -181,7 +205,7 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
     if kind == CORNER_OF_B:
         corner = row3(vertices, corners[point, 0])
     else:
-        arm = turned3(bodies.turns, b, row3(geometry.arms, point))
+        arm = carried3(bodies, b, row3(geometry.arms, point))
         corner = axpy(1.0, arm, row3(bodies.positions, b))
     face = geometry.faces[joint, 0]
     height = dot(minus3(corner, row3(vertices, geometry.face_corners[geometry.face_starts[face]])), normal_a)
@@ -218,15 +242,15 @@ def on_cap(geometry, bodies, joint, point, gap, place, frame):
 
 
 @always_inline
-def frame_of(geometry, turns, joint, a, b):
+def frame_of(geometry, bodies, joint, a, b):
     """Normals from a to b (of the face of a, of that of b, half way) and the direction of shear, in space."""
     n, t = geometry.normals, row3(geometry.tangents, joint)
-    normal_a = turned3(turns, a, (n[joint, 0], n[joint, 1], n[joint, 2]))
-    normal_b = turned3(turns, b, (-n[joint, 3], -n[joint, 4], -n[joint, 5]))
+    normal_a = _normal3(bodies, a, (n[joint, 0], n[joint, 1], n[joint, 2]))
+    normal_b = _normal3(bodies, b, (-n[joint, 3], -n[joint, 4], -n[joint, 5]))
     between = axpy(1.0, normal_a, normal_b)
     if dot(between, between) < 1e-12:  # faces back to back: no joint of theirs
         between = normal_a
-    return (normal_a, normal_b, unit3(between)), turned3(turns, a, t)
+    return (normal_a, normal_b, unit3(between)), turned3(bodies.turns, a, t)
 
 
 @always_inline

@@ -11,6 +11,8 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.contact_point import make_press, meeting, push_apart
+from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
@@ -26,11 +28,13 @@ def make_spatial_forces(
     rigid: bool = False,
     remembers: int = 0,
     capped: bool = False,
+    strains: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and places of the points that touch are kept up to date, for dampers. meets, rigid: as in
     planar_forces.py. remembers: numbers of a point's memory that belong to the law. capped: joints may have caps.
+    strains: blocks deform (kernels/deformation); their faces stay plane.
     """
     assert remembers <= MOST_LEFT
     press = make_press(law, bonded)
@@ -42,7 +46,7 @@ def make_spatial_forces(
         frames, places = joints.frames, joints.points
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions = bodies.velocities, bodies.forces, bodies.positions
-        d = len(like)
+        stretchings, d = bodies.stretchings, len(like)
         lost = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
@@ -54,11 +58,13 @@ def make_spatial_forces(
                 if renew(joint, joints, geometry, contacts, bodies, remembers, bonded, False) == 0 and loaded:
                     stale[joint] = 1
                     stale[-1] = 1
-            frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+            frame, along = frame_of(geometry, bodies, joint, a, b)
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
+            if strains:
+                gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             loaded = False
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -79,6 +85,8 @@ def make_spatial_forces(
                 t1, t2 = tangents3(normal, along)
                 arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
                 moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
+                if strains:
+                    moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 slide = (dt * dot(moved, t1), dt * dot(moved, t2))
                 if keeps:
                     for k in range(3):
@@ -90,11 +98,14 @@ def make_spatial_forces(
                 force = axpy(1.0, pushed, force)
                 torque_a = axpy(1.0, moment(arm_a, pushed), torque_a)
                 torque_b = axpy(1.0, moment(arm_b, pushed), torque_b)
+                if strains:
+                    stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
             if loaded:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "capped": capped}
+    flags |= {"strains": strains}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 
 
@@ -111,7 +122,7 @@ def measure_spatial(joints, geometry, contacts, bodies):
     frames, levers, places = joints.frames, joints.levers, joints.points
     for joint in range(joints.blocks.shape[0]):
         a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
-        frame, along = frame_of(geometry, bodies.turns, joint, a, b)
+        frame, along = frame_of(geometry, bodies, joint, a, b)
         xa, xb = load(bodies.positions, a, 0, (0.0, 0.0, 0.0)), load(bodies.positions, b, 0, (0.0, 0.0, 0.0))
         for point in range(joints.starts[joint], joints.starts[joint + 1]):
             if joints.kn[point] == 0.0:

@@ -17,7 +17,7 @@ from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, held_inside, simplify, tilted
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
-from dem_cli.kernels.spatial_features import NONE, height_inside, tangents3, turned3, turned_back3
+from dem_cli.kernels.spatial_features import NONE, carried3, carried_back3, height_inside, tangents3
 from dem_cli.kernels.spatial_geometry import STEEP
 from dem_cli.kernels.vec import axpy, dot
 
@@ -189,7 +189,7 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
         n_b, plane = frame[1], row3(vertices, geometry.face_corners[geometry.face_starts[geometry.faces[joint, 1]]])
         centre = axpy(dot(minus3(plane, centre), n_b) / dot(frame[2], n_b), frame[2], centre)
         b = pair[1]
-        arm = turned_back3(bodies.turns, b, minus3(centre, row3(bodies.positions, b)))
+        arm = carried_back3(bodies, b, minus3(centre, row3(bodies.positions, b)))
         for m in range(5):
             found[count, m] = NONE
         labels[count, 0], labels[count, 1] = 2 * LOCAL - 1, FIXED_TO_B
@@ -214,7 +214,7 @@ def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
     for k in range(corners):
         numbers[k, 2], numbers[k, 3] = work[2, k, 0] - gx, work[2, k, 1] - gy
     for k in range(first, geometry.cap_starts[joint + 1]):
-        place = axpy(1.0, turned3(bodies.turns, b, row3(geometry.cap_arms, k)), minus3(centroid, origin))
+        place = axpy(1.0, carried3(bodies, b, row3(geometry.cap_arms, k)), minus3(centroid, origin))
         x, y, away = held_inside(work, corners, dot(place, t1), dot(place, t2))
         area = geometry.cap_areas[k] - math.sqrt(geometry.cap_areas[k]) * away
         if area > 0.0:
@@ -248,7 +248,7 @@ def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
         if k >= corners:
             place = axpy(y + gy, t2, axpy(x + gx, t1, origin))
             place = axpy(dot(minus3(plane, place), n_b) / dot(upwards, n_b), upwards, place)
-            arm = turned_back3(bodies.turns, b, minus3(place, centroid))
+            arm = carried_back3(bodies, b, minus3(place, centroid))
             numbers[k, 2], numbers[k, 3], numbers[k, 4] = arm
     return count
 

@@ -140,7 +140,7 @@ def _require_known(model: Model, bounds: Collection[str]) -> None:
     """Bounds of joints that do not dilate have one shear force per joint: in space its points slide each their way."""
     if bounds and (model.dimension not in BOUNDED or model.links):
         asked = " and ".join(f"--{name}" for name in sorted(bounds, reverse=True))
-        known = "in 2D only" if model.dimension not in BOUNDED else "without ties only"
+        known = "in 2D only" if model.dimension not in BOUNDED else "without ties and bars only"
         raise UsageError(f"{asked}: bounds of joints that do not dilate are known {known}; leave it out here")
 
 
@@ -200,8 +200,8 @@ def require_scalable(model: Model, properties: JointProperties, law: Law) -> Non
         )
     if structure.links:
         raise UsageError(
-            "limit analysis keeps the dead loads, and those of a tilting table fall: largest forces of ties would "
-            "count for too little; use analysis.pattern = 'mass'"
+            "limit analysis keeps the dead loads, and those of a tilting table fall: largest forces of ties and bars "
+            "would count for too little; use analysis.pattern = 'mass'"
         )
 
 

@@ -57,9 +57,18 @@ class Direction(NamedTuple):
 
 
 class Elastic:
-    """Matrices of a structure whose joints are elastic, scaled."""
+    """Matrices of a structure whose joints are elastic, scaled.
 
-    def __init__(self, structure: Structure, friction: np.ndarray, settings: LimitSettings = DEFAULT_LIMIT):
+    gaps: of all points where displacements are zero [m], (n_points,), negative: overlaps; None: they just touch.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        friction: np.ndarray,
+        settings: LimitSettings = DEFAULT_LIMIT,
+        gaps: np.ndarray | None = None,
+    ):
         self.settings = settings
         joints, d, n_dof = structure.joints, structure.model.dimension, structure.n_dof
         blocks = len(structure.free) // n_dof
@@ -67,6 +76,7 @@ class Elastic:
         length = float((structure.scales.reshape(blocks, n_dof)[:, -1] / structure.scales[::n_dof]).mean())
         self.stiffness = float(np.median(joints.kn))
         self.unit = self.weight / self.stiffness  # of displacements [m]
+        self.gaps: np.ndarray | float = 0.0 if gaps is None else gaps / self.unit
         self.columns = np.tile(np.where(np.arange(n_dof) < d, 1.0, 1.0 / length), blocks)
         scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
         self.bn, self.bt = scaled[0::d].tocsr(), vstack([scaled[k::d] for k in range(1, d)]).tocsr()
@@ -131,7 +141,9 @@ class Elastic:
         self.work = np.empty((2, *self.outer[0].shape))
         i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
         used, n = (i >= 0) & (j >= 0), len(self.columns)
-        keys, place = np.unique(j[used].astype(np.int64) * n + i[used], return_inverse=True)
+        own = np.arange(n) * (n + 1)  # the diagonal is there even of what restraints hold
+        keys = np.unique(np.concatenate([j[used].astype(np.int64) * n + i[used], own]))
+        place = np.searchsorted(keys, j[used].astype(np.int64) * n + i[used])
         self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
         self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
         self.place[used.ravel()] = place
@@ -164,7 +176,7 @@ class Elastic:
 
     def residual(self, state: State, before: State) -> float:
         """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
-        normal = np.maximum(-self.kn * (self.bn @ state.displacements), 0.0)
+        normal = np.maximum(-self.kn * (self.bn @ state.displacements + self.gaps), 0.0)
         trial = before.shear - self.ks_t * (self.bt @ (state.displacements - before.displacements))
         shear = self.slips.limited(trial, self.friction * normal)
         unbalanced = self.imbalance(normal, shear, state.load)

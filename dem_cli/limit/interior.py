@@ -43,7 +43,7 @@ class Increment:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         mu = problem.friction
-        opening = problem.bn @ before.displacements + before.normal / problem.kn
+        opening = problem.bn @ before.displacements + before.normal / problem.kn + problem.gaps
         normal, opening = apart(before.normal - np.maximum(opening, 0.0), tau)
         limit, shear, slip = slips.started(mu * before.normal, before.shear, ahead * before.slip, tau)
         normal = np.maximum(normal, limit / mu)
@@ -135,7 +135,7 @@ class Increment:
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
-        self.off_gap = problem.bn @ at.u + normal / problem.kn - opening
+        self.off_gap = problem.bn @ at.u + normal / problem.kn + problem.gaps - opening
         slide = problem.bt @ (at.u - before.displacements)
         self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - slide
         self.off_reserve = slips.lacks(problem.friction * normal, at.shear, at.x)

@@ -1,7 +1,8 @@
 """Equilibrium and compatibility of rigid blocks with the geometry of the start, as sparse matrices; 2D and 3D alike.
 
 Numbering: contact point p has the d rows p·d … p·d + d − 1, its normal first, then its tangents.
-Columns are the free degrees of freedom: block by block, translations first, then rotations; fixed blocks have none.
+Columns are the free degrees of freedom: block by block, translations first, then rotations; fixed blocks have none, and
+those of motions that restraints hold are empty: no force acts on them, and nothing moves them.
 
     w = B u                          motion of b against a at every point: opening (positive), then slides
     Bᵀ r + dead + λ live = 0         equilibrium, r: normal force N (compression positive), then shear force T
@@ -16,7 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.kernels.records import Joints
@@ -25,7 +26,7 @@ from dem_cli.links.matrices import elongations, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
 
-NO_LINKS = "the path of joints that do not dilate knows no ties"
+NO_LINKS = "the path of joints that do not dilate knows no ties and bars"
 
 
 class Links(NamedTuple):
@@ -67,7 +68,7 @@ class Structure(NamedTuple):
     def on_blocks(self, values: np.ndarray) -> np.ndarray:
         """Values at free degrees of freedom as an array of all blocks, zero elsewhere, (n_blocks, n_dof)."""
         whole = np.zeros(self.model.n_blocks * self.n_dof)
-        whole[self.free] = values
+        whole[self.free] = np.where(self.model.held_columns, 0.0, values)
         return whole.reshape(-1, self.n_dof)
 
     def imbalance(self, reactions: np.ndarray, multiplier: float, axial: np.ndarray | None = None) -> np.ndarray:
@@ -93,6 +94,7 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
     scales = np.repeat(own_weights(dead, live, d)[:, None], n_dof, axis=1) if len(blocks) else np.zeros((0, n_dof))
     scales[:, d:] *= model.shapes.radii[blocks, None]
     bonds = np.ones(len(joints.kn), bool) if bonds is None else bonds
+    dead, live = (np.where(model.held[blocks], 0.0, loads) for loads in (dead, live))
     return Structure(
         model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel(),
         bonds, links_of(model),
@@ -101,6 +103,10 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
 
 def links_of(model: Model) -> Links:
     """The links of a model as they were drawn."""
-    springs = joined((link.axial() for link in model.links), model.dead_loads.shape[1])
-    limits = np.concatenate([np.zeros((0, 2)), *(link.limits for link in model.links)])
-    return Links(csr_matrix(elongations(springs, model.fixed)), limits)
+    bounded = [link.bounded() for link in model.links]
+    springs = joined((held for held, _ in bounded), model.dead_loads.shape[1])
+    limits = np.concatenate([np.zeros((0, 2)), *(limits for _, limits in bounded)])
+    elongation = csr_matrix(elongations(springs, model.fixed))
+    if len(model.restrained):
+        elongation = csr_matrix(elongation @ diags((~model.held_columns).astype(float)))
+    return Links(elongation, limits)

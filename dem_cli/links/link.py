@@ -33,23 +33,41 @@ class LinkEnds(NamedTuple):
 class Springs(NamedTuple):
     """Springs that links are for small motions of their blocks, one behind another."""
 
-    blocks: np.ndarray  # the second one may be FIXED_POINT, (n, 2) int64
-    motion: np.ndarray  # how much longer each becomes per motion of either block, (n, 2, n_dof)
+    blocks: np.ndarray  # whose motion makes each longer, FIXED_POINT: none, (n, 2 or more) int64
+    motion: np.ndarray  # how much longer each becomes per motion of each block, (n, 2 or more, n_dof)
     stiffness: np.ndarray  # [N/m], (n,)
+
+
+class Reading(NamedTuple):
+    """What a monitor of a link reads: a weighted sum of one column of rows of its state."""
+
+    rows: tuple[int, ...]
+    column: int  # PLASTIC, STRETCH or FORCE
+    weights: tuple[float, ...]
+
+
+class Outline(NamedTuple):
+    """Links as lines through points, one after the other."""
+
+    counts: np.ndarray  # points of each, (n_links,) int64
+    blocks: np.ndarray  # of each point, or FIXED_POINT, (n_points,) int64
+    arms: np.ndarray  # from the centroid of its block, undeformed; of a fixed point its place [m], (n_points, d)
+    forces: np.ndarray  # axial, tension positive [N], (n_points,)
 
 
 class LinkArrays(Protocol):
     """The elements of one kind, as its compiled function sees them; a NamedTuple of arrays."""
 
-    blocks: np.ndarray  # as LinkEnds.blocks, (n, 2) int64
-    state: np.ndarray  # what changes: plastic elongation [m], elongation [m], axial force, tension positive [N], (n, 3)
-    limits: np.ndarray  # least and largest axial force [N], (n, 2)
-    stiffness: np.ndarray  # [N/m], (n,)
-    lengths: np.ndarray  # as they were drawn [m], (n,)
+    blocks: np.ndarray  # pairs of blocks that they hold together; the second may be FIXED_POINT, (n, 2) int64
+    state: np.ndarray  # what changes, spring by spring: plastic elongation, elongation [m], force [N], (m, 3)
 
     @property
     def kind(self) -> str:
         """Name in the registry."""
+
+    @property
+    def n_drawn(self) -> int:
+        """How many were drawn, one after the other in `Model.link_names`."""
 
     def started(self, origin: np.ndarray) -> LinkArrays:
         """A copy for a simulation that counts places from `origin`, with the forces of the start."""
@@ -57,19 +75,50 @@ class LinkArrays(Protocol):
     def axial(self, bodies: Any = None) -> Springs:
         """Springs along the elements where the blocks are now; None: where they were drawn."""
 
+    def acting(self) -> np.ndarray:
+        """Which of these carry a force now, (n_springs,) bool."""
+
     def across(self, bodies: Any = None) -> Springs:
         """Springs at least as stiff as what their forces make of them when they turn."""
 
     def turning(self, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof)."""
+        """Geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof); rows as in `blocks`."""
+
+    def bounded(self) -> tuple[Springs, np.ndarray]:
+        """For limit analysis: forces where they were drawn, with the least and largest of each [N], (n, 2)."""
+
+    def softest(self) -> float:
+        """Stiffness of the softest [N/m]."""
+
+    def energy(self) -> float:
+        """Elastic energy [J]."""
+
+    def follow(self, motion: np.ndarray, bodies: Any) -> None:
+        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof); none yields."""
+
+    def length(self, number: int) -> float:
+        """Of one as it was drawn [m]."""
+
+    def reading(self, number: int, quantity: str, at: float) -> Reading:
+        """What a monitor of one reads, in its rows of `state`; at: how far along it [m]."""
+
+    def answer(self, number: int) -> dict[str, Any]:
+        """The state of one for summary.json."""
+
+    def outline(self) -> Outline:
+        """All as lines through points of their blocks, with the forces of this instant."""
+
+    def words(self, number: int, ids: Sequence[str]) -> str:
+        """What one is, in a line for people; ids: of the blocks, that of a fixed point last."""
 
 
 class Link(NamedTuple):
     """A registered kind of link."""
 
     key: str  # [[key]] in the case file
+    word: str  # what one is called, also without an id: word-1, word-2 ...
     parameters: type[CaseModel]  # that table
-    made: Callable[[Sequence[Any], Sequence[LinkEnds], np.ndarray], Any]  # (tables, ends, centroids) -> LinkArrays
+    made: Callable[[Sequence[Any], Sequence[Any], np.ndarray], Any]  # (tables, as drawn, centroids) -> LinkArrays
     forces: dict[bool, Callable]  # where geometry is that of the start, and where it moves
 
 

@@ -5,12 +5,12 @@ T: from the free degrees of freedom, block by block, translations first, to the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.links.link import FORCE, STRETCH, LinkArrays, Springs
+from dem_cli.links.link import FIXED_POINT, LinkArrays, Reading, Springs
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -18,15 +18,26 @@ if TYPE_CHECKING:
 
 def joined(springs: Iterable[Springs], n_dof: int) -> Springs:
     """All of them, one behind another."""
-    nothing = Springs(np.zeros((0, 2), np.int64), np.zeros((0, 2, n_dof)), np.zeros(0))
-    return Springs(*(np.concatenate(parts) for parts in zip(nothing, *springs, strict=True)))
+    found = list(springs)
+    many = max((one.blocks.shape[1] for one in found), default=2)
+    nothing = Springs(np.zeros((0, many), np.int64), np.zeros((0, many, n_dof)), np.zeros(0))
+    return Springs(*(np.concatenate(parts) for parts in zip(nothing, *(_of(one, many) for one in found), strict=True)))
+
+
+def _of(springs: Springs, many: int) -> Springs:
+    """The same with so many blocks for each."""
+    more = many - springs.blocks.shape[1]
+    if not more:
+        return springs
+    blocks = np.pad(springs.blocks, ((0, 0), (0, more)), constant_values=FIXED_POINT)
+    return springs._replace(blocks=blocks, motion=np.pad(springs.motion, ((0, 0), (0, more), (0, 0))))
 
 
 def elongations(springs: Springs, fixed: np.ndarray) -> csr_array:
     """T of springs, (n, n_free); fixed: blocks that cannot move, (n_blocks,) bool."""
     from scipy.sparse import coo_array
 
-    n, _, n_dof = springs.motion.shape
+    n, n_dof = len(springs.motion), springs.motion.shape[2]
     columns = free_columns(springs.blocks, fixed, n_dof)
     rows = np.broadcast_to(np.arange(n)[:, None, None], columns.shape)
     used = (columns >= 0) & (springs.motion != 0.0)
@@ -35,7 +46,7 @@ def elongations(springs: Springs, fixed: np.ndarray) -> csr_array:
 
 
 def free_columns(blocks: np.ndarray, fixed: np.ndarray, n_dof: int) -> np.ndarray:
-    """Column of each degree of freedom of both blocks, −1: a support or a fixed point, (n, 2, n_dof)."""
+    """Column of each degree of freedom of the blocks, −1: a support or a fixed point, (n, 2 or more, n_dof)."""
     column = np.full(len(fixed) + 1, -1)  # the last one: of no block
     column[:-1][~fixed] = np.arange(int((~fixed).sum())) * n_dof
     first = column[blocks]
@@ -63,7 +74,7 @@ def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.n
     rows = np.abs(springs.motion)  # 0 of fixed points, so that what block these point to is no matter
     reach = (rows * (weights * ~fixed[:, None])[springs.blocks]).sum(axis=(1, 2))
     share = rows * (springs.stiffness * reach)[:, None, None]
-    for side in (0, 1):
+    for side in range(springs.blocks.shape[1]):
         blocks = springs.blocks[:, side]
         np.add.at(found, blocks, share[:, side] / weights[blocks])
     return found
@@ -71,17 +82,26 @@ def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.n
 
 def elastic_energy_of_links(links: Iterable[LinkArrays]) -> float:
     """In the springs of links [J]."""
-    return 0.5 * float(sum((link.state[:, FORCE] ** 2 / link.stiffness).sum() for link in links))
-
-
-def follow(link: LinkArrays, motion: np.ndarray, bodies: Any) -> None:
-    """Elongations and forces of a link after small displacements of all blocks, (n_blocks, n_dof); none yields."""
-    springs = link.axial(bodies)
-    longer = (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
-    link.state[:, STRETCH] += longer
-    link.state[:, FORCE] = np.clip(link.state[:, FORCE] + springs.stiffness * longer, *link.limits.T)
+    return float(sum(link.energy() for link in links))
 
 
 def softest(links: Iterable[LinkArrays]) -> float:
     """The least stiffness of any link [N/m]; infinite: there is none."""
-    return min((float(link.stiffness.min()) for link in links if len(link.stiffness)), default=np.inf)
+    return min((link.softest() for link in links), default=np.inf)
+
+
+def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> Reading:
+    """What a monitor reads of the link of this number among all, in the rows of all states one behind another."""
+    rows = 0
+    for link in links:
+        if number < link.n_drawn:
+            found = link.reading(number, quantity, at)
+            return found._replace(rows=tuple(rows + row for row in found.rows))
+        number, rows = number - link.n_drawn, rows + len(link.state)
+    raise IndexError(number)
+
+
+def each(links: Iterable[LinkArrays], names: Sequence[str]) -> Iterator[tuple[LinkArrays, int, str]]:
+    """All links of a scene: arrays of its kind, number in these, name (Model.link_names)."""
+    numbered = [(link, number) for link in links for number in range(link.n_drawn)]
+    yield from ((link, number, name) for (link, number), name in zip(numbered, names, strict=True))

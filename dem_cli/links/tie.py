@@ -21,8 +21,9 @@ from dem_cli.kernels.contact_point import push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale
-from dem_cli.links.link import FIXED_POINT, FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Springs
-from dem_cli.links.material_points import cross_rows, turned_arm, turned_arms
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
+from dem_cli.links.material_points import turned_arm
+from dem_cli.links.spans import Spans, spans
 
 
 class Tie(CaseModel):
@@ -124,110 +125,110 @@ class Ties(NamedTuple):
         """Name in the registry."""
         return TIE.key
 
+    @property
+    def spans(self) -> Spans:
+        """From end to end."""
+        return Spans(self.blocks, self.arms, self.axes, self.starts, self.lengths)
+
+    @property
+    def n_drawn(self) -> int:
+        """How many were drawn."""
+        return len(self.blocks)
+
     def started(self, origin: np.ndarray) -> Ties:
         """A copy for a simulation that counts places from `origin`, with the forces of the start."""
-        d, held = self.axes.shape[1], self.blocks[:, 1] == FIXED_POINT
-        arms, starts, state = self.arms.copy(), self.starts.copy(), np.zeros((len(self.blocks), N_STATE))
-        arms[held, d:] -= origin
-        starts[:, :d] -= origin
-        starts[~held, d:] -= origin
+        state = np.zeros((len(self.blocks), N_STATE))
         state[:, FORCE] = self.prestress
-        return self._replace(arms=arms, starts=starts, state=state)
+        return self._replace(**self.spans.started(origin)._asdict(), state=state)
 
     def axial(self, bodies: Any = None) -> Springs:
         """Springs along the ties where the blocks are now; None, and with geometry of the start: as they were drawn."""
-        axes, _, arms = self._lines(bodies)
-        return Springs(self.blocks, self._motion(axes, arms), self.stiffness)
+        axes, _, arms = self.spans.lines(bodies)
+        return Springs(self.blocks, self.spans.motion(axes, arms), self.stiffness)
+
+    def acting(self) -> np.ndarray:
+        """Which of these carry a force now, (n,) bool."""
+        return self.state[:, FORCE] != 0.0
 
     def across(self, bodies: Any = None) -> Springs:
         """Springs across the ties: a taut tie of force N that turns holds back with N/L at its ends, and with the
         moment N times the arm of each."""
-        axes, lengths, arms = self._lines(bodies)
+        _, lengths, arms = self.spans.lines(bodies)
         taut = np.maximum(np.maximum(self.prestress, self.state[:, FORCE]), 0.0)
         inverse = 1.0 / lengths
         for side in (0, 1):
             far = np.sqrt((arms[:, side] ** 2).sum(axis=1))
             inverse = inverse + np.divide(1.0, far, out=np.zeros_like(far), where=far > 1e-9 * lengths)
-        d = axes.shape[1]
-        # d − 1 directions across an axis: those of the unit vectors that are left when the axis is taken out, all of
-        # them, as more stiffness than there is does no harm.
-        sides = [np.eye(d)[k] - axes * axes[:, k : k + 1] for k in range(d)]
+        sides = self.spans.sideways(bodies)
         return Springs(
-            np.concatenate([self.blocks] * d),
-            np.concatenate([self._motion(side, arms) for side in sides]),
-            np.concatenate([taut * inverse] * d),
+            np.concatenate([self.blocks] * len(sides)),
+            np.concatenate(list(sides)),
+            np.concatenate([taut * inverse] * len(sides)),
         )
 
     def turning(self, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of the present forces: N times the second derivatives of the lengths.
+        """Geometric stiffness of the present forces (`Spans.turning`)."""
+        return self.spans.turning(self.state[:, FORCE], bodies)
 
-        Across: (1 − n nᵀ)/L of the relative motion of the ends; a block that turns by θ takes the end at its arm r
-        back by θ × (θ × r)/2. (n, 2·n_dof, 2·n_dof), first block first.
-        """
-        axes, lengths, arms = self._lines(bodies)
-        (n, d), force = axes.shape, self.state[:, FORCE]
-        n_dof = d + (1 if d == 2 else 3)
-        across = [np.eye(d)[k] - axes * axes[:, k : k + 1] for k in range(d)]
-        rows = np.stack([self._motion(side, arms).reshape(n, 2 * n_dof) for side in across], axis=1)
-        found = rows.swapaxes(1, 2) @ rows / lengths[:, None, None]
-        for side, sign in ((0, -1.0), (1, 1.0)):
-            arm, held = arms[:, side], self.blocks[:, side] != FIXED_POINT
-            along = (axes * arm).sum(axis=1)[:, None, None]
-            both = axes[:, :, None] * arm[:, None, :]
-            turns = 0.5 * (both + both.swapaxes(1, 2)) - along * np.eye(d) if d == 3 else -along
-            own = slice(side * n_dof + d, (side + 1) * n_dof)
-            found[:, own, own] += sign * held[:, None, None] * turns
-        return force[:, None, None] * found
+    def bounded(self) -> tuple[Springs, np.ndarray]:
+        """For limit analysis: ties as they were drawn, least and largest force of each [N]."""
+        return self.axial(), self.limits
 
-    def _lines(self, bodies: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Unit vectors (n, d), lengths (n,) and arms (n, 2, d) now, or of the start."""
+    def softest(self) -> float:
+        """Stiffness of the softest [N/m]."""
+        return float(self.stiffness.min(initial=np.inf))
+
+    def energy(self) -> float:
+        """In its springs [J]."""
+        return 0.5 * float((self.state[:, FORCE] ** 2 / self.stiffness).sum())
+
+    def follow(self, motion: np.ndarray, bodies: Any) -> None:
+        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof); none yields."""
+        springs = self.axial(bodies)
+        longer = (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
+        self.state[:, STRETCH] += longer
+        self.state[:, FORCE] = np.clip(self.state[:, FORCE] + springs.stiffness * longer, *self.limits.T)
+
+    def length(self, number: int) -> float:
+        """Of one as it was drawn [m]."""
+        return float(self.lengths[number])
+
+    def reading(self, number: int, quantity: str, at: float) -> Reading:
+        """Force or elongation of one; `at` is no matter."""
+        return Reading((number,), FORCE if quantity == "force" else STRETCH, (1.0,))
+
+    def answer(self, number: int) -> dict[str, Any]:
+        """Force, elongation and whether it yielded, of one."""
+        plastic, stretch, force = self.state[number].tolist()
+        return {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
+
+    def outline(self) -> Outline:
+        """From end to end."""
         n, d = self.axes.shape
-        arms = self.arms.reshape(n, 2, d)
-        if bodies is None or not n:
-            return self.axes, self.lengths, arms
-        held = self.blocks[:, 1] == FIXED_POINT
-        now = arms.copy()
-        for side in (0, 1):
-            of = ~held if side else np.ones(n, bool)
-            now[of, side] = turned_arms(bodies.turns[self.blocks[of, side]], arms[of, side])
-        ends = now.copy()
-        ends[:, 0] += bodies.positions[self.blocks[:, 0]]
-        ends[~held, 1] += bodies.positions[self.blocks[~held, 1]]
-        between = ends[:, 1] - ends[:, 0]
-        lengths = np.sqrt((between**2).sum(axis=1))
-        return between / lengths[:, None], lengths, now
+        forces = np.repeat(self.state[:, FORCE], 2)
+        return Outline(np.full(n, 2), self.blocks.ravel(), self.arms.reshape(2 * n, d), forces)
 
-    def _motion(self, along: np.ndarray, arms: np.ndarray) -> np.ndarray:
-        """How far the second end goes along a direction against the first, per motion of the blocks, (n, 2, n_dof)."""
-        sides = []
-        for side, sign in ((0, -1.0), (1, 1.0)):
-            row = sign * np.column_stack([along, cross_rows(arms[:, side], along)])
-            row[self.blocks[:, side] == FIXED_POINT] = 0.0
-            sides.append(row)
-        return np.stack(sides, axis=1)
+    def words(self, number: int, ids: Sequence[str]) -> str:
+        """What one is, in a line; ids: of the blocks, that of a fixed point last."""
+        (a, b), (least, most), held = self.blocks[number], self.limits[number], float(self.state[number, FORCE])
+        limit = f"up to {most:.4g} N" if np.isfinite(most) else "without limit"
+        both = "tension and compression" if least < 0.0 else "tension"
+        start = f", prestress {held:.4g} N" if held else ""
+        held_by = f"'{ids[a]}' to " + (f"'{ids[b]}'" if b >= 0 else ids[b])
+        length, stiffness = self.lengths[number], self.stiffness[number]
+        return f"{held_by}, {length:.4g} m, {stiffness:.4g} N/m, {both} {limit}{start}"
 
 
 def ties(tables: Sequence[Tie], ends: Sequence[LinkEnds], centroids: np.ndarray) -> Ties:
-    """The ties of a case whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d).
-
-    The points of `ends` are counted from the centroids of their blocks, that of a fixed point from nowhere.
-    """
-    n, d = len(tables), centroids.shape[1]
-    blocks = np.array([end.blocks for end in ends], np.int64).reshape(n, 2)
-    arms = np.array([end.points for end in ends], float).reshape(n, 2, d)
-    starts = np.where((blocks == FIXED_POINT)[:, :, None], 0.0, centroids[blocks])
-    between = (starts[:, 1] + arms[:, 1]) - (starts[:, 0] + arms[:, 0])
-    lengths = np.sqrt((between**2).sum(axis=1))
+    """The ties of a case whose blocks lie where they are; ends, centroids: as for `spans`."""
+    found = spans(ends, centroids)
     most = np.array([table.largest for table in tables])
     least = np.array([-table.largest if table.compression else 0.0 for table in tables])
     prestress = np.array([table.prestress for table in tables])
-    state = np.zeros((n, N_STATE))
+    state = np.zeros((len(tables), N_STATE))
     state[:, FORCE] = prestress
-    return Ties(
-        blocks, arms.reshape(n, 2 * d), between / lengths[:, None], starts.reshape(n, 2 * d), lengths,
-        np.array([table.stiffness_over(length) for table, length in zip(tables, lengths.tolist(), strict=True)]),
-        prestress, np.column_stack([least, most]), state,
-    )  # fmt: skip
+    stiffness = [table.stiffness_over(length) for table, length in zip(tables, found.lengths.tolist(), strict=True)]
+    return Ties(*found, np.array(stiffness), prestress, np.column_stack([least, most]), state)
 
 
 def make_tie_forces(moves: bool) -> Callable:
@@ -288,4 +289,6 @@ def make_tie_forces(moves: bool) -> Callable:
     return named(tie_forces, "moving" if moves else "still")
 
 
-TIE = Link(key="tie", parameters=Tie, made=ties, forces={moves: make_tie_forces(moves) for moves in (False, True)})
+TIE = Link(
+    key="tie", word="tie", parameters=Tie, made=ties, forces={moves: make_tie_forces(moves) for moves in (False, True)}
+)

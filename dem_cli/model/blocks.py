@@ -9,6 +9,8 @@ import numpy as np
 
 from dem_cli.errors import KeyPath
 
+PIECE = "/"  # between the name of a stone and that of each piece which it can crack into
+
 
 @dataclass(frozen=True)
 class Block:
@@ -21,6 +23,7 @@ class Block:
     across     of a generated block, that is drawn in a plane: from where to where it goes square to that in space [m];
                None: half the thickness to either side
     mass       of the whole block [kg]; None: by the density of its material
+    crack      of a piece of a stone that can crack: the joint between its pieces; empty: it is a whole stone
     path       where in the case file it comes from, for error messages
     """
 
@@ -32,7 +35,13 @@ class Block:
     across: tuple[float, float] | None = None
     course: int = 0
     mass: float | None = None
+    crack: str = ""
     path: KeyPath = field(default=(), compare=False)
+
+    @property
+    def stone(self) -> str:
+        """Name of the stone that it is, or is a piece of."""
+        return self.id.rpartition(PIECE)[0] if self.crack else self.id
 
 
 def corners_of(part: Any) -> np.ndarray:

@@ -27,6 +27,9 @@ from dem_cli.model.block_measures import (
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
+NO_RESTRAINTS = np.zeros((0, 0), bool)
+NO_PIECES = np.zeros((0, 2), np.int64)
+NO_SHAPES = np.zeros((0, 6, 2, 6))
 
 
 class ModelArrays(NamedTuple):
@@ -59,10 +62,17 @@ class ModelArrays(NamedTuple):
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
     live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
+    mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), (n_blocks, 6, 2, 6)
+    # Of structures with restraints alone, else empty:
+    restrained: np.ndarray = NO_RESTRAINTS  # motions of blocks that are held, (n_blocks, d + r) bool
+    # Of stones that can crack alone, else empty:
+    pieces: np.ndarray = NO_PIECES  # stone that each block is a piece of, by number, and the joint between its pieces,
+    # by its number in the case; −1: it is a whole stone, (n_blocks, 2) int64
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
-OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads")  # empty where blocks are rigid
+OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes")  # empty where blocks are rigid
+WHERE_ASKED_FOR = (*OF_MODES, "restrained", "pieces")  # rows of blocks; empty where the case has nothing of it
 
 
 class Model(ModelArrays):
@@ -86,6 +96,17 @@ class Model(ModelArrays):
     def n_modes(self) -> int:
         """By how many modes blocks deform; 0: rigid blocks."""
         return self.mode_stiffness.shape[1]
+
+    @cached_property
+    def held(self) -> np.ndarray:
+        """Motions that loads do not change: all of fixed blocks, and those restrained, (n_blocks, d + r) bool."""
+        whole = np.repeat(self.fixed[:, None], self.rotations.stop, axis=1)
+        return whole | self.restrained if len(self.restrained) else whole
+
+    @cached_property
+    def held_columns(self) -> np.ndarray:
+        """Which columns of the free blocks are restrained, block by block, (n_free_blocks·(d + r),) bool."""
+        return self.held[~self.fixed].ravel()
 
     @property
     def n_parts(self) -> int:
@@ -152,6 +173,18 @@ class Model(ModelArrays):
         """Half the extent of its block across each face [m], (n_faces,)."""
         return half_extents(self.vertices, self.vertex_blocks, self.topology, self.part_blocks)
 
+    def joints_between(self, by_material: np.ndarray, blocks: np.ndarray) -> np.ndarray:
+        """The named joint of each pair of blocks (n, 2), (n,): of their materials, or within the stone of both.
+
+        by_material: joint of each pair of materials, (n_materials, n_materials) int64.
+        """
+        materials = self.block_material[blocks]
+        named = by_material[materials[:, 0], materials[:, 1]]
+        if not len(self.pieces):
+            return named
+        stones = self.pieces[blocks, 0]
+        return np.where((stones[:, 0] == stones[:, 1]) & (stones[:, 0] >= 0), self.pieces[blocks[:, 0], 1], named)
+
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order, without links; fixed: which cannot move, (n,) bool."""
         of_blocks = [np.flatnonzero(self.part_blocks == block) for block in blocks]
@@ -183,7 +216,7 @@ class Model(ModelArrays):
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
             links=(),
             link_names=(),
-            **{name: getattr(self, name)[pick] for name in OF_MODES if self.n_modes},
+            **{name: getattr(self, name)[pick] for name in WHERE_ASKED_FOR if len(getattr(self, name))},
         )
 
     def parts_alone(self) -> Model:
@@ -194,6 +227,9 @@ class Model(ModelArrays):
             mode_stiffness=NO_MODES,
             dead_mode_loads=NO_MODES,
             live_mode_loads=NO_MODES,
+            restrained=NO_RESTRAINTS,
+            pieces=NO_PIECES,
+            mode_shapes=NO_SHAPES,
         )
 
 

@@ -42,23 +42,35 @@ def mode_loads(arms: np.ndarray, forces: np.ndarray, radii: np.ndarray) -> np.nd
     return np.einsum("ni,mij,nj->nm", forces, BASIS[arms.shape[1]], arms) / radii[:, None]
 
 
+def _basis_of(modes: np.ndarray) -> np.ndarray:
+    """B_k of blocks with these amplitudes; in the plane quadratic modes may come behind them."""
+    return _SPATIAL if modes.shape[1] == len(_SPATIAL) else _PLANAR
+
+
 def strains(modes: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Strains of blocks in their own axes [-], (n_blocks, d, d); modes [m], (n_blocks, m)."""
-    return np.einsum("nm,mij->nij", modes / radii[:, None], BASIS[2 if modes.shape[1] == 3 else 3])
+    basis = _basis_of(modes)
+    return np.einsum("nm,mij->nij", modes[:, : len(basis)] / radii[:, None], basis)
 
 
 def stresses(modes: np.ndarray, stiffness: np.ndarray, volumes: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Stresses of blocks in their own axes, tension positive [Pa], (n_blocks, d, d); 0: rigid blocks."""
-    basis = BASIS[2 if modes.shape[1] == 3 else 3]
-    parts = stiffness * modes * (radii / volumes)[:, None] / (basis**2).sum(axis=(1, 2))
+    basis = _basis_of(modes)
+    parts = (stiffness * modes)[:, : len(basis)] * (radii / volumes)[:, None] / (basis**2).sum(axis=(1, 2))
     return np.einsum("nm,mij->nij", parts, basis)
 
 
 def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Deformation gradients R (I + ε), row by row, (n_blocks, d·d); turns: as kernels.records.Bodies."""
-    d = 2 if modes.shape[1] == 3 else 3
+    d = _basis_of(modes).shape[1]
     rotations = turns.reshape(-1, 3, 3) if d == 3 else _planar_rotations(turns)
     return (rotations @ (np.eye(d) + strains(modes, radii))).reshape(-1, d * d)
+
+
+def covectors_of(gradients: np.ndarray) -> np.ndarray:
+    """F⁻ᵀ of gradients F, row by row: what takes normals of faces along, (n_blocks, d·d)."""
+    d = int(np.sqrt(gradients.shape[1]))
+    return np.linalg.inv(gradients.reshape(-1, d, d)).swapaxes(1, 2).reshape(-1, d * d)
 
 
 def rotated_basis(gradients: np.ndarray) -> np.ndarray:

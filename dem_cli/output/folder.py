@@ -28,6 +28,7 @@ OWN_NAMES = frozenset(
         "blocks.vtkhdf",
         "contacts.vtkhdf",
         "joints.vtkhdf",
+        "links.vtkhdf",
         "joints.csv",
         "joints.png",
         "case.toml",

@@ -41,7 +41,8 @@ class Group(NamedTuple):
 
 def describe(dataset: h5py.Dataset, said: Described) -> None:
     """Write what a dataset holds as its attributes."""
-    named = {"units": said.units, "columns": said.columns, "DIMENSION_LABELS": said.axes}  # the last one is HDF5's own
+    columns = said.columns[: dataset.shape[-1]] if dataset.shape else said.columns  # modes: as many as there are
+    named = {"units": said.units, "columns": columns, "DIMENSION_LABELS": said.axes}  # the last one is HDF5's own
     dataset.attrs.create("meaning", said.meaning, dtype=TEXT)
     for name, words in named.items():
         if isinstance(words, str):
@@ -75,7 +76,7 @@ def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "compone
 def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
     """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
     space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
-    return Described(meaning, unit, axes, ("even", "x - y", "xy"), space)
+    return Described(meaning, unit, axes, ("even", "x - y", "xy", *(f"bending {k}" for k in range(1, 7))), space)
 
 
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
@@ -128,7 +129,32 @@ MODEL = {
     ),
     "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
+    "mode_shapes": Described(
+        "displacement by each quadratic mode, as coefficients of 1, x, y, x², x y, y² from the centroid; 2D, where "
+        "blocks bend alone",
+        "m, powers of it",
+        ("block", "mode", "direction", "term"),
+    ),
     "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
+    "pieces": Described(
+        "stone that each block is a piece of, and the joint within it, by their numbers; -1: a whole stone; where the "
+        "case has stones that can crack alone",
+        PURE,
+        _COMPONENT,
+        ("stone", "joint"),
+    ),
+    "restrained": Described(
+        "whether each motion of the block is held; where the case has restraints alone",
+        PURE,
+        _COMPONENT,
+        _MOVED,
+        Described(
+            "whether each motion of the block is held; where the case has restraints alone",
+            PURE,
+            _COMPONENT,
+            _MOVED_IN_SPACE,
+        ),
+    ),
 }
 _TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
@@ -225,6 +251,16 @@ JOINT_STATES = {
     ),
     "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _STATE),
 }  # fmt: skip
+_LINK_POINT = ("point of a link",)
+LINKS = {
+    "starts": Described("first point of each tie or bar; the last number is their count", PURE, ("link + 1",)),
+    "blocks": Described("block that takes each point along; −1: none", PURE, _LINK_POINT),
+    "arms": _vector(
+        "point from the centroid of its block, as drawn; of no block from the origin", "m",
+        ("point of a link", "coordinate"),
+    ),
+    "forces": Described("axial force at each point, tension positive", "N", ("frame", "point of a link")),
+}  # fmt: skip
 _ROW = ("row",)
 HISTORY = {
     "step": Described("solver steps so far", PURE, _ROW),
@@ -308,6 +344,11 @@ GROUPS = {  # of results.h5
         "points, but no joint",
         JOINT_PLACES | JOINT_STATES,
     ),
+    "/dem/links": Group(
+        "ties and bars, where there are any: lines through points of blocks, and the forces in them at every frame",
+        LINKS,
+        {"names": "name of each tie and bar", "kinds": "table of the case that each was drawn in"},
+    ),
     "/dem/history": Group("states that the solver reported", HISTORY, {"monitors": "names of the [[monitor]] tables"}),
     "/dem/history/energy": Group("the energy ledger, a value per row of the history", ENERGY),
     "/dem/series": Group(
@@ -360,6 +401,11 @@ JOINT_FIELDS = {
     **{f"CellData/{name}": said for name, said in JOINT_STATES.items() if name != "state"},
     "CellData/state": Described("0 open, 1 sticking, 2 sliding"),
 }
+LINK_FIELDS = {
+    "PointData/force": Described("axial force, tension positive", "N"),
+    "CellData/link": Described("number of the tie or bar, in the order of /dem/links"),
+    "CellData/largest_force": Described("largest axial force of it, tension positive", "N"),
+}
 STEP_FIELDS = {
     "FieldData/load_multiplier": Described("load multiplier λ"),
     "FieldData/control_displacement": Described("largest displacement of any block since the start", "m"),
@@ -371,6 +417,7 @@ VTK_FILES = {  # what each shows, and its fields
     "blocks.vtkhdf": ("blocks, as cells whose corners move", BLOCK_FIELDS),
     "contacts.vtkhdf": ("contact points with their forces", CONTACT_FIELDS),
     "joints.vtkhdf": ("joints as they were drawn, as lines that move with the blocks", JOINT_FIELDS),
+    "links.vtkhdf": ("ties and bars, where there are any, as lines that move with the blocks", LINK_FIELDS),
 }
 
 

@@ -16,7 +16,7 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
 from dem_cli.output.layout import FRAMES, declared, units_of
-from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates
+from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates, LinkPlaces, LinkRecord
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
 
@@ -60,8 +60,10 @@ class JointHistory(NamedTuple):
 class Frames(Sequence[Frame]):
     """All frames of a run, handed out one by one; their arrays are in memory, or datasets of a file that is open."""
 
-    def __init__(self, columns: dict[str, Stored], contacts: dict[str, Stored]):
-        self._columns, self._contacts = columns, contacts
+    def __init__(
+        self, columns: dict[str, Stored], contacts: dict[str, Stored], links: LinkRecord | None = None
+    ):  # links: with forces of all frames
+        self._columns, self._contacts, self._links = columns, contacts, links
         self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
 
     def __len__(self) -> int:
@@ -95,6 +97,7 @@ class Frames(Sequence[Frame]):
             contacts=contacts,
             time=float(columns["time"][i]),
             stresses=columns["stresses"][i] if "stresses" in columns else None,
+            links=self._links and self._links._replace(forces=self._links.forces[i]),
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -176,8 +179,11 @@ def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
     held = {name: group[name] for name in names if name in group}
     columns = {name: data if lazy and name in LAZY else data[:n_frames] for name, data in held.items()}
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
-    contacts = dem["contacts"]
-    return Frames(columns, {name: data if lazy else data[:] for name, data in contacts.items()})
+    contacts, links = dem["contacts"], None
+    if "forces" in dem.get("links", ()):
+        held = dem["links"]
+        links = LinkRecord(LinkPlaces(*(held[name][:] for name in LinkPlaces._fields)), held["forces"][:])
+    return Frames(columns, {name: data if lazy else data[:] for name, data in contacts.items()}, links)
 
 
 def _read_joints(group: h5py.Group, lazy: bool) -> JointHistory:

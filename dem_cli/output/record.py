@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import tangents_of, turned_further
+from dem_cli.geometry.rotation import tangents_of, turned_further, turning
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
@@ -58,6 +58,38 @@ class ContactRecord(NamedTuple):
         for along, shear in zip(tangents_of(self.normals, self.tangents), self.shear_force.T, strict=True):
             total = total + shear[:, np.newaxis] * along
         return total
+
+
+class LinkPlaces(NamedTuple):
+    """Ties and bars as lines through material points of blocks, one link after the other."""
+
+    starts: np.ndarray  # first point of each link; the last number is their count, (n_links + 1,) int64
+    blocks: np.ndarray  # block that takes each point along; −1: none, (n_points,) int64
+    arms: np.ndarray  # from its centroid, undeformed; of no block from the origin [m], (n_points, d)
+
+    def at(self, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+        """Where the points are when the blocks are there [m], (n_points, d); arguments as in Frame."""
+        held, found = self.blocks >= 0, self.arms.copy()
+        of = self.blocks[held]
+        found[held] = positions[of] + turning(orientations[of])(self.arms[held])
+        return found
+
+
+class LinkRecord(NamedTuple):
+    """Ties and bars at one instant."""
+
+    places: LinkPlaces
+    forces: np.ndarray  # axial force at each point, tension positive [N], (n_points,)
+
+    def lines(self, frame: Frame) -> list[np.ndarray]:
+        """Points of each link in a frame [m], (n, d) each."""
+        points = self.places.at(frame.positions, frame.orientations)
+        return [points[a:b] for a, b in zip(self.places.starts, self.places.starts[1:])]
+
+    def largest(self) -> np.ndarray:
+        """Largest axial force of each link by amount, with its sign [N], (n_links,)."""
+        parts = [self.forces[a:b] for a, b in zip(self.places.starts, self.places.starts[1:])]
+        return np.array([part[np.abs(part).argmax()] for part in parts])
 
 
 class JointPlaces(NamedTuple):
@@ -111,6 +143,7 @@ class Frame(NamedTuple):
     # Stresses of blocks that deform, in their own axes, tension positive [Pa]: xx, yy, xy, in 3D xx, yy, zz,
     # yz, zx, xy, (n_blocks, 3 or 6); None: all blocks are rigid
     stresses: np.ndarray | None = None
+    links: LinkRecord | None = None  # ties and bars; None: there are none
 
     def moved(self, motion: np.ndarray) -> Frame:
         """The same with blocks moved, and turned along the axes of the world [m, rad], (n_blocks, n_dof)."""

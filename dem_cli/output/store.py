@@ -13,7 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.model.model import OF_MODES, SPATIAL_MODEL, Model
+from dem_cli.model.model import SPATIAL_MODEL, WHERE_ASKED_FOR, Model
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
@@ -26,13 +26,14 @@ from dem_cli.output.layout import (
     HISTORY,
     JOINT_PLACES,
     JOINT_STATES,
+    LINKS,
     MODEL,
     PER_STEP_FRAMES,
     declared,
     describe,
 )  # fmt: skip
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, RunRow, Samples
+from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import MONITOR_UNITS, SeriesWriter
 from dem_cli.output.summary import write_summary
@@ -67,6 +68,7 @@ class ResultWriter:
     ):
         self.folder, self.model, self.monitors = Path(folder), model, tuple(monitors)
         self.name = name or self.folder  # what messages call it
+        self._named = [(name, link.kind) for name, link in _links_of(model)]
         self.kind, self.quantities = kind, tuple(quantities) or ("displacement",) * len(self.monitors)
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
@@ -76,6 +78,7 @@ class ResultWriter:
         self._files: list[Hdf5File] = []
         self._joints_of: JointsOf | None = None
         self._joints: FollowedJoints | None = None
+        self._links: GrowingGroup | None = None
         self._vtk: ParaViewFiles | None = None
         self._series: SeriesWriter | None = None
         self._guarded(lambda: self._start(case_text, provenance))
@@ -139,7 +142,7 @@ class ResultWriter:
         """Frames to come are of this structure, not of that of the case. Raises ValueError after the first frame."""
         if self.n_frames:
             raise ValueError("frames of another structure are kept already")
-        self.model = model
+        self.model = model  # of modes and limit analysis: frames of it have no links
 
         def store() -> None:
             del self.dem["model"]
@@ -198,7 +201,7 @@ class ResultWriter:
 
     def _frame(self, frame: Frame) -> None:
         if self._vtk is None:
-            self._begin_frames()
+            self._begin_frames(frame.links)
             assert self._vtk is not None
         self._store_frame(frame)
         now = None
@@ -210,8 +213,8 @@ class ResultWriter:
         self.n_frames += 1
         self._flush()
 
-    def _begin_frames(self) -> None:
-        """The files for ParaView, and what does not change of the joints."""
+    def _begin_frames(self, links: LinkRecord | None) -> None:
+        """The files for ParaView, and what does not change of joints and links."""
         joints = self._joints_of and self._joints_of(self.model)
         if joints is not None and len(joints.places.area):
             self._joints = joints
@@ -220,7 +223,15 @@ class ResultWriter:
             for name, values in joints.places.stored().items():
                 describe(group.create_dataset(name, data=values), said[name])
             self._joint_states = GrowingGroup(group, states, _FRAMES_AT_ONCE)
-        self._vtk = ParaViewFiles(self.model, self._joints, self._open)
+        if links is not None:
+            group = self.dem.create_group("links")
+            group.attrs.create("names", [name for name, _ in self._named], dtype=_TEXT)
+            group.attrs.create("kinds", [kind for _, kind in self._named], dtype=_TEXT)
+            said = declared(LINKS, self.model.dimension)
+            for name, values in links.places._asdict().items():
+                describe(group.create_dataset(name, data=values), said[name])
+            self._links = GrowingGroup(group, said, _FRAMES_AT_ONCE)
+        self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
     def _store_frame(self, frame: Frame) -> None:
@@ -231,6 +242,8 @@ class ResultWriter:
             frames.append(name, getattr(frame, name)[np.newaxis])
         if frame.stresses is not None:
             frames.append("stresses", frame.stresses[np.newaxis])
+        if self._links is not None and frame.links is not None:
+            self._links.append("forces", frame.links.forces[np.newaxis])
         frames.append_one("step", frame.step)
         for name in FRAME_SCALARS[1:]:
             frames.append_one(name, getattr(frame, name), np.float64)
@@ -238,10 +251,15 @@ class ResultWriter:
         frames.append_one("n_contacts", len(frame.contacts.joint))  # last: it counts
 
 
+def _links_of(model: Model) -> list[tuple[str, Any]]:
+    """Name and arrays of each tie and bar."""
+    return list(zip(model.link_names, (link for link in model.links for _ in range(link.n_drawn)), strict=True))
+
+
 def _store_model(group: h5py.Group, model: Model) -> None:
     said = declared(MODEL, model.dimension)
     for name, value in model._asdict().items():
-        if name in _UNSAID or (name in (*SPATIAL_MODEL, *OF_MODES) and not len(value)):
+        if name in _UNSAID or (name in (*SPATIAL_MODEL, *WHERE_ASKED_FOR) and not len(value)):
             continue
         if isinstance(value, int):
             group.attrs[name] = value

@@ -13,6 +13,7 @@ from dem_cli.output.reference import from_summary
 from dem_cli.post import style
 
 LIVE, LARGEST = "displacement of the live load", "control displacement"
+MONITOR = "displacement of {}"  # that is controlled (analysis.of)
 _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farther than failure
 
 
@@ -30,14 +31,18 @@ class CapacityAxis(NamedTuple):
 
     @property
     def signed(self) -> bool:
-        """Whether it is that of the live load, which has a sign."""
-        return self.label == LIVE
+        """Whether it is the one that was controlled, which has a sign."""
+        return self.label != LARGEST
 
 
 def capacity_axis(results: Results) -> CapacityAxis:
     """What the loads of a run are drawn against."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
+    turns: list[dict[str, Any]] = summary.get("turning_points") or [{}]
+    name = (curve or turns[0]).get("of")
+    if name is not None and name in results.monitors:
+        return _of_monitor(results, name, curve)
     if (curve or "turning_points" in summary) and "live_displacement" in history:
         return CapacityAxis(history["live_displacement"], LIVE, curve["peak_displacement"] if curve else None)
     values, given = history["displacement"], summary.get("displacement_at_failure")
@@ -45,6 +50,16 @@ def capacity_axis(results: Results) -> CapacityAxis:
         return CapacityAxis(values, LARGEST, float(given))
     loading = values[history["stage"] == "loading"]
     return CapacityAxis(values, LARGEST, float(loading.max()) if len(loading) and loading.max() > 0 else None)
+
+
+def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) -> CapacityAxis:
+    """The monitor that was controlled, since the structure was at rest; of a curve as it begins, upwards."""
+    values = results.monitors[name]
+    rest = np.flatnonzero(results.history["stage"] == "gravity")
+    values = values - (values[rest[-1]] if len(rest) else 0.0)
+    if curve and len(values) > 1 and values[rest[-1] + 1 if len(rest) else 1] < 0.0:
+        values = -values
+    return CapacityAxis(values, MONITOR.format(name), curve["peak_displacement"] if curve else None)
 
 
 def of_frames(results: Results, axis: CapacityAxis, frames: Sequence[Mapping[str, Any]]) -> list[float]:

@@ -43,7 +43,7 @@ def draw_collapse(results: Results, path: Path, asked: Standpoint = AS_BEST) -> 
             _draw_panel(axis, drawing, model, shown, scale, low, high)
             axis.set_title(_panel_title(name, frame, scale, results.kind), fontsize=10, fontweight="normal")
         chained = any(len(frame_measures.chains(model, frame_measures.resultants(f.contacts))) for _, f in panels)
-        _legend(figure, drawing.legend, chained)
+        _legend(figure, drawing.legend, chained, any(f.links is not None for _, f in panels))
         style.headline(figure, results.summary)
 
 
@@ -142,6 +142,7 @@ def _draw_panel(
     drawing.draw_blocks(axis, low, high)(placed_vertices(model, frame.positions, frame.orientations))
     drawing.draw_rest(axis, low, high)
     drawing.draw_joints(axis, frame, _HAIRLINE * frame_measures.largest_displacement(model, frame) / scale)
+    drawing.draw_links(axis, frame)
     _draw_thrust(axis, drawing, model, frame)
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
@@ -174,7 +175,7 @@ def _draw_thrust(axis: Any, drawing: Drawing, model: Model, frame: Frame) -> Non
     )
 
 
-def _legend(figure: Any, states: tuple[str, ...], has_line: bool) -> None:
+def _legend(figure: Any, states: tuple[str, ...], has_line: bool, linked: bool) -> None:
     from matplotlib.lines import Line2D
 
     columns = 5 if figure.get_figwidth() > 9.0 else 3
@@ -182,5 +183,7 @@ def _legend(figure: Any, states: tuple[str, ...], has_line: bool) -> None:
     handles = [Line2D([], [], color=style.STATE_COLOURS[name], lw=4, label=labels[name]) for name in states]
     thrust = "thrust line" if has_line else "joint force"
     handles.append(Line2D([], [], color=style.THRUST, lw=3, alpha=0.8, label=f"{thrust} (thickness: size)"))
+    if linked:
+        handles.append(Line2D([], [], color=style.STEEL, lw=3, label="tie or bar (force)"))
     handles.append(Line2D([], [], color=style.REST, lw=1, ls=(0, (3, 2)), label="undeformed"))
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=9, handlelength=1.8)

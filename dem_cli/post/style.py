@@ -17,6 +17,7 @@ STATE_COLOURS = {"open": "#c51b7d", "sticking": "#9aa3ad", "sliding": "#e08214"}
 STAGE_COLOURS = {"gravity": "#7c7c86", "loading": "#1f5fa8", "settlement": "#2a8c5b", "collapse": "#c0392b"}
 THRUST, FAILURE, LIMIT, REFERENCE = "#1f5fa8", "#26262b", "#2a8c5b", "#8250a8"
 COLLAPSE, SYSTEM = "#c0392b", "#d9730d"
+STEEL = "#1d6f5f"  # ties and bars
 DPI = 160
 # Ratio of the ends of a logarithmic axis, along x and y, up to which it has numbers between powers of ten as well.
 _SHORT, _SHORT_UP = 30.0, 3000.0

@@ -81,6 +81,18 @@ def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str 
     return found
 
 
+def legend_of_links(frames: Sequence[Frame]) -> list[Any]:
+    """Handles for matplotlib: ties and bars, where there are any, with the largest force of a single frame."""
+    from matplotlib.lines import Line2D
+
+    held = [frame.links for frame in frames if frame.links is not None]
+    if not held:
+        return []
+    largest = max(float(np.abs(record.forces).max(initial=0.0)) for record in held)
+    size = f"thickest {newtons(largest)}" if len(frames) == 1 else "relative size"
+    return [Line2D([], [], color=style.STEEL, lw=3.5, label=f"tie or bar ({size})")]
+
+
 def newtons(force: float) -> str:
     """A force with a readable unit: 12300 -> "12.3 kN"."""
     factor, unit = next(((f, u) for f, u in ((1e6, "MN"), (1e3, "kN")) if force >= f), (1.0, "N"))

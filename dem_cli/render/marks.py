@@ -20,6 +20,7 @@ _NECK = 0.62  # of the length of an arrow: where its head begins
 _HEAD = 2.6  # radius of the head over that of the shaft
 _THICKEST = 0.085  # of the longest arrow: radius of the thickest bar
 _LEAST, _FINEST = 0.01, 0.06  # of the largest force: what is drawn at all; what is drawn thinner than it is
+_ROD, _SLACK = 0.05, 0.3  # of the longest arrow: radius of the tie of the largest force; of that: one without force
 _STOUTEST = 0.3  # radius of the thickest bar over half its length
 _LONGEST_BAR = 0.85  # of the smaller side of the smaller block, to either side of the joint
 
@@ -126,6 +127,19 @@ def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes 
     ends = np.stack((found.points - arms, found.points + arms), axis=1).reshape(-1, found.points.shape[1])
     n = len(sizes)
     return ForceStrokes(lifted(ends, np.repeat(heights, 2)), np.repeat(radii, 2), _lines([2] * n), float(sizes.max()))
+
+
+def links(model: Model, frame: Frame, reach: float) -> ForceStrokes | None:
+    """Ties and bars, in the plane in front of the blocks, as thick as their force is large; None: there are none."""
+    if frame.links is None:
+        return None
+    sizes = np.abs(frame.links.forces)
+    largest = float(sizes.max(initial=0.0))
+    share = sizes / largest if largest > 0.0 else sizes
+    points = np.concatenate(frame.links.lines(frame))
+    radii = _ROD * reach * (_SLACK + (1.0 - _SLACK) * share)
+    front = 0.5 * float(model.thickness.max()) + _ROD * reach
+    return ForceStrokes(lifted(points, front), radii, _lines(np.diff(frame.links.places.starts).tolist()), largest)
 
 
 def _arrows(

@@ -142,6 +142,7 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
     eye = camera(view.axes, _seen(model, corners), view.before)
     colours, bar = block_colours.colours(results, frames, look.colour)
     handles = block_colours.legend(results, frames, look.joints, look.forces)
+    handles += block_colours.legend_of_links(frames)
     plan = layout(look.size or (width, None), eye.height / eye.width, len(handles), bar is not None)
     with style.canvas() as make:
         sheet = Sheet(make, plan, results.summary, handles, bar)

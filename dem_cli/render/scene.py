@@ -100,6 +100,7 @@ class Scene:
             self._draw_joints(shown, scale, offset)
         if look.forces:
             self._draw_forces(shown, look.forces, offset)
+        self._draw_links(shown, offset)
         self.plotter.renderer.ResetCameraClippingRange()
         self.plotter.render()
         fine = self.plotter.screenshot(None, return_img=True)
@@ -149,6 +150,17 @@ class Scene:
         tubes = mesh.tube(scalars="radius", absolute=True, n_sides=16, capping=True)
         self.plotter.add_mesh(
             tubes, color=style.THRUST, ambient=0.45, diffuse=0.6, name="forces", reset_camera=False, render=False
+        )
+
+    def _draw_links(self, shown: Frame, offset: np.ndarray) -> None:
+        found = marks.links(self.model, shown, self.reach)
+        if found is None:
+            return
+        mesh = self.pyvista.PolyData(found.points + offset + self.front, lines=found.lines)
+        mesh.point_data["radius"] = found.radii
+        tubes = mesh.tube(scalars="radius", absolute=True, n_sides=16, capping=True)
+        self.plotter.add_mesh(
+            tubes, color=style.STEEL, ambient=0.45, diffuse=0.6, name="links", reset_camera=False, render=False
         )
 
 

@@ -200,8 +200,10 @@ def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]
     corners = rest_vertices(model)[free[model.vertex_blocks]]
     sides = " × ".join(_metres(float(side)) for side in np.ptp(corners, axis=0)) if free.any() else "–"
     depth = sorted({f"{value:.3g}" for value in model.thickness[free].tolist()}, key=float)
+    held = int(model.restrained.any(axis=1).sum())
+    restrained = f", {held:,} with motions that are held" if held else ""
     rows = [
-        ("blocks", f"{model.n_blocks:,}, {int(model.fixed.sum()):,} of them fixed"),
+        ("blocks", f"{model.n_blocks:,}, {int(model.fixed.sum()):,} of them fixed{restrained}"),
         ("joints", f"{summary['joints']:,}, {summary['contacts']:,} contact points" if "contacts" in summary else "–"),
         ("mass that can move", f"{float(model.masses[free].sum()):.6g} kg"),
         ("width × height" if model.dimension == 2 else "size", sides),

@@ -39,10 +39,11 @@ class Verdict:
 
 
 class Ahead(NamedTuple):
-    """What a path from gravity says of a load (see FailureTest)."""
+    """What a path from gravity, or a curve, says of a load (see FailureTest)."""
 
     plateau: bool = False
     reach: float = 0.0
+    change: float | None = None  # what is elastic of the way there from an equilibrium [m]; None: as from zero
 
 
 NOTHING_KNOWN = Ahead()
@@ -122,7 +123,7 @@ def settle_or_fail(
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
-    default: where it is now. ahead: what a path says of this load.
+    default: where it is now. ahead: what a path or a curve says of this load.
     """
     relaxation = sim.settings.relaxation
     tolerance = relaxation.tolerance if tolerance is None else tolerance
@@ -130,8 +131,8 @@ def settle_or_fail(
     sim.use_combined_damping()
     limit_falls(sim)
     doing = f"at load multiplier {load * sim.live_scale:.5g}"
-    motion = FailureTest(sim, scale, *ahead)
-    _ramp(sim, load, scale, budget, doing)
+    motion = FailureTest(sim, scale, ahead.plateau, ahead.reach)
+    _ramp(sim, load, scale if ahead.change is None else ahead.change, budget, doing)
     done, calm = 0, 0
     for look in count(2):
         while done < relaxation.chunk * round(math.sqrt(2.0) ** look):

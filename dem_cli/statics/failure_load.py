@@ -27,10 +27,10 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.model.scales import largest_structure
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, settle_or_fail
+from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.trial_loads import TrialLoads
-from dem_cli.statics.warm_start import GRAVITY, LIMIT
+from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
@@ -154,8 +154,7 @@ class LoadSearch:
             return False
         self.track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
         start.put_into(sim)
-        before = sim.steps
-        verdict = settle_or_fail(sim, load, self.budget, answer.elastic * load)
+        before, verdict = sim.steps, self._held(start, load)
         self._passed("start", before, load, verdict.state)
         if verdict.state != "equilibrium":
             sim.restore(answer.standing)
@@ -163,6 +162,17 @@ class LoadSearch:
             return False
         self._keep(load)
         return True
+
+    def _held(self, start: WarmStart | CurveStart, load: float) -> Verdict:
+        """The verdict on a load from a start next to it; curves, whose peaks are flat, come to rest the fast way."""
+        sim, scale = self.sim, self.answer.elastic * load
+        if start.kind == CURVE:
+            tolerance, most = sim.settings.relaxation.tolerance, self.settings.hold_start
+            verdict = relax(sim, load, tolerance, most, scale, budget=self.budget, elastic=False)
+            if verdict.state == "equilibrium":
+                return verdict
+            start.put_into(sim)
+        return settle_or_fail(sim, load, self.budget, scale, ahead=Ahead(change=self._elastic_change(load)))
 
     def _fail_above(self, load: float) -> Verdict:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
@@ -289,14 +299,18 @@ class LoadSearch:
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
 
+    def _elastic_change(self, load: float) -> float | None:
+        """Elastic displacement from the present load to another one [m], where a curve led next to failure."""
+        return self.answer.elastic * abs(load - self.sim.load) if self.answer.start.get("kind") == CURVE else None
+
     def _ahead(self, load: float) -> Ahead:
-        """What a path that was followed says of a load."""
-        limits = self.answer.limits
+        """What a path or a curve that was followed says of a load."""
+        limits, change = self.answer.limits, self._elastic_change(load)
         if limits is not None and self.impossible < np.inf and not limits.slides:
-            return Ahead(reach=self.settings.unslid)  # there is an equilibrium, however softly something rests there
+            return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
         if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
-            return Ahead(load > self.plateau)
-        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load))
+            return Ahead(load > self.plateau, change=change)
+        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load), change)
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""

@@ -68,7 +68,7 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
     if kind != GRAVITY and limits.why_not is not None:
         report |= {"kind": GRAVITY, "note": limits.why_not}
     if kind != GRAVITY and sim.links:
-        report |= {"kind": GRAVITY, "note": "a state found elsewhere knows no forces of ties"}
+        report |= {"kind": GRAVITY, "note": "a state found elsewhere knows no forces of ties and bars"}
     if kind != GRAVITY and getattr(job.case.analysis, "step", None) is not None:
         report |= {"kind": GRAVITY, "note": "every step of the load is asked for"}
     if report["kind"] == GRAVITY:

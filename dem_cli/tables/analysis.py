@@ -94,6 +94,12 @@ class PushoverAnalysis(LiveAnalysis):
         description="what grows: load: the multiplier, up to failure; displacement: that of the live load, at whose "
         "every step the multiplier is found, up to `follow`: the whole capacity curve, then the proof of its peak",
     )
+    of: str | None = Field(
+        default=None,
+        description="control = 'displacement': name of the [[monitor]] whose displacement, with a component, is "
+        "controlled; default: that of the live load",
+        examples=["roof"],
+    )
     increments: int = Field(
         default=100, ge=10, le=100_000, description="control = 'displacement': so many steps to `follow` at least"
     )
@@ -122,10 +128,12 @@ class PushoverAnalysis(LiveAnalysis):
             refused["collapse"] = self.collapse != "auto"
             for key in (key for key, given in refused.items() if given):
                 raise KeyProblem("not allowed with control = 'displacement'", key)
+            if self.check is not None and self.of is not None:
+                raise KeyProblem("not allowed with 'of': it takes the displacement of the live load", "check")
             if self.check is not None and self.pattern != "mass":
                 raise KeyProblem(f"not allowed with pattern = '{self.pattern}'; only with 'mass'", "check")
             return self
-        of_curves = {"increments": 100, "idealise": Idealisation(), "loads_at": (), "check": None}
+        of_curves = {"of": None, "increments": 100, "idealise": Idealisation(), "loads_at": (), "check": None}
         for key in (key for key, default in of_curves.items() if getattr(self, key) != default):
             raise KeyProblem("only allowed with control = 'displacement'", key)
         return self
@@ -140,6 +148,12 @@ class CycleAnalysis(LiveAnalysis):
         description="what the path is of: load: of multipliers; displacement: of displacements of the live load, at "
         "which the multiplier is found",
     )
+    of: str | None = Field(
+        default=None,
+        description="control = 'displacement': name of the [[monitor]] whose displacement, with a component, is "
+        "controlled; default: that of the live load",
+        examples=["roof"],
+    )
     path: tuple[float, ...] = Field(
         min_length=1,
         description="load multipliers [-], or displacements of the live load [m], to go to one after the other, from 0",
@@ -150,6 +164,12 @@ class CycleAnalysis(LiveAnalysis):
         description="largest step of the multiplier [-] or displacement [m]; after every one all forces balance",
         examples=[0.02],
     )
+
+    @model_validator(mode="after")
+    def _what_is_controlled(self) -> CycleAnalysis:
+        if self.of is not None and self.control == "load":
+            raise KeyProblem("only allowed with control = 'displacement'", "of")
+        return self
 
 
 class SettlementAnalysis(AnalysisBase):

@@ -50,6 +50,7 @@ def test_there_is_a_template_for_every_generator():
         "colonnade",
         "facade",
         "out-of-plane",
+        "reinforced-wall",
         "retaining",
         "shaken",
         "safety",

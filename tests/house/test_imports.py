@@ -70,7 +70,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "output.record",
         "statics",
         "tables",
-        "links.link",
+        "links",
     },
     "ensembles": {
         "geometry",

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from engine import block, rectangle, solve, tables
+from engine import Records, block, rectangle, scene, solve, tables
+from synthetic.spatial_case import extruded_tables
 
+from dem_cli.engine import measures
+from dem_cli.engine.job import Job
 from dem_cli.statics.bilinear import bilinear
+from dem_cli.statics.compliance import compliance
+from dem_cli.statics.displacement_control import CapacityCurve, DisplacementControl, trace
+from dem_cli.statics.equilibrium import stand
+from dem_cli.statics.implicit_control import ImplicitControl
 
 BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
 
@@ -127,3 +134,131 @@ def test_a_peak_that_hangs_on_the_stiffness_says_so(tension, holds):
     assert summary["status"] == "ok"
     assert summary["softer_joints_hold"] is holds
     assert any("on joints 10 times as soft" in line for line in summary["warnings"]) is not holds
+
+
+ROOF = {"name": "roof", "point": [0.0, 1.0], "component": "x"}
+
+
+def test_control_of_a_monitor():
+    """The corner over the heel of a block that rocks: b (1 − cos θ) + h sin θ, where the load is tan(α − θ)."""
+    width, height = 0.2, 1.0
+    case = controlled(0.06, block("b", rectangle(0, 0, width, height)), friction=2.0, of="roof")
+    case["monitor"] = [ROOF]
+    summary, records = solve(case)
+    u, loads = curve_of(summary)
+    lean, diagonal = np.arctan2(width, height), np.hypot(width, height)
+    turned = np.arccos((width - u) / diagonal) - np.arctan2(height, width)
+    rocks = u > 1e-3
+    assert loads[rocks] == pytest.approx(np.tan(lean - turned[rocks]), abs=2e-4)
+    assert u[-1] == pytest.approx(0.06, abs=0.0015)
+    assert np.diff(u).max() < 1.3 * 0.06 / 40
+    assert summary["capacity_curve"]["of"] == "roof"
+    assert [row.monitors[0] for row in records.rows][-1] == pytest.approx(u[-1], abs=1e-5)
+
+
+def test_a_monitor_that_the_load_does_not_move():
+    base = {"name": "base", "point": [-1.0, 0.0], "component": "x"}
+    case = controlled(0.01, block("b", rectangle(0, 0, 0.2, 1)), of="base")
+    case["monitor"] = [base]
+    summary, _ = solve(case)
+    assert summary["status"] == "not converged"
+    assert any("does not move monitor 'base'" in line for line in summary["warnings"])
+
+
+def test_to_and_fro_of_a_monitor():
+    """Turning points are those of the monitor: the corner that is pushed against x goes along with the block."""
+    path = [0.001, -0.001]
+    keys = {"kind": "cycle", "control": "displacement", "of": "roof", "path": path, "step": 2e-4}
+    joint = {"friction": 0.6, "kn": 2e8, "ks": 2e8, "points": 5}
+    keys["direction"] = [-1.0, 0.0]
+    case = tables(BASE, block("b", rectangle(0, 0, 1, 0.2)), joints={"dry": joint}, analysis=keys)
+    case["monitor"] = [ROOF | {"point": [1.0, 0.2]}]
+    summary, records = solve(case)
+    assert [point["load"] for point in summary["turning_points"]] == pytest.approx([-0.6, 0.6], rel=2e-4)
+    moved = [row.monitors[0] for row in records.rows]
+    assert moved[-1] == pytest.approx(-0.001, abs=0.02 * 2e-4 + 1e-6)
+    assert max(moved) == pytest.approx(0.001, abs=0.02 * 2e-4 + 1e-6)
+
+
+def test_a_curve_that_ends_with_the_budget_is_kept():
+    summary, records = solve(controlled(0.09, block("b", rectangle(0, 0, 0.2, 1)), friction=2.0, max_steps=8000))
+    u, loads = curve_of(summary)
+    assert summary["status"] == "not converged"
+    assert len(u) > 5
+    assert not summary["capacity_curve"]["whole"]
+    assert loads.max() <= 0.2
+    assert any("where the run did: its points so far are kept" in line for line in summary["warnings"])
+    assert len(records.rows) == len(u)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_implicit_increments(dimension):
+    """A block that rocks on another one: the curve of ramps where these make little slip, without any ramp."""
+    blocks = [block("a", rectangle(0, 0, 1, 0.4)), block("b", rectangle(0.2, 0.4, 0.5, 1.4))]
+    case = controlled(0.01, *blocks, friction=0.5, kn=1e9, kinematics="large")
+    made = scene(extruded_tables(case) if dimension == 3 else case)
+    job = Job.start(made.case, made.model, Records())
+    sim = job.moving_simulation()
+    stand(sim, job.budget)
+    saved, curves = sim.save(), []
+    for kind in (DisplacementControl, ImplicitControl):
+        sim.restore(saved)
+        control, curve = kind(sim, job.budget, compliance(sim)[0]), CapacityCurve()
+        trace(control, curve, 0.01, 1e-3)
+        curves.append(curve)
+        assert curve.whole
+    assert isinstance(control, ImplicitControl)
+    assert control.ramps == 0
+    places = [5e-4, 1e-3, 2e-3, 3e-3, 4e-3]
+    one, two = (np.interp(places, *curve.arrays()) for curve in curves)
+    assert two == pytest.approx(one, rel=1e-3)
+    assert curves[1].highest.load == pytest.approx(curves[0].highest.load, rel=1e-3)
+    assert abs(measures.closure(sim)) < 1e-3
+
+
+@pytest.mark.parametrize(("law", "increments"), [("coulomb", "implicit"), ("mohr-coulomb", "ramps")])
+def test_a_peak_that_hangs_on_ramps_is_not_claimed(law, increments):
+    """To so fine a resolution ramps of two lengths differ: implicit increments, or the load raised from gravity."""
+    blocks = [block("a", rectangle(0, 0, 1, 0.4)), block("b", rectangle(0.2, 0.4, 0.5, 1.4))]
+    case = controlled(0.004, *blocks, friction=0.3, kn=1e9, kinematics="large", resolution=1e-4, increments=10)
+    case["joints"]["dry"] |= {"law": law} | ({} if law == "coulomb" else {"cohesion": 10.0})
+    summary, records = solve(case)
+    curve = summary["capacity_curve"]
+    assert curve["increments"] == increments
+    assert summary["start"]["kind"] == ("curve" if increments == "implicit" else "gravity")
+    assert any("the peak hangs on the increments" in line for line in summary["warnings"])
+    assert summary["failure_load"] == pytest.approx(0.2917, rel=2e-3)
+    assert len(records.rows) == len(curve["loads"])
+    assert ("peak_load_in_ramps" in curve) == (increments == "implicit")
+
+
+def test_an_implicit_increment_knows_the_sliding_load():
+    """The block of `test_a_block_that_slides`: μ after elastic shear, whose energies are known."""
+    kn, weight, far = 2e8, 0.2 * 2000.0 * 9.81, 0.002
+    made = scene(controlled(far, block("b", rectangle(0, 0, 1, 0.2)), kn=kn, kinematics="large"))
+    sim = (job := Job.start(made.case, made.model, Records())).moving_simulation()
+    stand(sim, job.budget)
+    control, curve = ImplicitControl(sim, job.budget, compliance(sim)[0]), CapacityCurve()
+    trace(control, curve, far, 1e-4)
+    u, loads = curve.arrays()
+    assert control.ramps == 0
+    assert loads.max() * sim.live_scale == pytest.approx(0.6, rel=2e-4)
+    elastic = 0.6 * weight / (kn / (1.0 + 3 * 0.1**2 / 0.5**2))
+    assert measures.energy(sim).friction == pytest.approx(0.6 * weight * (u[-1] - elastic), rel=1e-2)
+
+
+def test_to_and_fro_in_space():
+    """The loop of a block that slides, as in the plane: prisms of depth one."""
+    kn, far, weight = 2e8, 0.001, 0.2 * 2000.0 * 9.81
+    keys = {"kind": "cycle", "control": "displacement", "path": [far, -far, far], "step": 2e-4}
+    joint = {"friction": 0.6, "kn": kn, "ks": kn}
+    case = tables(BASE, block("b", rectangle(0, 0, 1, 0.2)), joints={"dry": joint}, analysis=keys)
+    summary, records = solve(extruded_tables(case))
+    assert [point["load"] for point in summary["turning_points"]] == pytest.approx([0.6, -0.6, 0.6], rel=2e-4)
+    (loop,) = summary["loops"]
+    force = 0.6 * weight
+    elastic = force / kn * (1.0 + 0.1**2 / 0.5**2)  # it turns on its four corners
+    ways = (far - elastic) + 2 * (2 * far - 2 * elastic)
+    assert records.rows[-1].energy.friction == pytest.approx(force * ways, rel=5e-3)
+    assert loop["energy"] == pytest.approx(4.0 * force * (far - elastic), rel=0.1)  # by a line from step to step
+    assert abs(summary["energy_closure"]) < 1e-3

@@ -123,6 +123,11 @@ def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
+def _controlled(turn: Mapping[str, Any]) -> float:
+    """Displacement of a turning point: that of the monitor that is controlled, else of the live load [m]."""
+    return float(turn["controlled"] if "of" in turn else turn.get("live_displacement", turn["displacement"]))
+
+
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     if summary["status"] != "ok":
@@ -148,7 +153,7 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:
-        shown = [(turn.get("live_displacement", turn["displacement"]), turn["load"]) for turn in turns[:MOST_TURNS]]
+        shown = [(_controlled(turn), turn["load"]) for turn in turns[:MOST_TURNS]]
         text = ", ".join(f"{metres(moved)} at {load_text(load)}" for moved, load in shown)
         rows.append(("displacement", text + (", …" if len(turns) > MOST_TURNS else "")))
     reached = summary.get("reached")

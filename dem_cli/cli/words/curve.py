@@ -19,7 +19,8 @@ def curve_rows(summary: Mapping[str, Any]) -> Rows:
         peak, last = load_text(curve["peak_load"]), load_text(curve["last_load"])
         share = curve.get("residual_share")
         rest = "" if share is None else f", {100.0 * share:.0f} % of it"
-        rows.append(("capacity curve", f"peak {peak} at {metres(curve['peak_displacement'])}"))
+        of = "" if curve.get("of") is None else f" of {curve['of']}"
+        rows.append(("capacity curve", f"peak {peak} at {metres(curve['peak_displacement'])}{of}"))
         rows.append(("", f"{last} in the end, at {metres(curve['last_displacement'])}{rest}".replace("-", "−")))
         rows += _system(curve.get("bilinear"))
         listed = curve.get("loads_at") or []

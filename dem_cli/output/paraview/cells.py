@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.record import JointPlaces
 
-_VERTEX, _LINE, _POLYGON, CONVEX_POINT_SET = 1, 3, 7, 41
+_VERTEX, _LINE, _POLY_LINE, _POLYGON, CONVEX_POINT_SET = 1, 3, 4, 7, 41
 _PYRAMIDS = {3: 10, 4: 14}  # cell types by the sides of the base: tetrahedron, pyramid
 _PRISMS = {3: 13, 4: 12, 5: 15, 6: 16}  # wedge, hexahedron, pentagonal and hexagonal prism
 
@@ -29,6 +29,11 @@ class Cells(NamedTuple):
 def polygons(starts: np.ndarray) -> Cells:
     """Polygons with the corners starts[c]:starts[c + 1] of all points."""
     return Cells(np.full(len(starts) - 1, _POLYGON, np.uint8), starts.astype(np.int64), np.arange(starts[-1]))
+
+
+def lines(starts: np.ndarray) -> Cells:
+    """Lines through the points starts[c]:starts[c + 1] of all points."""
+    return Cells(np.full(len(starts) - 1, _POLY_LINE, np.uint8), starts.astype(np.int64), np.arange(starts[-1]))
 
 
 def outlines_of_joints(places: JointPlaces) -> Cells:

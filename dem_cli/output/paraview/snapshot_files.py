@@ -1,4 +1,4 @@
-"""Files that ParaView and pyvista open by name, one step per frame: blocks, contact points and joints (.vtkhdf)."""
+"""Files that ParaView and pyvista open by name, one step per frame: blocks, contact points, joints, links (.vtkhdf)."""
 
 from __future__ import annotations
 
@@ -9,8 +9,16 @@ import h5py
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.layout import BLOCK_FIELDS, CONTACT_FIELDS, JOINT_FIELDS, STEP_FIELDS, VTK_FILES, declared
-from dem_cli.output.paraview.cells import cells_of, outlines_of_joints
+from dem_cli.output.layout import (
+    BLOCK_FIELDS,
+    CONTACT_FIELDS,
+    JOINT_FIELDS,
+    LINK_FIELDS,
+    STEP_FIELDS,
+    VTK_FILES,
+    declared,
+)
+from dem_cli.output.paraview.cells import cells_of, lines, outlines_of_joints
 from dem_cli.output.paraview.fields import (
     block_fields,
     contact_fields,
@@ -21,9 +29,9 @@ from dem_cli.output.paraview.fields import (
 )
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
-from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates
+from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates, LinkPlaces
 
-BLOCKS, CONTACTS, JOINTS = VTK_FILES
+BLOCKS, CONTACTS, JOINTS, LINKS = VTK_FILES
 
 
 class JointsNow(Protocol):
@@ -54,9 +62,15 @@ class FollowedJoints(Protocol):
 
 
 class ParaViewFiles:
-    """The files of a run. opened: makes one by its name; joints: None where there are none."""
+    """The files of a run. opened: makes one by its name; joints, links: None where there are none."""
 
-    def __init__(self, model: Model, joints: FollowedJoints | None, opened: Callable[[str], h5py.File]):
+    def __init__(
+        self,
+        model: Model,
+        joints: FollowedJoints | None,
+        opened: Callable[[str], h5py.File],
+        links: LinkPlaces | None = None,
+    ):
         self.model, self._rest, d = model, rest_vertices(model), model.dimension
         said = declared(BLOCK_FIELDS | STEP_FIELDS, d)
         self.blocks = GridSeries(opened(BLOCKS), cells_of(model), block_fields(model), said)
@@ -65,6 +79,10 @@ class ParaViewFiles:
         if joints is not None:
             cells, said = outlines_of_joints(joints.places), declared(JOINT_FIELDS | STEP_FIELDS, d)
             self.joints = GridSeries(opened(JOINTS), cells, joint_places(joints.places), said)
+        self.links: GridSeries | None = None
+        if links is not None:
+            numbers = {"link": np.arange(len(links.starts) - 1, dtype=np.int32)}
+            self.links = GridSeries(opened(LINKS), lines(links.starts), numbers, declared(LINK_FIELDS | STEP_FIELDS, d))
 
     def add(self, value: float, frame: Frame, joints: JointsNow | None) -> None:
         """Append a frame; value: what ParaView counts it by."""
@@ -78,3 +96,7 @@ class ParaViewFiles:
             ends = in_space(joints.ends.reshape(-1, model.dimension))
             gaps = {"gap": joints.gaps.ravel().astype(np.float32)}
             self.joints.add(value, ends, gaps, joint_fields(joints.states), steps)
+        if self.links is not None and frame.links is not None:
+            points = in_space(frame.links.places.at(frame.positions, frame.orientations))
+            forces = {"force": frame.links.forces.astype(np.float32)}
+            self.links.add(value, points, forces, {"largest_force": frame.links.largest().astype(np.float32)}, steps)

@@ -39,6 +39,9 @@ class Drawing(Protocol):
     def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
         """Joints by state, over blocks that are in place."""
 
+    def draw_links(self, axis: Any, frame: Frame) -> None:
+        """Ties and bars as lines over the blocks, as dark as the force in them."""
+
     def finish(self, axis: Any) -> None:
         """What else a reader needs, over a picture whose limits are set."""
 

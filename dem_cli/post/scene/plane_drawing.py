@@ -12,6 +12,7 @@ from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
 from dem_cli.post.scene.joint_strokes import strokes
+from dem_cli.post.scene.link_lines import draw_lines
 
 
 class PlaneDrawing:
@@ -72,6 +73,10 @@ class PlaneDrawing:
         _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
         for i in np.flatnonzero(counts[owner] == 1):
             axis.plot(*contacts.points[i], "o", ms=1.4 * width, color=colours[i], zorder=3)
+
+    def draw_links(self, axis: Any, frame: Frame) -> None:
+        """Ties and bars, over all blocks: lines as dark as the force in them."""
+        draw_lines(axis, frame, self.flat)
 
     def finish(self, axis: Any) -> None:
         """Nothing: x is to the right and y upwards."""

@@ -14,6 +14,7 @@ from dem_cli.post import style
 from dem_cli.post.scene.axonometry import Axonometry, looks_right
 from dem_cli.post.scene.hidden_surfaces import NOTHING, SeenSurface, Window, seen_surface, window_of
 from dem_cli.post.scene.joint_strokes import visible_strokes
+from dem_cli.post.scene.link_lines import draw_lines
 from dem_cli.post.scene.plane_drawing import joint_width, state_colour
 
 _FINEST = 1800  # pixels along the longer side of a picture
@@ -138,6 +139,10 @@ class SpaceDrawing:
         colours = [state_colour(int(contacts.state[i]), contacts.gap[i] < hairline) for i in points[owner[seen]]]
         width = joint_width(self.model)
         axis.add_collection(LineCollection(list(lines), colors=colours, linewidths=width, capstyle="butt", zorder=3))
+
+    def draw_links(self, axis: Any, frame: Frame) -> None:
+        """Ties and bars, over all blocks: lines as dark as the force in them."""
+        draw_lines(axis, frame, self.flat)
 
     def finish(self, axis: Any) -> None:
         """Arrows that show where x, y and z point, in the corner from which the foot of the structure recedes."""

@@ -1,62 +1,77 @@
-"""Elastic blocks lumped into their joints: the elastic wall against finite elements, the curve of wall SW100."""
+"""Blocks that deform in their joints or by modes of their own: the elastic wall beside finite elements, wall SW100."""
 
 from __future__ import annotations
 
+import time
 from typing import Any
-
-import numpy as np
 
 from dem_cli import api
 from dem_cli.bench.table import percent
-from dem_cli.contact.compatibility import compatibility
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties
-from dem_cli.model.scales import smallest_edge
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
+from dem_cli.kernels.records import HOLD_LOAD
+from studies.deformable.elastic_wall import displacement, finite_elements, stones
 from studies.deformable.walls import AT, WALL, curve
 from studies.solution import from_file
 from studies.template import table
 
-YOUNG, HEIGHT, SHEAR = 15.5e9, 0.1, 0.417  # of the blocks [Pa, m], and ks/kn
-BLOCKS = tuple(f"materials.{name}.young={YOUNG!r}" for name in ("sandstone", "concrete"))
-# kn h/E: error of rigid blocks against finite elements (Q2, elastic interfaces; scikit-fem, of a prototype)
-RIGID = {0.05: -0.047, 0.1: -0.088, 0.44: -0.28, 1.0: -0.47, 3.0: -0.72}
+WAYS = {
+    "none": "rigid",
+    "joints": "lumped",
+    "uniform-strain": "uniform strain",
+    "quadratic": "quadratic",
+}  # deformation, and what it is called
+RATIOS = (0.05, 0.1, 0.44, 1.0, 3.0)  # kn h/E
 
 
 def measure() -> dict[str, Any]:
-    """Displacements of the beam [m/N], and both curves."""
+    """Displacements of the beam [m/N], and curves."""
     elastic = [
-        {"ratio": ratio, "rigid": displacement(ratio), "lumped": displacement(ratio, *BLOCKS)} for ratio in RIGID
+        {"ratio": ratio, "elements": _rounded(finite_elements(ratio))}
+        | {way: _rounded(displacement(ratio, way)) for way in WAYS}
+        for ratio in RATIOS
     ]
-    return {"elastic": elastic, "curves": [curve() | {"blocks": "rigid"}, curve(*BLOCKS) | {"blocks": "lumped"}]}
+    curves = [curve(*stones(way)) | {"blocks": name, **_costs(way)} for way, name in WAYS.items()]
+    return {"elastic": elastic, "curves": curves}
 
 
-def displacement(ratio: float, *overrides: str) -> float:
-    """Of the beam per newton of its push [m], all joints closed; linear."""
-    from scipy.sparse import diags
-    from scipy.sparse.linalg import spsolve
+def _costs(way: str) -> dict[str, float]:
+    """CPU time of a contact point in a step [ns], geometry of the start and geometry that moves."""
+    loaded = from_file(WALL, *stones(way))
+    model, found = api.build_model(loaded), {}
+    for kinematics in ("fixed", "large"):
+        sim = Simulation(model, law_of(loaded.case), joint_properties(loaded.case, model), kinematics)
+        sim.set_load(0.0)
+        sim.use_combined_damping()
+        sim.advance(500, HOLD_LOAD)
+        seconds = []
+        for _ in range(5):
+            begun = time.process_time()
+            sim.advance(1000, HOLD_LOAD)
+            seconds.append(time.process_time() - begun)
+        found[kinematics] = round(1e6 * min(seconds) / len(sim.joints.kn), 1)
+    return found
 
-    kn = ratio * YOUNG / HEIGHT
-    loaded = from_file(WALL, f"joints.dry.kn={kn!r}", f"joints.dry.ks={SHEAR * kn!r}", *overrides)
-    model = api.build_model(loaded)
-    properties = joint_properties(loaded.case, model)
-    joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
-    motion = compatibility(model, joints)
-    stiffness = diags(np.column_stack([joints.kn, joints.ks]).ravel())
-    forces = model.live_loads[~model.fixed].ravel()
-    return float(f"{spsolve((motion.T @ stiffness @ motion).tocsc(), forces) @ forces:.6g}")
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.6g}")
 
 
 def values(found: dict[str, Any]) -> dict[str, str]:
     """Tables of the page."""
-    rows = []
-    for one in found["elastic"]:
-        rigid = RIGID[one["ratio"]]
-        error = one["lumped"] / one["rigid"] * (1.0 + rigid) - 1.0
-        rows.append((f"{one['ratio']:g}", percent(rigid), percent(error), f"{one['lumped'] / one['rigid']:.3f}"))
-    curves = [(one["blocks"], f"{one['peak']:.2f}", *(f"{x:.2f}" for x in one["loads"])) for one in found["curves"]]
+    rows = [
+        (f"{one['ratio']:g}", *(percent(one[way] / one["elements"] - 1.0) for way in WAYS)) for one in found["elastic"]
+    ]
+    rigid = found["curves"][0]
+    curves = [
+        (
+            one["blocks"], f"{one['peak']:.2f}", *(f"{x:.2f}" for x in one["loads"]),
+            *(f"{one[which]:.0f} ns, {one[which] / rigid[which]:.1f} ×" for which in ("fixed", "large")),
+        ) for one in found["curves"]
+    ]  # fmt: skip
     return {
-        "elastic": table(("kn h/E", "rigid blocks", "lumped", "lumped over rigid"), rows),
-        "curves": table(("blocks", "peak", *(f"at {x} mm" for x in AT)), curves),
+        "elastic": table(("kn h/E", *WAYS.values()), rows),
+        "curves": table(("blocks", "peak", *(f"at {x} mm" for x in AT), "of the start", "moving"), curves),
     }
 
 

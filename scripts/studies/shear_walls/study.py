@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from studies.shear_walls import rigid
+from studies.shear_walls import beam, rigid
 from studies.study import SectionedStudy
 
-STUDY = SectionedStudy("shear_walls", "Dry-stone shear walls: capacity curves over their tests", [rigid])
+STUDY = SectionedStudy("shear_walls", "Dry-stone shear walls: capacity curves over their tests", [rigid, beam])

@@ -1,4 +1,4 @@
-"""Ends of ties: which blocks hold them, and what is said where none does."""
+"""Ends of ties and paths of bars: which blocks hold them, and what is said where none does."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from engine import block, rectangle, scene, tables
 
 from dem_cli.assembly import validate
 from dem_cli.assembly.assemble import assembly
+from dem_cli.case.plausibility import doubts
 from dem_cli.errors import CaseError
 from dem_cli.links.link import FIXED_POINT
 
@@ -66,3 +67,76 @@ def test_a_tie_holds_up_what_nothing_else_does():
     for table, count in ((held, 0), (falls, 1)):
         made = scene(table)
         assert len(validate.problems(made.case, made.model, assembly(made.case).blocks)) == count
+
+
+ROD = {"rod": {"area": 1e-4, "young": 2e11, "bond_stiffness": 1e9}}
+
+
+def barred(*paths, **more) -> dict:
+    tables_of = [{"bar": "rod", "path": path, **more.pop("keys", {})} for path in paths]
+    return tables(FLOOR, *TWO, bars=ROD, reinforcement=tables_of, analysis={"kind": "gravity"}, **more)
+
+
+def test_bars_are_cut_at_joints_and_corners():
+    made = scene(barred([[0.5, 1.5], [0.5, 0.5], [0.8, 0.5], [0.8, -0.5]], keys={"element": 0.2, "anchored": ["end"]}))
+    (bars,) = made.model.links
+    assert made.model.link_names == ("bar-1",)
+    pairs = [(made.number("b"), made.number("a")), (made.number("a"), made.number("floor"))]
+    assert bars.blocks.tolist() == [list(pair) for pair in pairs]
+    assert bars.length(0) == pytest.approx(2.3)
+    assert bars.reach.sum() == pytest.approx(2.3)
+    assert bars.reach.max() <= 0.2 * (1 + 1e-9)
+    assert bars.axes == pytest.approx(np.array([[0.0, -1.0], [0.0, -1.0]]))
+    elements = bars.stiffness[len(bars.slips) :][: len(bars.crossing)]
+    assert elements[0] == 0.0
+    assert elements[-1] > 0.0
+
+
+WRONG_PATHS = {
+    "outside": ([[0.5, 1.5], [0.5, 2.5]], "from [0.5, 2] to [0.5, 2.5] there is no block"),
+    "beside": ([[-0.5, 1.5], [0.5, 1.5]], "from [-0.5, 1.5] to [0, 1.5] there is no block"),
+    "one block": ([[0.2, 1.5], [0.8, 1.5]], "it lies in block 'b' alone"),
+    "in a joint": ([[0.5, 1.5], [0.5, 1.0], [0.9, 1.0]], "the bar runs along the joint of"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_PATHS)
+def test_wrong_paths(name):
+    path, said = WRONG_PATHS[name]
+    with pytest.raises(CaseError) as error:
+        scene(barred(path))
+    assert said in str(error.value)
+    assert len(error.value.problems) == 1
+
+
+WRONG_CASES = {
+    "unknown bar": ({"reinforcement": [{"bar": "rope", "path": [[0.5, 1.5], [0.5, 0.5]]}]}, "unknown bar 'rope'"),
+    "no place": ({"monitor": [{"bar": "bar-1", "quantity": "force"}]}, "monitor.0.at: missing"),
+    "no bar": ({"monitor": [{"block": "a", "at": 0.1}]}, "not used without bar"),
+    "quantity": ({"monitor": [{"bar": "bar-1", "at": 0.1, "quantity": "opening"}]}, "'force', 'slip'"),
+    "strains": (
+        {"materials": {"stone": {"density": 2000.0, "young": 1e9, "deformation": "uniform-strain"}}},
+        "not known beside [[reinforcement]]",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_CASES)
+def test_wrong_cases_with_bars(name):
+    more, said = WRONG_CASES[name]
+    with pytest.raises(CaseError) as error:
+        scene(barred([[0.5, 1.5], [0.5, 0.5]]) | more)
+    assert said in str(error.value)
+
+
+def test_a_monitor_beyond_the_end_of_a_bar():
+    monitor = [{"bar": "bar-1", "at": 1.5, "quantity": "force"}, {"bar": "bar-2", "at": 0.5, "quantity": "slip"}]
+    made = scene(barred([[0.5, 1.5], [0.5, 0.5]], monitor=monitor))
+    found = validate.problems(made.case, made.model, assembly(made.case).blocks)
+    assert [problem.path for problem in found] == [("monitor", 0, "at"), ("monitor", 1, "bar")]
+
+
+def test_long_elements_are_said():
+    made = scene(barred([[0.5, 1.5], [0.5, 0.5]], keys={"element": 0.1}))
+    (doubt,) = [one for one in doubts(made.case) if one.path[0] == "reinforcement"]
+    assert "0.0283 m is the default" in doubt.message

@@ -154,6 +154,16 @@ def test_modulus_in_another_unit():
     assert "did you mean 2 GPa" in problem.message
 
 
+HALVES = ("materials.stone.young=1e9", "joints.dry.kn=2e9")  # 1/kn' = 1/2e9 + 0.5 m/1e9 Pa
+
+
+def test_natural_frequencies_are_those_of_joints_as_soft_as_that():
+    """The references of modes_block.toml, whose joint has 1e9 and 4e8 Pa/m; 1/ks' = 1.3e-9 + 0.5 m · 2.4/1e9 Pa."""
+    softer = f"joints.dry.ks={1 / 1.3e-9!r}"
+    summary = solve(CASES / "verification" / "modes_block.toml", *HALVES, softer)[0]
+    assert summary["frequencies"] == pytest.approx([43.2814, 112.5395, 130.8576], rel=1e-5)
+
+
 def displacement(*overrides):
     """Of the beam on a wall of 51 blocks per unit of its push, no joint open; the largest of its translations."""
     made = scene(CASES / "validation" / "shear_wall_sw100.toml", *overrides)

@@ -1,0 +1,182 @@
+"""Tracing of a capacity curve: in ramps, once more in longer ones, and in implicit increments where these two differ.
+
+Ramps are quick. Where joints slip as blocks are moved, a curve may hang on how long they are; then every increment is
+solved as a contact problem of its own (statics/implicit_control.py), from gravity on, and the run says what changed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from dem_cli.analyses import curve_answers
+from dem_cli.engine import measures
+from dem_cli.errors import SolverError
+from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
+from dem_cli.statics.implicit_control import ImplicitControl, why_not
+
+if TYPE_CHECKING:
+    from dem_cli.engine.job import Job
+    from dem_cli.engine.state import SavedState
+    from dem_cli.engine.track import Track
+    from dem_cli.output.record import Frame, HistoryRow
+
+RAMPS, IMPLICIT = "ramps", "implicit"  # how increments were made
+INTERRUPTED = "interrupted"
+FOLLOWING, AGAIN, BY_INCREMENTS = (
+    "following the capacity curve",
+    "the same curve in longer steps",
+    "the same curve in implicit increments",
+)
+
+
+def followed(job: Job, track: Track) -> Followed | None:
+    """The displacement that the case controls instead of that of the live load (analysis.of); None: that one."""
+    name = job.case.analysis.of
+    if name is None:
+        return None
+    number = [monitor.name for monitor in job.case.monitor].index(name)
+    return Followed(name, lambda: job.monitors.values(track.sim)[number])
+
+
+class CurveTracing:
+    """The capacity curve of a structure at rest under its dead loads; the simulation is left at the end of the curve.
+
+    elastic: compliance, q·u per unit of internal multiplier [J]. curve, end: the curve of the answer and the state at
+    its end; increments: how that was made; hangs: its peak hangs on the increments, so that it proves nothing.
+    """
+
+    def __init__(self, job: Job, track: Track, elastic: float) -> None:
+        self.job, self.track, self.sim, self.elastic = job, track, track.sim, elastic
+        self.of, self.at_rest = followed(job, track), track.sim.save()
+        self.longest = job.case.analysis.follow / job.case.analysis.increments
+        self.curve, self.increments, self.hangs = CapacityCurve(), RAMPS, False
+        self.coarse: float | None = None  # peak in longer ramps, internal multiplier
+        self.in_ramps: float | None = None  # peak in ramps, where the curve is not theirs
+
+    end: SavedState
+
+    def run(self, found: dict[str, Any]) -> None:
+        """Traces it; what is known goes to `found` and, with rows and frames, out of here in any case.
+
+        Raises SolverError where the budget ends.
+        """
+        until, drawn = self.job.case.analysis.follow, self._drawing(FOLLOWING)
+        try:
+            self._trace(DisplacementControl, self.curve, until, drawn)
+            self.end = self.sim.save()
+            self.coarse = self._coarser()
+            drawn = self._checked(until, drawn)
+        finally:
+            drawn.hand_over(self.curve)
+            found |= {"capacity_curve": self._told(), "displacement_at_failure": self.curve.highest.largest}
+            self.job.warnings += _ends(self.curve)
+        self.sim.restore(self.end)
+
+    def _drawing(self, doing: str) -> _Drawing:
+        analysis, snapshots = self.job.case.analysis, self.job.case.output.snapshots
+        return _Drawing(self.track, doing, analysis.follow, snapshots)
+
+    def _trace(
+        self, kind: type[DisplacementControl], curve: CapacityCurve, until: float, drawn: _Drawing, longer: float = 1.0
+    ) -> DisplacementControl:
+        """One curve, from rest under the dead loads; where it ends says why it did."""
+        self.sim.restore(self.at_rest)
+        try:
+            control = kind(self.sim, self.job.budget, self.elastic, drawn.watch, self.of)
+            drawn.control = control
+            trace(control, curve, until, self.longest, drawn, longer)
+        except (SolverError, KeyboardInterrupt) as ended:
+            curve.stopped = str(ended) or INTERRUPTED
+            raise
+        return control
+
+    def _coarser(self) -> float:
+        """Internal multiplier of the peak in longer ramps, to where the curve came to its own."""
+        settings, resolution = self.job.settings.displacement_control, self.job.case.analysis.resolution
+        near, coarse = self.curve.first_within(settings.near * resolution).way, CapacityCurve()
+        self._trace(DisplacementControl, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
+        return coarse.highest.load
+
+    def _checked(self, until: float, drawn: _Drawing) -> _Drawing:
+        """Whose rows are those of the answer: where the length of ramps makes a difference, of implicit increments."""
+        load, resolution = self.curve.highest.load, self.job.case.analysis.resolution
+        assert self.coarse is not None
+        change = abs(self.coarse - load)
+        if change <= resolution * abs(load):
+            return drawn
+        settings, other, shown = self.job.settings.displacement_control, CapacityCurve(), self._drawing(BY_INCREMENTS)
+        differ = f"the peak hangs on the increments: longer ones change it by {100 * (self.coarse / load - 1):+.2g} %"
+        reason = why_not(self.sim)
+        if reason is None:
+            longer = settings.implicit_longer
+            control = self._trace(ImplicitControl, other, until, shown, longer)
+            assert isinstance(control, ImplicitControl)
+            if control.ramps <= settings.mostly * control.increments:
+                self.in_ramps, self.curve, self.increments, self.end = load, other, IMPLICIT, self.sim.save()
+                self.job.warnings.append(
+                    f"{differ}; the curve is that of implicit increments, whose peak is "
+                    f"{100 * (other.highest.load / load - 1):+.2g} % off it"
+                )
+                return shown
+            reason = "too many implicit increments had no solution"
+        self.hangs = True
+        self.job.warnings.append(f"{differ}; more of them (analysis.increments) come closer to slow loading ({reason})")
+        return drawn
+
+    def _told(self) -> dict[str, Any]:
+        """What the summary says of the curve."""
+        scale = self.sim.live_scale
+        told = curve_answers.summary(self.job, self.curve, measures.live_force(self.sim), scale)
+        told |= {"of": self.of.name if self.of is not None else None, "increments": self.increments}
+        told["peak_load_of_coarser_increments"] = None if self.coarse is None else self.coarse * scale
+        return told if self.in_ramps is None else told | {"peak_load_in_ramps": self.in_ramps * scale}
+
+
+class _Drawing:
+    """Rows and frames of a curve as it grows, kept until its peak is known, and how far it is."""
+
+    def __init__(self, track: Track, doing: str, until: float, wanted: int) -> None:
+        self.sim, self.track, self.doing, self.until, self.wanted = track.sim, track, doing, until, wanted
+        self.every = until / max(wanted - 2, 1)
+        self.next_frame = self.every
+        self.rows: list[HistoryRow] = []
+        self.frames: dict[int, Frame] = {}  # by the number of their row
+
+    control: DisplacementControl
+
+    def watch(self) -> None:
+        """Says where the curve is."""
+        share = min(self.control.way / self.until, 1.0) if self.until > 0.0 else None
+        load, largest = self.sim.load * self.sim.live_scale, measures.largest_displacement(self.sim)
+        self.track.observer.progress(self.doing, load, largest, share)
+
+    def __call__(self, point: CurvePoint) -> None:
+        """One more point."""
+        self.rows.append(self.track.row("loading"))
+        if point.way >= self.next_frame and self.wanted > 0:
+            self.frames[len(self.rows)] = measures.frame(self.sim, "loading")
+            self.next_frame = point.way + self.every
+
+    def hand_over(self, curve: CapacityCurve) -> None:
+        """Hands over all rows and frames: where the load has fallen for good, they are those of the collapse."""
+        near = self.sim.settings.displacement_control.past * curve.highest.load
+        held = max((number for number, point in enumerate(curve.points) if point.load >= near), default=0)
+        for number, row in enumerate(self.rows, 1):
+            stage = "loading" if number <= held else "collapse"
+            self.track.observer.row(row._replace(stage=stage))
+            if number in self.frames:
+                self.track.hand_over(self.frames[number]._replace(stage=stage))
+
+
+def _ends(curve: CapacityCurve) -> list[str]:
+    """Warnings: a curve that ends early, one without a peak."""
+    last = curve.points[-1]
+    if curve.stopped is not None:
+        return [f"the curve ends at {last.largest:.3g} m, where the run did: its points so far are kept"]
+    if not curve.whole:
+        return [
+            f"the curve ends at {last.largest:.3g} m: beyond, nothing comes to rest at a displacement of the live load"
+        ]
+    if curve.peak == len(curve.points) - 1:
+        return ["the curve still rises where it ends: its peak is further than analysis.follow"]
+    return []

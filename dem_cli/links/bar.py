@@ -1,0 +1,474 @@
+"""[bars.NAME] and [[reinforcement]]: bars in blocks, tied to them by bond: reinforcement, stitches, grouted anchors.
+
+A bar is a chain of nodes that carry axial forces from one to the next, EA/l, elastic – perfectly plastic. Each node is
+tied to a material point of the block in which it lies: along the bar by the bond, a spring kb l with a slider sb l;
+across it by a spring that gives way where a joint that has opened or slid bends the bar. Nodes lie on both sides of
+each joint, so that one element crosses it. A bar has no mass and does not resist bending: nodes are in equilibrium at
+every instant (links/bar_forces.py).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from dem_cli.case.base import CaseModel, KeyProblem, Name, Positive, Vector
+from dem_cli.links.bar_forces import make_bar_forces
+from dem_cli.links.chain import Chain
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
+from dem_cli.links.spans import Spans, spans
+
+FINE = 0.2  # μ l of elements by default
+KINKED = 0.1  # stiffness across a joint over that along the bar, for masses: the element there turns when blocks slide
+SLIPPED = 1e-9  # of the elastic slip at the strength of the bond: less is round-off
+
+
+class BarProfile(CaseModel):
+    """[bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
+
+    area: Positive = Field(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
+    young: Positive = Field(description="Young's modulus [Pa]", examples=[2.0e11])
+    yield_stress: Positive | None = Field(
+        default=None,
+        description="yield stress in tension and compression, perfectly plastic [Pa]; default: no limit",
+        examples=[4.0e8],
+    )
+    bond_stiffness: Positive = Field(
+        description="force per slip and length of bar [N/m per m of bar]", examples=[1.0e9]
+    )
+    bond_strength: Positive | None = Field(
+        default=None, description="largest bond force per length [N per m of bar]; default: no limit", examples=[4.0e4]
+    )
+    dowel_stiffness: Positive | None = Field(
+        default=None,
+        description="the same across the bar, where a joint bends it [N/m per m of bar]; default: bond_stiffness",
+        examples=[1.0e9],
+    )
+
+    @property
+    def decay(self) -> float:
+        """μ = √(kb/EA): along 1/μ the force in a bar that is pulled falls to 1/e [1/m]."""
+        return math.sqrt(self.bond_stiffness / (self.young * self.area))
+
+    @property
+    def largest(self) -> float:
+        """Its yield force [N]."""
+        return math.inf if self.yield_stress is None else self.yield_stress * self.area
+
+
+class Reinforcement(CaseModel):
+    """[[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
+
+    Its path lies in blocks as they were drawn; these take it along.
+    """
+
+    id: Name | None = Field(default=None, description="name; default: bar-1, bar-2 ...", examples=["corner-1"])
+    bar: str = Field(description="a name in [bars]", examples=["rebar"])
+    path: Annotated[tuple[Vector, ...], Field(min_length=2)] = Field(
+        description="corners of the line along which it runs, all in blocks [m]",
+        examples=[[[0.1, 0.1], [0.1, 2.0]]],
+    )
+    element: Positive | None = Field(
+        default=None, description="its elements are no longer than this [m]; default: 0.2 √(EA/bond_stiffness)",
+        examples=[0.05],
+    )  # fmt: skip
+    anchored: tuple[Literal["start", "end"], ...] = Field(
+        default=(), description="ends that do not slip, as with a hook or a plate: start, end", examples=[["start"]]
+    )
+
+    def model_post_init(self, context: Any) -> None:
+        """Raises KeyProblem where two corners are one point."""
+        for i, (a, b) in enumerate(zip(self.path, self.path[1:])):
+            if len(a) == len(b) and math.dist(a, b) == 0.0:
+                raise KeyProblem("this corner is the one before it", "path", i + 1)
+
+
+class Piece(NamedTuple):
+    """A straight part of a bar in one block."""
+
+    block: int
+    ends: np.ndarray  # from the centroid of the block [m], (2, d)
+
+
+class DrawnBar(NamedTuple):
+    """A bar as it was drawn: what it is, and its pieces in the blocks one after another."""
+
+    profile: BarProfile
+    element: float  # greatest length of an element [m]
+    anchored: tuple[bool, bool]
+    pieces: tuple[Piece, ...]
+
+
+class Bars(NamedTuple):
+    """All bars of a scene, as the stepping loop sees them: n nodes, n + n_bars elements, two dowels for each joint.
+
+    Springs, one behind another: bonds of the nodes; elements, bar by bar, one before each node and one at the end, of
+    stiffness 0 where that is free; dowels before and behind each joint.
+    """
+
+    blocks: np.ndarray  # either side of the joints that bars cross, (n_joints, 2) int64
+    arms: np.ndarray  # of the nodes beside these from the centroids, undeformed [m], (n_joints, 2·d)
+    axes: np.ndarray  # unit, from node to node, at the start, (n_joints, d)
+    starts: np.ndarray  # centroids of both blocks at the start [m], (n_joints, 2·d)
+    lengths: np.ndarray  # from node to node at the start [m], (n_joints,)
+    along: np.ndarray  # unit, directions of the bar at both nodes, undeformed, (n_joints, 2·d)
+    first: np.ndarray  # first node of each bar, and how many there are, (n_bars + 1,) int64
+    crossing: np.ndarray  # joint that an element crosses, −1: none, (n_elements,) int64
+    stiffness: np.ndarray  # of the springs [N/m], (m,)
+    limits: np.ndarray  # their largest force [N], (m,)
+    state: np.ndarray  # plastic elongation, elongation [m] (of bonds: slip; of dowels: N/kd l), force [N], (m, 3)
+    node_blocks: np.ndarray  # block in which each node lies, (n,) int64
+    node_arms: np.ndarray  # nodes from its centroid [m], (n, d)
+    tips: np.ndarray  # both ends of each bar from the centroids of their blocks [m], (n_bars, 2, d)
+    node_places: np.ndarray  # nodes along their bar from its start [m], (n,)
+    reach: np.ndarray  # length of bar that each node holds [m], (n,)
+    # what the loop works with
+    slips: np.ndarray  # of the nodes [m], (n,)
+    step: np.ndarray  # (n,)
+    unbalanced: np.ndarray  # (n,)
+    diagonal: np.ndarray  # inverse, (n,)
+    drive: np.ndarray  # elongations of elements without slips [m], (n_elements,)
+    cosines: np.ndarray  # between an element and the bar at either end, (n_elements, 2)
+    stretch: np.ndarray  # (m,)
+    tangent: np.ndarray  # (m,)
+    directions: np.ndarray  # of the elements across joints, (n_joints, d)
+    levers: np.ndarray  # of their ends about the blocks, (n_joints, 2·d)
+
+    @property
+    def kind(self) -> str:
+        """Name in the registry."""
+        return BAR.key
+
+    @property
+    def n_drawn(self) -> int:
+        """How many were drawn."""
+        return len(self.first) - 1
+
+    @property
+    def joints(self) -> np.ndarray:
+        """Elements that cross joints, one for each, (n_joints,)."""
+        return np.flatnonzero(self.crossing >= 0)
+
+    @property
+    def spans(self) -> Spans:
+        """Across the joints, from node to node where these have slipped to."""
+        n_joints, d = self.axes.shape
+        right = self.joints - np.searchsorted(self.first[1:] + np.arange(1, self.n_drawn + 1), self.joints, "right")
+        slips = self.state[np.column_stack([right - 1, right]), STRETCH]
+        arms = self.arms + (slips[:, :, None] * self.along.reshape(n_joints, 2, d)).reshape(n_joints, 2 * d)
+        return Spans(self.blocks, arms, self.axes, self.starts, self.lengths)
+
+    def started(self, origin: np.ndarray) -> Bars:
+        """A copy for a simulation that counts places from `origin`."""
+        alone = self._replace(**{name: getattr(self, name).copy() for name in _WORK}, state=np.zeros_like(self.state))
+        return alone._replace(starts=self.starts - np.tile(origin, 2))
+
+    def chain(self, number: int) -> Chain:
+        """One bar, elastic."""
+        begin, end, n = self.rows(number)
+        elements = slice(begin + number, end + number + 1)
+        stiffness = self.stiffness[n:][elements]
+        return Chain(self.stiffness[begin:end], stiffness, np.flatnonzero(self.crossing[elements] >= 0))
+
+    def joints_of(self, number: int) -> slice:
+        """The joints that one bar crosses."""
+        begin, end, _ = self.rows(number)
+        found = np.searchsorted(self.joints, [begin + number, end + number + 1])
+        return slice(int(found[0]), int(found[1]))
+
+    def rows(self, number: int) -> tuple[int, int, int]:
+        """First node of a bar, that of the next one, and how many nodes all have: where elements begin."""
+        return int(self.first[number]), int(self.first[number + 1]), len(self.slips)
+
+    def axial(self, bodies: Any = None) -> Springs:
+        """Elastic springs between the blocks of each bar, as many as joints: a factor of the condensed stiffness."""
+        axes, _, arms = self.spans.lines(bodies)
+        rows = self.spans.motion(axes, arms)
+        widest, n_dof = max((len(self._factor(b)) for b in range(self.n_drawn)), default=0) + 1, rows.shape[2]
+        blocks = np.zeros((len(rows), widest), np.int64)
+        motion, stiffness = np.zeros((len(rows), widest, n_dof)), np.zeros(len(rows))
+        for bar in range(self.n_drawn):
+            here, factor = self.joints_of(bar), self._factor(bar)
+            k, own = len(factor), rows[here]
+            stiffness[here] = np.diag(factor) ** 2
+            shares = (factor / np.diag(factor)).T
+            blocks[here, :k], blocks[here, 1 : k + 1] = self.blocks[here, 0], self.blocks[here, 1]
+            motion[here, :k] += shares[:, :, None] * own[:, 0]
+            motion[here, 1 : k + 1] += shares[:, :, None] * own[:, 1]
+        return Springs(blocks, motion, stiffness)
+
+    def _factor(self, number: int) -> np.ndarray:
+        """L of K = L Lᵀ, lower triangular."""
+        found: np.ndarray = np.linalg.cholesky(self.chain(number).condensed())
+        return found
+
+    def acting(self) -> np.ndarray:
+        """All of them: bars take tension and compression."""
+        return np.ones(len(self.blocks), bool)
+
+    def across(self, bodies: Any = None) -> Springs:
+        """Springs across the elements at joints: what N/L of them does, and their own share when blocks slide there."""
+        held = self.spans
+        _, lengths, _ = held.lines(bodies)
+        stiffness = np.maximum(self.forces, 0.0) / lengths
+        if bodies is not None:
+            stiffness = stiffness + KINKED * self._own_stiffness()
+        sides = held.sideways(bodies)
+        return Springs(np.concatenate([self.blocks] * len(sides)), np.concatenate(list(sides)),
+                       np.concatenate([stiffness] * len(sides)))  # fmt: skip
+
+    @property
+    def forces(self) -> np.ndarray:
+        """Axial force at each joint that a bar crosses [N], (n_joints,)."""
+        return self.state[len(self.slips) + self.joints, FORCE]
+
+    def _own_stiffness(self) -> np.ndarray:
+        """Of each joint that opens while the others do not [N/m], (n_joints,)."""
+        return np.concatenate([np.zeros(0), *(np.diag(self.chain(b).condensed()) for b in range(self.n_drawn))])
+
+    def turning(self, bodies: Any) -> np.ndarray:
+        """Geometric stiffness of the present forces (`Spans.turning`)."""
+        return self.spans.turning(self.forces, bodies)
+
+    def bounded(self) -> tuple[Springs, np.ndarray]:
+        """For limit analysis: a force at each joint, at most what yields, or what bond and anchors on either side hold.
+
+        That bond in a block between two joints also bounds how much these forces differ is left out.
+        """
+        held = self.spans
+        axes, _, arms = held.lines(None)
+        most = np.concatenate([np.zeros(0), *(self._anchorage(bar) for bar in range(self.n_drawn))])
+        springs = Springs(self.blocks, held.motion(axes, arms), self._own_stiffness())
+        return springs, np.column_stack([-most, most])
+
+    def _anchorage(self, number: int) -> np.ndarray:
+        """Largest force of one bar at its joints [N], (n_joints of it,)."""
+        begin, end, n = self.rows(number)
+        at = self.joints[self.joints_of(number)]
+        elements = n + begin + number
+        anchors = np.where(self.stiffness[[elements, n + end + number]] > 0.0, np.inf, 0.0)
+        upto = np.concatenate([[0.0], np.cumsum(self.limits[begin:end])])
+        before = upto[at - begin - number]
+        behind = np.cumsum(self.limits[begin:end][::-1])[::-1][at - begin - number]
+        return np.minimum(np.minimum(before + anchors[0], behind + anchors[1]), self.limits[n + at])
+
+    def softest(self) -> float:
+        """Least stiffness of a joint that opens, by its bar alone [N/m]."""
+        return float(self._own_stiffness().min(initial=np.inf))
+
+    def energy(self) -> float:
+        """In all springs [J]."""
+        return 0.5 * float((self.state[:, FORCE] ** 2 / np.where(self.stiffness > 0.0, self.stiffness, 1.0)).sum())
+
+    def follow(self, motion: np.ndarray, bodies: Any) -> None:
+        """Slips and forces after small displacements of all blocks, (n_blocks, n_dof); elastic, up to the limits."""
+        axes, _, arms = self.spans.lines(bodies)
+        opened = (self.spans.motion(axes, arms) * motion[self.blocks]).sum(axis=(1, 2))
+        n = len(self.slips)
+        for bar in range(self.n_drawn):
+            begin, end, _ = self.rows(bar)
+            chain, here = self.chain(bar), opened[self.joints_of(bar)]
+            slips = chain.slips(here)
+            self.state[begin:end, STRETCH] += slips
+            self.state[n + begin + bar : n + end + bar + 1, STRETCH] += chain.stretches(here, slips)
+        springs = slice(n + len(self.crossing))
+        forces = self.stiffness[springs] * (self.state[springs, STRETCH] - self.state[springs, PLASTIC])
+        self.state[springs, FORCE] = np.clip(forces, -self.limits[springs], self.limits[springs])
+
+    # -- what people read --------------------------------------------------------------------------
+
+    def length(self, number: int) -> float:
+        """Of one bar [m]."""
+        last = self.first[number + 1] - 1
+        return float(self.node_places[last] + 0.5 * self.reach[last])
+
+    def reading(self, number: int, quantity: str, at: float) -> Reading:
+        """Slip, straight between the nodes of a block, or force, straight between the middles of elements."""
+        begin, end, n = self.rows(number)
+        places, reach = self.node_places[begin:end], self.reach[begin:end]
+        if quantity == "slip":
+            # Slip jumps at joints: of the nodes of the block there only.
+            bounds = [0.0, *(places[:-1] + 0.5 * reach[:-1]), self.length(number)]
+            node = int(np.clip(np.searchsorted(bounds, at, "right") - 1, 0, end - begin - 1))
+            cuts = self.crossing[begin + number : end + number + 1] >= 0
+            low = max((i for i in range(node + 1) if i == 0 or cuts[i]), default=0)
+            high = min(i for i in range(node, end - begin) if i + 1 == end - begin or cuts[i + 1])
+            rows, points = np.arange(low, high + 1) + begin, places[low : high + 1]
+        else:
+            points = np.concatenate([[0.0], places[:-1] + 0.5 * reach[:-1], [self.length(number)]])
+            rows = n + begin + number + np.arange(end - begin + 1)
+        right = int(np.clip(np.searchsorted(points, at), 1, max(len(points) - 1, 1)))
+        if len(points) == 1:
+            return Reading((int(rows[0]),), STRETCH, (1.0,))
+        share = float(np.clip((at - points[right - 1]) / (points[right] - points[right - 1]), 0.0, 1.0))
+        column = STRETCH if quantity == "slip" else FORCE
+        return Reading((int(rows[right - 1]), int(rows[right])), column, (1.0 - share, share))
+
+    def answer(self, number: int) -> dict[str, Any]:
+        """Largest force and slip of one with their places along it, and whether it yielded or slid somewhere."""
+        begin, end, n = self.rows(number)
+        slips, forces = self.state[begin:end], self.state[n + begin + number : n + end + number + 1]
+        middles = np.concatenate([[0.0], self.node_places[begin:end] + 0.5 * self.reach[begin:end]])
+        most, slid = int(np.abs(forces[:, FORCE]).argmax()), int(np.abs(slips[:, STRETCH]).argmax())
+        elastic = self.limits[begin:end] / self.stiffness[begin:end]
+        own = np.where(np.isfinite(elastic), elastic, 0.0)
+        return {
+            "force": float(forces[most, FORCE]),
+            "at": float(middles[most]),
+            "slip": float(slips[slid, STRETCH]),
+            "slip_at": float(self.node_places[begin + slid]),
+            "yielded": bool((forces[:, PLASTIC] != 0.0).any()),
+            "slid": bool((np.abs(slips[:, PLASTIC]) > SLIPPED * own).any()),
+        }
+
+    def outline(self) -> Outline:
+        """From end to end through the nodes and on either side of the joints; at a node the mean force beside it."""
+        blocks, arms, forces, counts, n, d = [], [], [], [], len(self.slips), self.axes.shape[1]
+        for bar in range(self.n_drawn):
+            begin, end, _ = self.rows(bar)
+            elements = self.state[n + begin + bar : n + end + bar + 1, FORCE]
+            here = self.joints_of(bar)
+            right = np.repeat(self.joints[here] - bar, 2) + np.tile([-1, 0], here.stop - here.start)  # nodes
+            along = self.along[here].reshape(-1, d)
+            half = np.tile([0.5, -0.5], here.stop - here.start)[:, None] * self.reach[right, None]
+            at = np.repeat(self.joints[here] - bar - begin, 2)
+            held, nodes = self.node_blocks[begin:end], self.node_arms[begin:end]
+            means = 0.5 * (elements[:-1] + elements[1:])
+            blocks += [held[:1], np.insert(held, at, self.node_blocks[right]), held[-1:]]
+            arms += [
+                self.tips[bar, :1],
+                np.insert(nodes, at, self.node_arms[right] + half * along, 0),
+                self.tips[bar, 1:],
+            ]
+            forces += [elements[:1], np.insert(means, at, elements[at]), elements[-1:]]
+            counts.append(end - begin + 2 + len(at))
+        return Outline(np.array(counts), np.concatenate(blocks), np.concatenate(arms), np.concatenate(forces))
+
+    def words(self, number: int, ids: Sequence[str]) -> str:
+        """What one is, in a line; ids: of the blocks."""
+        begin, end, _ = self.rows(number)
+        here, of = self.joints_of(number), self.node_blocks[begin:end]
+        most = self._anchorage(number)
+        limit = f"up to {most.max():.4g} N at a joint" if np.isfinite(most).all() else "without limit"
+        count = here.stop - here.start
+        joints = f"{count} joint{'s' * (count != 1)}"
+        held = f"'{ids[of[0]]}' to '{ids[of[-1]]}', {self.length(number):.4g} m across {joints}"
+        return f"{held}, {end - begin} elements of {self.reach[begin:end].max():.3g} m, {limit}"
+
+
+_WORK = (
+    "slips", "step", "unbalanced", "diagonal", "drive", "cosines", "stretch", "tangent", "directions", "levers"
+)  # fmt: skip
+
+
+def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: np.ndarray) -> Bars:
+    """The bars of a case whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d)."""
+    d, cut = centroids.shape[1], [_nodes(bar) for bar in drawn]
+    first = np.concatenate([[0], np.cumsum([len(nodes.blocks) for nodes in cut])]).astype(np.int64)
+    blocks, arms, along, reach, places = (
+        np.concatenate([np.zeros((0, *shape), kind), *(getattr(nodes, name) for nodes in cut)])
+        for name, shape, kind in (
+            ("blocks", (), np.int64), ("arms", (d,), float), ("along", (d,), float), ("reach", (), float),
+            ("places", (), float),
+        )
+    )  # fmt: skip
+    elements = [_elements(bar, nodes) for bar, nodes in zip(drawn, cut, strict=True)]
+    right, crossing, axial, n_joints = [], [], [np.zeros(0)], 0
+    for begin, (stiffness, crosses) in zip(first.tolist(), elements):
+        part = np.full(len(crosses), -1, np.int64)
+        part[crosses] = n_joints + np.arange(crosses.sum())
+        n_joints += int(crosses.sum())
+        crossing.append(part)
+        right.append(begin + np.flatnonzero(crosses))
+        axial.append(stiffness)
+    behind = np.concatenate([np.zeros(0, np.int64), *right])
+    pairs = np.column_stack([behind - 1, behind])
+    held = spans([LinkEnds((int(a), int(b)), points) for (a, b), points in zip(blocks[pairs], arms[pairs])], centroids)
+    profiles = [bar.profile for bar, nodes in zip(drawn, cut, strict=True) for _ in nodes.blocks]
+    bond = np.array([p.bond_stiffness for p in profiles]) * reach
+    strength = np.array([np.inf if p.bond_strength is None else p.bond_strength for p in profiles]) * reach
+    dowels = (np.array([p.dowel_stiffness or p.bond_stiffness for p in profiles]) * reach)[pairs].ravel()
+    yields = [np.full(len(part), bar.profile.largest) for bar, part in zip(drawn, crossing, strict=True)]
+    stiffness = np.concatenate([bond, *axial, dowels])
+    limits = np.concatenate([strength, *yields, np.full(len(dowels), np.inf)])
+    n, m, n_elements = len(blocks), len(stiffness), len(blocks) + len(drawn)
+    numbers = np.concatenate([np.zeros(0, np.int64), *crossing])
+    along_pairs = along[pairs].reshape(-1, 2, d)
+    cosines = np.ones((n_elements, 2))
+    cosines[numbers >= 0] = (along_pairs * held.axes[:, None, :]).sum(axis=2)
+    return Bars(
+        *held,
+        along=along_pairs.reshape(-1, 2 * d),
+        first=first,
+        crossing=numbers,
+        stiffness=stiffness,
+        limits=limits,
+        state=np.zeros((m, N_STATE)),
+        node_blocks=blocks,
+        node_arms=arms,
+        tips=np.array([[bar.pieces[0].ends[0], bar.pieces[-1].ends[1]] for bar in drawn]),
+        node_places=places,
+        reach=reach,
+        slips=np.zeros(n),
+        step=np.zeros(n),
+        unbalanced=np.zeros(n),
+        diagonal=np.zeros(n),
+        drive=np.zeros(n_elements),
+        cosines=cosines,
+        stretch=np.zeros(m),
+        tangent=np.zeros(m),
+        directions=np.zeros((n_joints, d)),
+        levers=np.zeros((n_joints, 2 * d)),
+    )
+
+
+class _Nodes(NamedTuple):
+    blocks: np.ndarray
+    arms: np.ndarray
+    along: np.ndarray
+    reach: np.ndarray
+    places: np.ndarray
+
+
+def _nodes(bar: DrawnBar) -> _Nodes:
+    """In the middles of equal parts of each piece."""
+    blocks, arms, along, reach, places, upto = [], [], [], [], [], 0.0
+    for piece in bar.pieces:
+        way = piece.ends[1] - piece.ends[0]
+        length = math.sqrt(float((way**2).sum()))
+        count = max(1, math.ceil(length / bar.element - 1e-9))
+        shares = (np.arange(count) + 0.5) / count
+        blocks += [piece.block] * count
+        arms.append(piece.ends[0] + shares[:, None] * way)
+        along.append(np.tile(way / length, (count, 1)))
+        reach += [length / count] * count
+        places.append(upto + shares * length)
+        upto += length
+    return _Nodes(
+        np.array(blocks, np.int64), np.concatenate(arms), np.concatenate(along), np.array(reach), np.concatenate(places)
+    )
+
+
+def _elements(bar: DrawnBar, nodes: _Nodes) -> tuple[np.ndarray, np.ndarray]:
+    """Axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,) each."""
+    rigidity, reach = bar.profile.young * bar.profile.area, nodes.reach
+    stiffness = np.zeros(len(reach) + 1)
+    stiffness[1:-1] = rigidity / (0.5 * (reach[:-1] + reach[1:]))
+    for end, place in ((0, 0), (1, -1)):
+        stiffness[place] = rigidity / (0.5 * reach[place]) if bar.anchored[end] else 0.0
+    crosses = np.zeros(len(stiffness), bool)
+    crosses[1:-1] = nodes.blocks[:-1] != nodes.blocks[1:]
+    return stiffness, crosses
+
+
+BAR = Link(
+    key="reinforcement",
+    word="bar",
+    parameters=Reinforcement,
+    made=bars,
+    forces={moves: make_bar_forces(moves) for moves in (False, True)},
+)
