@@ -15,6 +15,7 @@ from dem_cli.assembly.drawn_links import drawn_links, names_of
 from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
+from dem_cli.assembly.imposed_strains import with_imposed_strains
 from dem_cli.assembly.point_forces import AppliedLoad
 from dem_cli.assembly.restraints import restrained
 from dem_cli.assembly.selection import BlockNames, Selections
@@ -245,7 +246,8 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
     model = model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
     if not model.n_modes:
         return model
-    return model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
+    model = model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
+    return with_imposed_strains(case, model) if case.strain else model
 
 
 def _direction(case: Case) -> np.ndarray:
