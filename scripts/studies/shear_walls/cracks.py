@@ -9,7 +9,7 @@ from dem_cli.post import style
 from studies.shear_walls.walls import KN, MM, draw_curve, draw_tests, legend_below, load_at, peak, wall
 from studies.template import minus, table
 
-FORCES = (200, 250)  # vertical loads [kN]
+FORCES = (100, 200, 250)  # vertical loads [kN]
 STRENGTHS = (0.5, 1.0, 2.0)  # tension of the stones [MPa]
 COHESION = 1.5  # over tension
 STIFFNESS = 6e10  # of the bond, kn and ks [Pa/m]: some eight times that of the joints
@@ -56,7 +56,7 @@ def values(found: list[dict[str, Any]]) -> dict[str, Any]:
 def draw_cracks(found: list[dict[str, Any]], path: Path) -> None:
     """Each wall at every strength, over its tests."""
     colours = (style.COLLAPSE, style.SYSTEM, style.LIMIT)
-    with style.figure(path, figsize=(10.0, 4.2)) as figure:
+    with style.figure(path, figsize=(11.0, 4.2)) as figure:
         for axis, one in zip(figure.subplots(1, len(found)).ravel(), found, strict=True):
             draw_tests(axis, one["whole"])
             for colour, run in zip(colours, one["cracking"], strict=True):
