@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.assembly import selection_checks
 from dem_cli.assembly.applied_loads import applied_loads
+from dem_cli.assembly.cracks import cracked
 from dem_cli.assembly.drawn_blocks import drawn_block
 from dem_cli.assembly.drawn_links import drawn_links, names_of
 from dem_cli.assembly.elevations import imperfect_in_space
@@ -85,7 +86,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
     local: dict[str, list[Block]] = {}
     for i, parameters in enumerate(case.structure):
         try:
-            generated = generated_blocks(parameters, case.seed)
+            generated = cracked(generated_blocks(parameters, case.seed), parameters.cracks)
             _check_corners(generated)
         except ValueError as error:
             keys = error.keys if isinstance(error, KeyProblem) else ()
