@@ -1,7 +1,8 @@
 """Tracing of a capacity curve: in ramps, once more in longer ones, and in implicit increments where these two differ.
 
-Ramps are quick. Where joints slip as blocks are moved, a curve may hang on how long they are; then every increment is
-solved as a contact problem of its own (statics/implicit_control.py), from gravity on, and the run says what changed.
+Ramps are quick, but where joints are so stiff that they would be long. Where joints slip as blocks are moved, a curve
+may hang on how long they are; then every increment is solved as a contact problem of its own
+(statics/implicit_control.py), from gravity on, and the run says what changed.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dem_cli.analyses import curve_answers
 from dem_cli.engine import measures
 from dem_cli.errors import SolverError
 from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
-from dem_cli.statics.implicit_control import ImplicitControl, why_not
+from dem_cli.statics.implicit_control import ImplicitControl, StiffControl, why_not
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.track import Track
     from dem_cli.output.record import Frame, HistoryRow
 
-RAMPS, IMPLICIT = "ramps", "implicit"  # how increments were made
+RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"
 FOLLOWING, AGAIN, BY_INCREMENTS = (
     "following the capacity curve",
@@ -50,6 +51,7 @@ class CurveTracing:
         self.of, self.at_rest = followed(job, track), track.sim.save()
         self.longest = job.case.analysis.follow / job.case.analysis.increments
         self.curve, self.increments, self.hangs = CapacityCurve(), RAMPS, False
+        self.kind = StiffControl if why_not(self.sim) is None else DisplacementControl
         self.coarse: float | None = None  # peak in longer ramps, internal multiplier
         self.in_ramps: float | None = None  # peak in ramps, where the curve is not theirs
 
@@ -62,7 +64,9 @@ class CurveTracing:
         """
         until, drawn = self.job.case.analysis.follow, self._drawing(FOLLOWING)
         try:
-            self._trace(DisplacementControl, self.curve, until, drawn)
+            control = self._trace(self.kind, self.curve, until, drawn)
+            if isinstance(control, StiffControl) and control.starts:
+                self.increments = MIXED
             self.end = self.sim.save()
             self.coarse = self._coarser()
             drawn = self._checked(until, drawn)
@@ -94,7 +98,7 @@ class CurveTracing:
         """Internal multiplier of the peak in longer ramps, to where the curve came to its own."""
         settings, resolution = self.job.settings.displacement_control, self.job.case.analysis.resolution
         near, coarse = self.curve.first_within(settings.near * resolution).way, CapacityCurve()
-        self._trace(DisplacementControl, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
+        self._trace(self.kind, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
         return coarse.highest.load
 
     def _checked(self, until: float, drawn: _Drawing) -> _Drawing:
@@ -111,7 +115,7 @@ class CurveTracing:
             longer = settings.implicit_longer
             control = self._trace(ImplicitControl, other, until, shown, longer)
             assert isinstance(control, ImplicitControl)
-            if control.ramps <= settings.mostly * control.increments:
+            if control.mostly(other.highest.way):
                 self.in_ramps, self.curve, self.increments, self.end = load, other, IMPLICIT, self.sim.save()
                 self.job.warnings.append(
                     f"{differ}; the curve is that of implicit increments, whose peak is "

@@ -124,7 +124,6 @@ class DisplacementControlSettings:
     first: float = 0.05  # increment, in elastic displacements at an internal multiplier of one
     growth: float = 1.2  # of the next ones
     ramp: int = 200  # steps of the first increment; its rate grows and falls smoothly
-    longest_ramp: int = 2000  # steps
     stairs: int = 10  # rates in a ramp
     tolerance: float = 1e-4  # unbalanced force in own weights at which an increment is at rest
     look: int = 25  # steps from one look at the forces to the next
@@ -137,6 +136,10 @@ class DisplacementControlSettings:
     near_target: float = 0.02  # of a step: how near it comes
     implicit_effort: float = 2e7  # factorisations × points of a curve in implicit increments: about a minute
     implicit_longer: float = 2.0  # increments there
+    implicit_rounds: int = 4  # one of them and, where it ends further out of balance than so many own weights, ...
+    implicit_near: float = 1e-2  # ... others without a displacement
+    # Steps of a ramp, by dimension, from which on an increment is implicit: in space solutions are dear and rarer.
+    long_ramp: tuple[float, ...] = (0.0, 0.0, 2e3, 2e4)
     implicit_starts: tuple[float, ...] = (1.0, 1e2)  # first products of the interior point, tried in turn
     mostly: float = 0.1  # of the increments, that may need ramps
     coarser: float = 2.0  # increments of the curve that the peak is compared with

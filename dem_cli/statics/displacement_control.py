@@ -129,11 +129,13 @@ class DisplacementControl:
         sim.restore(before)
         return all(self._go(distance / settings.shares, tries - 1) for _ in range(settings.shares))
 
+    def _steps(self, distance: float) -> float:
+        """Length of a ramp: joints must not slip because of what a block moves in a step."""
+        return self.settings.ramp * math.sqrt(max(abs(distance) / self.first, 1.0))
+
     def _ramp(self, distance: float) -> None:
-        sim, settings = self.sim, self.settings
-        stairs = settings.stairs
-        steps = settings.ramp * math.sqrt(max(abs(distance) / self.first, 1.0))
-        length = max(1, math.ceil(min(steps, settings.longest_ramp) / stairs))
+        sim, stairs = self.sim, self.settings.stairs
+        length = max(1, math.ceil(self._steps(distance) / stairs))
         sim.restart_relaxation()
         for stair in range(stairs):
             share = (stair + 0.5) / stairs

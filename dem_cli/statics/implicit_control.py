@@ -50,8 +50,11 @@ def why_not(sim: Simulation) -> str | None:
 class ImplicitControl(DisplacementControl):
     """Displacement control in implicit increments; one that has no solution is moved in a ramp, as DisplacementControl.
 
-    increments, ramps: how many there were, and how many of them had none; effort: factorisations × points so far.
+    starts: DisplacementControl.way at which each increment began; ramped: of those without a solution; effort:
+    factorisations × points so far. least: ramps of less steps than that are moved as ramps.
     """
+
+    least = 0.0
 
     def __init__(
         self,
@@ -62,19 +65,44 @@ class ImplicitControl(DisplacementControl):
         of: Followed | None = None,
     ) -> None:
         super().__init__(sim, budget, compliance, watch, of)
-        self.increments = self.ramps = 0
+        self.starts: list[float] = []
+        self.ramped: list[float] = []
         self.effort = 0.0
 
+    def mostly(self, until: float) -> bool:
+        """Whether most of the increments up to DisplacementControl.way had a solution."""
+        starts, ramped = (sum(way < until for way in ways) for ways in (self.starts, self.ramped))
+        return ramped <= self.settings.mostly * starts
+
     def _ramp(self, distance: float) -> None:
-        self.increments += 1
-        posed = self._posed()
-        found = self._solution(posed, distance) if self.effort < self.settings.implicit_effort else None
-        self.watch()
-        if found is None:
-            self.ramps += 1
+        if self._steps(distance) < self.least:
             super()._ramp(distance)
-        else:
+            return
+        way = self.way
+        self.starts.append(way)
+        if not self._gone(distance):
+            self.ramped.append(way)
+            super()._ramp(distance)
+        self.watch()
+
+    def _gone(self, distance: float) -> bool:
+        """Whether an increment had a solution, where the structure is now; small ones without a displacement follow it,
+        as forces turn with the blocks.
+        """
+        settings = self.settings
+        if self.effort > settings.implicit_effort:
+            return False
+        for following in range(settings.implicit_rounds):
+            posed = self._posed()
+            problem, before = posed.problem, posed.before
+            off = np.abs(problem.imbalance(before.normal, before.shear, before.load)) / problem.own
+            if following and off.max(initial=0.0) < settings.implicit_near:
+                break
+            found = self._solution(posed, 0.0 if following else distance)
+            if found is None:
+                return following > 0
             self._move(posed, found)
+        return True
 
     def _posed(self) -> PosedIncrement:
         from dem_cli.limit.cone import friction_of
@@ -118,3 +146,18 @@ class ImplicitControl(DisplacementControl):
         shear[kept] = found.shear.reshape(-1, int(kept.sum())).T * problem.weight
         motion = on_blocks(problem.displacements(found.displacements))
         self.sim.move_to(motion, shear, found.load * problem.live_scale / self.sim.live_scale, friction)
+
+
+class StiffControl(ImplicitControl):
+    """Displacement control in ramps, but for those that are long, as joints are stiff: implicit increments instead."""
+
+    def __init__(
+        self,
+        sim: Simulation,
+        budget: Budget,
+        compliance: float,
+        watch: Callable[[], None] = lambda: None,
+        of: Followed | None = None,
+    ) -> None:
+        super().__init__(sim, budget, compliance, watch, of)
+        self.least = self.settings.long_ramp[sim.model.dimension]

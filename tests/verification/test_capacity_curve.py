@@ -208,7 +208,7 @@ def test_implicit_increments(dimension):
         curves.append(curve)
         assert curve.whole
     assert isinstance(control, ImplicitControl)
-    assert control.ramps == 0
+    assert not control.ramped
     places = [5e-4, 1e-3, 2e-3, 3e-3, 4e-3]
     one, two = (np.interp(places, *curve.arrays()) for curve in curves)
     assert two == pytest.approx(one, rel=1e-3)
@@ -241,7 +241,7 @@ def test_an_implicit_increment_knows_the_sliding_load():
     control, curve = ImplicitControl(sim, job.budget, compliance(sim)[0]), CapacityCurve()
     trace(control, curve, far, 1e-4)
     u, loads = curve.arrays()
-    assert control.ramps == 0
+    assert not control.ramped
     assert loads.max() * sim.live_scale == pytest.approx(0.6, rel=2e-4)
     elastic = 0.6 * weight / (kn / (1.0 + 3 * 0.1**2 / 0.5**2))
     assert measures.energy(sim).friction == pytest.approx(0.6 * weight * (u[-1] - elastic), rel=1e-2)
