@@ -137,6 +137,6 @@ def test_crack_by_crack_finds_the_strength_of_a_bed_joint():
 
 def test_soft_beds_of_a_toothed_crack_turn_about_the_pressed_edge():
     """Heads are gone when the far corner of the bed fails, at c a √(a² + 4 t²)/(h t); its other points add little."""
-    crack = toothed_crack.Toothed(0.2, 0.2, 0.15, TENSION, COHESION, 1e11, 1e8)
+    crack = toothed_crack.Toothed(0.2, 0.2, 0.15, TENSION, COHESION, 1e11, 1e9)
     found = toothed_crack.strength(crack, brittle_plate.lobatto(9))
     assert found == pytest.approx(toothed_crack.beds_alone(crack), rel=0.03)
