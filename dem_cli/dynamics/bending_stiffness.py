@@ -15,7 +15,6 @@ from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rigid_but, turn_sideways
 from dem_cli.engine.properties import joint_properties
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.laws.stiffness import BENDING_POINTS
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 
@@ -43,8 +42,8 @@ def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> li
         turns.append(turn_sideways(model, rigid_but(joints, own), settings))
     if turns[1] - turns[0] <= settings.rocking.doubtful:
         return []
-    name, where = ends.names[int(soft.argmax())], "its two ends" if model.dimension == 2 else "the corners of its area"
-    points = BENDING_POINTS[model.dimension]
+    first, where = int(soft.argmax()), "its two ends" if model.dimension == 2 else "the corners of its area"
+    name, points = ends.names[first], bending.plane[first].points
     return [
         f"joint '{name}' has its points at {where}, on which blocks land as rigid ones do, and bends too little: "
         f"blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with points = {points} by {turns[1]:.2g}; "

@@ -93,7 +93,6 @@ ALLOWED: dict[str, set[str] | None] = {
         "contact",
         "engine",
         "kernels.records",
-        "laws.stiffness",
         "model",
         "motion",
         "output.record",
