@@ -54,7 +54,7 @@ class ImplicitControl(DisplacementControl):
     factorisations × points so far. least: ramps of less steps than that are moved as ramps.
     """
 
-    least = 0
+    least = 0.0
 
     def __init__(
         self,
