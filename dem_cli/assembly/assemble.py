@@ -9,11 +9,13 @@ import numpy as np
 
 from dem_cli.assembly import selection_checks
 from dem_cli.assembly.applied_loads import applied_loads
+from dem_cli.assembly.cracks import cracked
 from dem_cli.assembly.drawn_blocks import drawn_block
 from dem_cli.assembly.drawn_links import drawn_links, names_of
 from dem_cli.assembly.elevations import imperfect_in_space
 from dem_cli.assembly.ground import ground_blocks
 from dem_cli.assembly.imperfect import imperfect
+from dem_cli.assembly.imposed_strains import with_imposed_strains
 from dem_cli.assembly.point_forces import AppliedLoad
 from dem_cli.assembly.restraints import restrained
 from dem_cli.assembly.selection import BlockNames, Selections
@@ -84,7 +86,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
     local: dict[str, list[Block]] = {}
     for i, parameters in enumerate(case.structure):
         try:
-            generated = generated_blocks(parameters, case.seed)
+            generated = cracked(generated_blocks(parameters, case.seed), parameters.cracks)
             _check_corners(generated)
         except ValueError as error:
             keys = error.keys if isinstance(error, KeyProblem) else ()
@@ -244,7 +246,8 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
     model = model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
     if not model.n_modes:
         return model
-    return model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
+    model = model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
+    return with_imposed_strains(case, model) if case.strain else model
 
 
 def _direction(case: Case) -> np.ndarray:

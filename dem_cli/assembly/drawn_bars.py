@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 from dem_cli.geometry.parts import shapes_of
-from dem_cli.links.bar import FINE, DrawnBar, Piece
+from dem_cli.links.bar import FINE, BarPiece, DrawnBar
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 TOUCHES = 1e-9  # of the largest part: what a line has in a part is round-off
 
 
-class Stretch(NamedTuple):
+class BarStretch(NamedTuple):
     """What of a line lies in a block, from and to, along it [m]."""
 
     block: int
@@ -35,7 +35,7 @@ def drawn_bar(
     """The pieces of a bar in the blocks as they were drawn; None: something is wrong, which `problems` gets."""
     profile = case.bars[table.bar]
     element = FINE / profile.decay if table.element is None else table.element
-    corners, found = np.array(table.path, float), list[tuple[Stretch, np.ndarray, np.ndarray]]()
+    corners, found = np.array(table.path, float), list[tuple[BarStretch, np.ndarray, np.ndarray]]()
     upto = 0.0
     for i, (start, stop) in enumerate(zip(corners[:-1], corners[1:])):
         length = float(np.sqrt(((stop - start) ** 2).sum()))
@@ -54,11 +54,11 @@ def drawn_bar(
     pieces = []
     for stretch, start, along in found:
         ends = np.array([start + stretch.begin * along, start + stretch.end * along])
-        pieces.append(Piece(stretch.block, ends - model.centroids[stretch.block]))
+        pieces.append(BarPiece(stretch.block, ends - model.centroids[stretch.block]))
     return DrawnBar(profile, element, ("start" in table.anchored, "end" in table.anchored), tuple(pieces))
 
 
-def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float) -> list[Stretch]:
+def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float) -> list[BarStretch]:
     """What of a line lies in each block, in the order in which it meets them."""
     vertices, topology = undeformed(model), model.topology
     normals = shapes_of(vertices).normals(vertices, topology)
@@ -75,8 +75,8 @@ def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float
     begins = np.maximum(np.maximum.reduceat(enters, starts), 0.0)
     ends = np.minimum(np.minimum.reduceat(leaves, starts), length)
     inside = np.flatnonzero(ends - begins > TOUCHES * size)
-    found = sorted(Stretch(int(model.part_blocks[k]), float(begins[k]), float(ends[k])) for k in inside)
-    merged = list[Stretch]()
+    found = sorted(BarStretch(int(model.part_blocks[k]), float(begins[k]), float(ends[k])) for k in inside)
+    merged = list[BarStretch]()
     for one in found:  # parts of one block, one behind another or one over another
         if merged and merged[-1].block == one.block and one.begin <= merged[-1].end + TOUCHES * size:
             merged[-1] = merged[-1]._replace(end=max(merged[-1].end, one.end))
@@ -85,7 +85,7 @@ def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float
     return sorted(merged, key=lambda stretch: stretch.begin)
 
 
-def _beside(model: Model, stretches: list[Stretch]) -> str | None:
+def _beside(model: Model, stretches: list[BarStretch]) -> str | None:
     """What is wrong where a line lies in two blocks at once, which is in their joint."""
     for one, other in zip(stretches, stretches[1:]):
         if one.end - other.begin > TOUCHES * model.parts.sizes.max():
@@ -95,7 +95,7 @@ def _beside(model: Model, stretches: list[Stretch]) -> str | None:
 
 
 def _outside(
-    stretches: list[Stretch], start: np.ndarray, along: np.ndarray, length: float, element: float
+    stretches: list[BarStretch], start: np.ndarray, along: np.ndarray, length: float, element: float
 ) -> str | None:
     """What is wrong where a line leaves the blocks; joints that are open by no more than an element it crosses."""
     edges = [0.0, *(edge for stretch in stretches for edge in stretch[1:]), length]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from dem_cli.assembly import imposed_strains
 from dem_cli.case.wording import listing, show
 from dem_cli.errors import CaseProblem, KeyPath
 from dem_cli.model.model import Model
@@ -24,6 +25,7 @@ def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
         yield from _of_kind(
             model, _key(("settlement", i), settlement), (settlement.selected, settlement.said), True, NOT_FIXED
         )
+    yield from imposed_strains.problems(case, model)
     for i, restraint in enumerate(case.restraint):
         named = restraint.selected, restraint.said
         yield from _of_kind(model, _key(("restraint", i), restraint), named, False, NOT_HELD)

@@ -13,7 +13,7 @@ from dem_cli.errors import CaseProblem, KeyPath, dotted
 
 ONE_OR_MORE = ("motion", "reference")  # one table, or several in a list
 SELECTING = (  # that select blocks
-    "imperfection", "load", "pressure", "fill", "restraint", "settlement", "initial", "monitor"
+    "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")

@@ -87,6 +87,16 @@ class Interface(CaseModel):
     joint: str = Field(description="a name in [joints]", examples=["seat"])
 
 
+class ImposedStrain(Selection):
+    """[[strain]]: a strain that blocks would have if nothing held them: warming, swelling, drying; several add up."""
+
+    value: Annotated[float, Field(ge=-0.05, le=0.05)] = Field(
+        description="strain in all directions, positive: longer; of warming: coefficient of expansion × degrees, of "
+        "drying: minus the shrinkage [-]",
+        examples=[-2e-4],
+    )
+
+
 class Settlement(Selection):
     """[[settlement]]: supports that are moved; those of a structure, a pattern or a group as one rigid body."""
 
@@ -246,6 +256,9 @@ class Case(CaseModel):
     load: tuple[Load, ...] = Field(default=(), description="forces on blocks")
     pressure: tuple[Pressure, ...] = Field(default=(), description="pressure on faces: uniform, of water, of earth")
     fill: tuple[Fill, ...] = Field(default=(), description="earth that lies on blocks")
+    strain: tuple[ImposedStrain, ...] = Field(
+        default=(), description="strains that blocks would have if nothing held them, of warming or drying"
+    )
     restraint: tuple[Restraint, ...] = Field(default=(), description="motions of blocks that are held from outside")
     settlement: tuple[Settlement, ...] = Field(default=(), description="supports that are moved")
     damping: Any = Field(default=None, description="what joints and blocks lose in a time history, beside friction")

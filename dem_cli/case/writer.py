@@ -19,8 +19,8 @@ HEADER = "# The case as it was solved: defaults filled in, overrides applied.\n\
 NUMBER_LISTS = re.compile(r"\[\n((?: +[-+0-9.e]+,\n)+) *\]")  # no string of TOML holds such lines
 LEADING_KEYS = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
-    "materials", "joints", "structure", "block", "interface", "imperfection", "load", "settlement", "motion", "monitor",
-    "reference", "groups", "pressure", "fill",
+    "materials", "joints", "structure", "block", "interface", "imperfection", "load", "strain", "settlement", "motion",
+    "monitor", "reference", "groups", "pressure", "fill",
 )  # fmt: skip
 
 

@@ -237,6 +237,9 @@ def block_stresses(sim: Simulation) -> np.ndarray | None:
     if not model.n_modes:
         return None
     volumes = model.shapes.volumes * model.thickness
-    found = uniform_strain.stresses(sim.bodies.modes, shape.mode_stiffness, volumes, shape.radii)
-    rows, columns = ([0, 1, 0], [0, 1, 1]) if model.dimension == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
-    return found[:, rows, columns]
+    modes = sim.bodies.modes
+    if len(model.imposed_strains):
+        modes = modes.copy()
+        modes[:, 0] -= sim.dead_share * model.imposed_strains * shape.radii
+    found = uniform_strain.stresses(modes, shape.mode_stiffness, volumes, shape.radii)
+    return uniform_strain.components(found)

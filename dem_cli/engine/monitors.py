@@ -14,7 +14,7 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
 from dem_cli.kernels.records import NO_LINKS
-from dem_cli.links.link import N_STATE, Reading
+from dem_cli.links.link import N_STATE, LinkReading
 from dem_cli.links.matrices import reading_of
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
@@ -133,7 +133,7 @@ class Monitors:
         self._joints: StartJoints | None = None
         self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
         self._at_points: list[PointMonitor] = []
-        self._of_links: list[tuple[int, Reading]] = []  # monitor, and what it reads
+        self._of_links: list[tuple[int, LinkReading]] = []  # monitor, and what it reads
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
             if (link := table.tie or table.bar) is not None:

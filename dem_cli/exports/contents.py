@@ -16,7 +16,14 @@ if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
 
-NOT_CARRIED = ("settlement", "motion", "imperfection", "tie", "restraint")  # tables that no other program gets
+NOT_CARRIED = (
+    "settlement",
+    "motion",
+    "imperfection",
+    "strain",
+    "tie",
+    "restraint",
+)  # tables that no other program gets
 
 
 class ExportedBlock(NamedTuple):

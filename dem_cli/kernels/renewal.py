@@ -16,7 +16,7 @@ from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edg
 from dem_cli.kernels.vec import axpy, dot
 
 # Columns of SpatialMotion.numbers beyond area, share and arm: what a new point has from the nearest one before.
-SLACK, SLID_1, SLID_2 = 5, 6, 7  # gap at which its spring is slack, and elastic slip that its shear stands for [m]
+PRESSED, SLID_1, SLID_2 = 5, 6, 7  # overlap and elastic slip that its forces stand for [m]
 PATH, CLOSURE = 8, 9  # slip path, closure taken back [m]
 CLOSED = 10  # how far it has closed since forces were found [m]
 LEFT = 11  # memory of the law, from here on ...
@@ -138,15 +138,12 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
     Forces are those of the last step, so that the gap by which it has closed since then belongs to this one.
     """
     numbers, heir = geometry.numbers, geometry.heirs[k]
-    for m in range(SLACK, LEFT + remembers):
+    for m in range(PRESSED, LEFT + remembers):
         numbers[k, m] = 0.0
     if heir == NONE:
-        numbers[k, SLACK] = -math.inf
         return
     numbers[k, CLOSED] = contacts.gaps[heir] - _gap_of(joints, geometry, bodies, joint, heir, frame)
-    numbers[k, SLACK] = -math.inf
-    if contacts.normal[heir] != 0.0:
-        numbers[k, SLACK] = contacts.gaps[heir] + contacts.normal[heir] / joints.kn[heir]
+    numbers[k, PRESSED] = contacts.normal[heir] / joints.kn[heir]
     numbers[k, SLID_1] = contacts.shear[heir, 0] / joints.ks[heir]
     numbers[k, SLID_2] = contacts.shear[heir, 1] / joints.ks[heir]
     numbers[k, PATH], numbers[k, CLOSURE] = contacts.slip[heir], contacts.closure[heir]
@@ -177,9 +174,7 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
     contacts.slip[point], contacts.closure[point] = numbers[k, PATH], numbers[k, CLOSURE]
     for m in range(remembers):
         contacts.memory[point, m] = numbers[k, LEFT + m]
-    deep = max(numbers[k, CLOSURE] - gap, 0.0)
-    if bonded:  # a joint that carries tension or dilates: by its own gap as well, and none where the nearest has none
-        deep = numbers[k, SLACK] - gap if numbers[k, SLACK] > -math.inf else 0.0
+    deep = numbers[k, PRESSED] if bonded else max(numbers[k, CLOSURE] - gap, 0.0)
     contacts.normal[point] = joints.kn[point] * deep
     if deep != 0.0:
         contacts.shear[point, 0] = joints.ks[point] * numbers[k, SLID_1]

@@ -19,7 +19,7 @@ from pydantic import Field
 from dem_cli.case.base import CaseModel, KeyProblem, Name, Positive, Vector
 from dem_cli.links.bar_forces import make_bar_forces
 from dem_cli.links.chain import Chain
-from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, LinkReading, Outline, Springs
 from dem_cli.links.spans import Spans, spans
 
 FINE = 0.2  # μ l of elements by default
@@ -87,7 +87,7 @@ class Reinforcement(CaseModel):
                 raise KeyProblem("this corner is the one before it", "path", i + 1)
 
 
-class Piece(NamedTuple):
+class BarPiece(NamedTuple):
     """A straight part of a bar in one block."""
 
     block: int
@@ -100,7 +100,7 @@ class DrawnBar(NamedTuple):
     profile: BarProfile
     element: float  # greatest length of an element [m]
     anchored: tuple[bool, bool]
-    pieces: tuple[Piece, ...]
+    pieces: tuple[BarPiece, ...]
 
 
 class Bars(NamedTuple):
@@ -286,7 +286,7 @@ class Bars(NamedTuple):
         last = self.first[number + 1] - 1
         return float(self.node_places[last] + 0.5 * self.reach[last])
 
-    def reading(self, number: int, quantity: str, at: float) -> Reading:
+    def reading(self, number: int, quantity: str, at: float) -> LinkReading:
         """Slip, straight between the nodes of a block, or force, straight between the middles of elements."""
         begin, end, n = self.rows(number)
         places, reach = self.node_places[begin:end], self.reach[begin:end]
@@ -303,10 +303,10 @@ class Bars(NamedTuple):
             rows = n + begin + number + np.arange(end - begin + 1)
         right = int(np.clip(np.searchsorted(points, at), 1, max(len(points) - 1, 1)))
         if len(points) == 1:
-            return Reading((int(rows[0]),), STRETCH, (1.0,))
+            return LinkReading((int(rows[0]),), STRETCH, (1.0,))
         share = float(np.clip((at - points[right - 1]) / (points[right] - points[right - 1]), 0.0, 1.0))
         column = STRETCH if quantity == "slip" else FORCE
-        return Reading((int(rows[right - 1]), int(rows[right])), column, (1.0 - share, share))
+        return LinkReading((int(rows[right - 1]), int(rows[right])), column, (1.0 - share, share))
 
     def answer(self, number: int) -> dict[str, Any]:
         """Largest force and slip of one with their places along it, and whether it yielded or slid somewhere."""

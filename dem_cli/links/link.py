@@ -38,7 +38,7 @@ class Springs(NamedTuple):
     stiffness: np.ndarray  # [N/m], (n,)
 
 
-class Reading(NamedTuple):
+class LinkReading(NamedTuple):
     """What a monitor of a link reads: a weighted sum of one column of rows of its state."""
 
     rows: tuple[int, ...]
@@ -99,7 +99,7 @@ class LinkArrays(Protocol):
     def length(self, number: int) -> float:
         """Of one as it was drawn [m]."""
 
-    def reading(self, number: int, quantity: str, at: float) -> Reading:
+    def reading(self, number: int, quantity: str, at: float) -> LinkReading:
         """What a monitor of one reads, in its rows of `state`; at: how far along it [m]."""
 
     def answer(self, number: int) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.links.link import FIXED_POINT, LinkArrays, Reading, Springs
+from dem_cli.links.link import FIXED_POINT, LinkArrays, LinkReading, Springs
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -90,7 +90,7 @@ def softest(links: Iterable[LinkArrays]) -> float:
     return min((link.softest() for link in links), default=np.inf)
 
 
-def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> Reading:
+def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> LinkReading:
     """What a monitor reads of the link of this number among all, in the rows of all states one behind another."""
     rows = 0
     for link in links:

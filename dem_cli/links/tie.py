@@ -21,7 +21,7 @@ from dem_cli.kernels.contact_point import push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale
-from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, Outline, Reading, Springs
+from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, LinkReading, Outline, Springs
 from dem_cli.links.material_points import turned_arm
 from dem_cli.links.spans import Spans, spans
 
@@ -193,9 +193,9 @@ class Ties(NamedTuple):
         """Of one as it was drawn [m]."""
         return float(self.lengths[number])
 
-    def reading(self, number: int, quantity: str, at: float) -> Reading:
+    def reading(self, number: int, quantity: str, at: float) -> LinkReading:
         """Force or elongation of one; `at` is no matter."""
-        return Reading((number,), FORCE if quantity == "force" else STRETCH, (1.0,))
+        return LinkReading((number,), FORCE if quantity == "force" else STRETCH, (1.0,))
 
     def answer(self, number: int) -> dict[str, Any]:
         """Force, elongation and whether it yielded, of one."""

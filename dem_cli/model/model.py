@@ -29,7 +29,7 @@ NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
 NO_RESTRAINTS = np.zeros((0, 0), bool)
 NO_PIECES = np.zeros((0, 2), np.int64)
-NO_SHAPES = np.zeros((0, 6, 2, 6))
+NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)
 
 
 class ModelArrays(NamedTuple):
@@ -62,6 +62,8 @@ class ModelArrays(NamedTuple):
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
     live_mode_loads: np.ndarray = NO_MODES  # the same of live loads [N], (n_blocks, m)
+    imposed_strains: np.ndarray = NO_STRAINS  # in all directions, if nothing holds the block; part of the dead loads of
+    # modes as well, (n_blocks,)
     mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), (n_blocks, 6, 2, 6)
     # Of structures with restraints alone, else empty:
     restrained: np.ndarray = NO_RESTRAINTS  # motions of blocks that are held, (n_blocks, d + r) bool
@@ -71,7 +73,9 @@ class ModelArrays(NamedTuple):
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
-OF_MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes")  # empty where blocks are rigid
+OF_MODES = (  # empty where blocks are rigid
+    "mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes", "imposed_strains"
+)  # fmt: skip
 WHERE_ASKED_FOR = (*OF_MODES, "restrained", "pieces")  # rows of blocks; empty where the case has nothing of it
 
 
@@ -230,6 +234,7 @@ class Model(ModelArrays):
             restrained=NO_RESTRAINTS,
             pieces=NO_PIECES,
             mode_shapes=NO_SHAPES,
+            imposed_strains=NO_STRAINS,
         )
 
 

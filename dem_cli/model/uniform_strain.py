@@ -60,6 +60,12 @@ def stresses(modes: np.ndarray, stiffness: np.ndarray, volumes: np.ndarray, radi
     return np.einsum("nm,mij->nij", parts, basis)
 
 
+def components(stresses: np.ndarray) -> np.ndarray:
+    """xx, yy, xy, in space xx, yy, zz, yz, zx, xy of symmetric tensors (n, d, d), (n, 3 or 6)."""
+    rows, columns = ([0, 1, 0], [0, 1, 1]) if stresses.shape[1] == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
+    return stresses[:, rows, columns]
+
+
 def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Deformation gradients R (I + ε), row by row, (n_blocks, d·d); turns: as kernels.records.Bodies."""
     d = _basis_of(modes).shape[1]

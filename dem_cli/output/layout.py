@@ -129,6 +129,7 @@ MODEL = {
     ),
     "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
+    "imposed_strains": Described("strain in all directions that a block would have if nothing held it", PURE, _BLOCK),
     "mode_shapes": Described(
         "displacement by each quadratic mode, as coefficients of 1, x, y, x², x y, y² from the centroid; 2D, where "
         "blocks bend alone",
@@ -358,6 +359,7 @@ GROUPS = {  # of results.h5
     ),
 }
 
+_MEAN_STRESS = "mean stress of the block by the forces at its contact points alone, tension positive, 0 if it is fixed"
 # Fields for ParaView, float32 or whole numbers.
 BLOCK_FIELDS = {
     "PointData/displacement": Described("displacement of a corner since the start", "m"),
@@ -374,6 +376,10 @@ BLOCK_FIELDS = {
     "CellData/angular_velocity": Described(
         "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
     ),
+    "CellData/mean_stress": Described(
+        f"{_MEAN_STRESS}: xx, yy, xy", "Pa", in_space=Described(f"{_MEAN_STRESS}: xx, yy, zz, yz, zx, xy", "Pa")
+    ),
+    "CellData/principal_stress": Described("principal values of mean_stress, largest tension first", "Pa"),
     "CellData/stress": Described(
         FRAMES["stresses"].meaning + ": xx, yy, xy", "Pa",
         in_space=Described(FRAMES["stresses"].meaning + ": xx, yy, zz, yz, zx, xy", "Pa"),

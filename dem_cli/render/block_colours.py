@@ -82,15 +82,12 @@ def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str 
 
 
 def legend_of_links(frames: Sequence[Frame]) -> list[Any]:
-    """Handles for matplotlib: ties and bars, where there are any, with the largest force of a single frame."""
+    """Handles for matplotlib: ties and bars, if any; five in a row leave no room for how large forces are."""
     from matplotlib.lines import Line2D
 
-    held = [frame.links for frame in frames if frame.links is not None]
-    if not held:
+    if all(frame.links is None for frame in frames):
         return []
-    largest = max(float(np.abs(record.forces).max(initial=0.0)) for record in held)
-    size = f"thickest {newtons(largest)}" if len(frames) == 1 else "relative size"
-    return [Line2D([], [], color=style.STEEL, lw=3.5, label=f"tie or bar ({size})")]
+    return [Line2D([], [], color=style.STEEL, lw=3.5, label="tie or bar")]
 
 
 def newtons(force: float) -> str:

@@ -29,6 +29,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     external = float(sim.ledger[slot.EXTERNAL] - ledger[slot.EXTERNAL]) + lifted
     released = max(external, 0.0) + max(-lifted, 0.0)
     same = np.array_equal(held.geometry.keys, sim.geometry.keys)
+    same = same and np.array_equal(joints.starts, sim.joints.starts)  # parts that meet by other faces have other slots
     friction = float(sim.ledger[slot.FRICTION] - ledger[slot.FRICTION])
     slipped = sim.contacts.slip - contacts.slip if same else sim.contacts.slip
     if sim.law.bonded:  # the ledger holds what bonds lost as well

@@ -10,7 +10,6 @@ from dem_cli.model.blocks import Block
 from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall, wall_blocks
 from dem_cli.structures.building import build as building
 from dem_cli.structures.building.table import Building
-from dem_cli.structures.cracks import cracked
 from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
 from dem_cli.structures.vaults import shapes as vaults
 from dem_cli.structures.vaults.table import Vault
@@ -55,11 +54,8 @@ GENERATORS: dict[str, Generator] = {
 
 
 def generated_blocks(table: Any, seed: int) -> list[Block]:
-    """Blocks of a structure, in local places, in pieces where they can crack; seed: of the case.
-
-    Raises ValueError where it is impossible.
-    """
-    return cracked(GENERATORS[table.kind].build(table.drawn_from(seed)), table.cracks)
+    """Blocks of a structure, in local places; seed: of the case. Raises ValueError where it is impossible."""
+    return GENERATORS[table.kind].build(table.drawn_from(seed))
 
 
 def generated_figures(table: Any, seed: int) -> list[tuple[str, str]]:

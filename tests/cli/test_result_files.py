@@ -112,7 +112,7 @@ def test_every_attribute_of_groups_is_declared_and_there(folders):
 
 
 # Of blocks that deform alone: tests/unit/statics/test_uniform_strain.py
-MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes")
+MODES = ("mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes", "imposed_strains")
 OF_STRAINED = {"/dem/frames/stresses", "CellData/stress", *(f"/dem/model/{name}" for name in MODES)}
 
 

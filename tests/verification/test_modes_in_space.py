@@ -62,7 +62,7 @@ def house() -> list[dict]:
 
 def settled(stones: list[dict], kn: float = KN):
     """Under gravity on soft joints, with forces that belong to the places of the blocks."""
-    joints = {"dry": {"friction": 0.9, "kn": kn, "ks": KS / KN * kn}}
+    joints = {"dry": {"friction": 0.9, "kn": kn, "ks": KS / KN * kn, "points": 2}}
     sim = simulation({"dimension": 3, **tables(GROUND, *stones, joints=joints)}, "large")
     assert stand(sim, Budget(10**6)).state == "equilibrium"
     real_masses(sim)
@@ -190,7 +190,7 @@ def test_planar_twin(name):
     """Modes of rectangles are among those of their prisms: motions in the plane of x and z."""
     rectangles, error = TWINS[name]
     ground = block("ground", rectangle(-4, -1, 4, 0), fixed=True)
-    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS}}
+    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS, "points": 2}}
     flat = [block("ab"[i], corners) for i, corners in enumerate(rectangles)]
     planar = simulation(tables(ground, *flat, joints=joints), "large")
     assert stand(planar, Budget(10**6)).state == "equilibrium"
@@ -211,7 +211,7 @@ def test_points_without_a_gap_are_counted_once():
 
 
 def case(stones: list[dict], **analysis) -> dict:
-    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS}}
+    joints = {"dry": {"friction": 0.9, "kn": KN, "ks": KS, "points": 2}}
     more = {"joints": joints, "analysis": {"kind": "modes", **analysis}, "output": {"frames": 5}}
     return {"dimension": 3, **tables(GROUND, *stones, **more)}
 

@@ -113,7 +113,7 @@ def test_a_wall_turns_over_its_foot_with_geometry_that_moves():
     case["analysis"]["kinematics"] = "large"
     assert solved(case)[0]["failure_load"] == pytest.approx(0.25, rel=2e-3)
     case["structure"][0] |= {"blocks_per_course": 1, "bond": "stack"}
-    case["joints"]["dry"]["kn"] = 1e7
+    case["joints"]["dry"] |= {"kn": 1e7, "points": 2}
     stack = {"kind": "column", "block": [0.2, 0.2], "courses": 4, "thickness": 1.0, "base_extension": 0.2}
     flat = {key: case[key] for key in ("materials", "joints", "output")} | {"structure": [stack]}
     flat["analysis"] = {"kind": "pushover", "direction": [1.0, 0.0], "kinematics": "large"}
@@ -129,7 +129,7 @@ def test_a_load_path_moves_a_twin_as_the_wall_of_the_plane():
     """
     flat = read(CASES / "verification" / "wall_21.toml")
     flat.pop("reference")
-    flat["joints"]["dry"]["kn"] = 1e9
+    flat["joints"]["dry"] |= {"kn": 1e9, "points": 2}
     flat["analysis"] = {
         "kind": "cycle", "direction": [1.0, 0.0], "path": [0.4, -0.4, 0.0], "step": 0.1, "kinematics": "large",
     }  # fmt: skip
@@ -199,7 +199,7 @@ def test_a_barrel_spreads_as_an_arch_of_the_plane():
         for name in rings
     ]
     case = settled(solids, {"block": "right", "displacement": [0.03, 0.0, 0.0]}, friction=0.6)
-    case["joints"]["dry"]["kn"] = 1e9
+    case["joints"]["dry"] |= {"kn": 1e9, "points": 2}
     flat = {key: case[key] for key in ("materials", "joints", "analysis", "output")} | {"block": arch}
     flat["settlement"] = [{"block": "right", "displacement": [0.03, 0.0]}]
     flat["monitor"] = [{"block": "v7-0", "component": "y"}]

@@ -208,7 +208,7 @@ STANDS = {(1e9, 1.0): 0.2995, (1e9, 0.3): 0.2992, (1e9, 0.1): 0.2992, (5e7, 1.0)
 
 
 def given(kn: float, ratio: float, kinematics: str = "auto") -> dict:
-    joint = {"friction": 0.6, "kn": kn, "ks": ratio * kn}
+    joint = {"friction": 0.6, "kn": kn, "ks": ratio * kn, "points": 2}
     return tables(BASE, *COLUMN, joints={"dry": joint}, analysis={"kinematics": kinematics})
 
 
@@ -288,7 +288,7 @@ def test_a_toppled_block_at_rest_has_failed(softness):
     """On joints so soft that it falls over within a few steps and lies on its side for good."""
     # Its rest was once an equilibrium: 0.4997 and 0.9997 instead of 0.25.
     weight = 0.25 * WEIGHT
-    joint = {"friction": 1.0, "kn": softness * weight / (0.5 * 0.25)}
+    joint = {"friction": 1.0, "kn": softness * weight / (0.5 * 0.25), "points": 2}
     case = tables(BASE, block("b", rectangle(0, 0, 0.25, 1)), joints={"dry": joint}, analysis={"kinematics": "large"})
     summary, _ = solve(case, "analysis.max_steps=500000", "analysis.follow=0.0")
     assert summary["status"] == "ok"

@@ -6,6 +6,8 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
+from dem_cli.model.uniform_strain import components
+from dem_cli.output.block_stress import mean_stresses, principal_values
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
 
@@ -21,11 +23,13 @@ def block_fields(model: Model) -> dict[str, np.ndarray]:
 
 
 def turning_fields(model: Model, frame: Frame) -> dict[str, np.ndarray]:
-    """How blocks have turned, in space how fast they turn, and the stress of those that deform; per convex part."""
+    """How blocks have turned, in space how fast they turn, and their stress; per convex part."""
     parts, d = model.part_blocks, model.dimension
     found = {"rotation": angles_of(frame.orientations)}
     if frame.orientations.shape[1] == 4:
         found |= {"orientation": frame.orientations, "angular_velocity": frame.velocities[:, d:]}
+    mean = mean_stresses(model, frame)
+    found |= {"mean_stress": components(mean), "principal_stress": principal_values(mean)}
     if frame.stresses is not None:
         found["stress"] = frame.stresses
     return {name: values[parts].astype(np.float32) for name, values in found.items()}

@@ -42,8 +42,8 @@ def wall(force: int, *overrides: str) -> dict[str, Any]:
         "loads": [rounded(value) for value in curve["loads"]],
         "loads_at": [[one["displacement"], rounded(one["load"])] for one in curve["loads_at"]],
         "tests": [
-            {"displacements": test["displacements"], "loads": test["value"], "mean": rounded(test["mean_error"]),
-             "largest": rounded(test["largest_error"]), "found": [rounded(value) for value in test["found"]]}
+            {"displacements": test["displacements"], "loads": test["value"], "mean": rounded(test.get("mean_error")),
+             "largest": rounded(test.get("largest_error")), "found": [rounded(value) for value in test["found"] or ()]}
             for test in tests
         ],
         "moments": summary.get("joint_state", {}).get("restraints", {}), "seconds": seconds,

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from dem_cli.contact.area_rules import AT_CENTRE, ON_DIAGONALS, REACH
 from dem_cli.contact.layout import PointLayout, draw, lobatto, steepest
 from dem_cli.geometry.profile import angles
 from dem_cli.laws.coulomb import CoulombJoint
@@ -146,3 +147,38 @@ def test_how_steep_a_profile_may_be():
     assert steepest(PointLayout(points=5), 1.0) == 0.0
     drawn = steepest(layout(sides=3, aperture=[0.0, 0.01]), 1.0)
     assert 0.029 < drawn <= 0.03
+
+
+def strongest(places: np.ndarray, shares: np.ndarray, pressed: float) -> float:
+    """Largest moment of a brittle joint whose points crack one after the other, over that of a continuous one.
+
+    places: from −1 to 1; pressed: normal force over tensile strength times area.
+    """
+    alive, found = np.ones(len(places), bool), pressed
+    while alive.sum() > 1:
+        area = shares[alive].sum()
+        arms = places - (shares * places)[alive].sum() / area
+        last, middle = np.flatnonzero(alive)[-1], places[0] - arms[0]
+        inertia = (shares * arms**2)[alive].sum()
+        found = max(found, (1.0 + pressed / area) * inertia / arms[last] - pressed * middle)
+        alive[last] = False
+    left = np.linspace(1e-3, 2.0, 2000)  # uncracked length of a continuous one, of 2
+    exact = 0.5 * pressed * (2.0 - left) + left**2 / 12.0 + pressed * left / 6.0
+    return found / max(exact.max(), pressed)
+
+
+@pytest.mark.parametrize(
+    ("rule", "alone", "pressed"),
+    [(lobatto(2), 3.0, 3.0), (lobatto(5), 1.191, 1.264), (lobatto(9), 1.048, 1.075), (None, 1.0, 1.349)],
+    ids=["ends", "five", "nine", "corners, diagonals, centre"],
+)
+def test_how_long_brittle_joints_hold_on_after_their_first_crack(rule, alone, pressed):
+    """Nothing pressed, and pressed by half of the tensile strength; the last are the rows of nine points in space."""
+    if rule is None:
+        row = 4.0 / 30.0, 2.0 * ON_DIAGONALS, AT_CENTRE
+        places, shares = np.array([-1.0, -REACH, 0.0, REACH, 1.0]), np.array([*row, *row[1::-1]])
+    else:
+        places, shares = 2.0 * rule[0] - 1.0, rule[1]
+    assert shares.sum() == pytest.approx(1.0)
+    assert strongest(places, shares, 0.0) == pytest.approx(alone, abs=1e-3)
+    assert strongest(places, shares, 0.5) == pytest.approx(pressed, abs=1e-3)

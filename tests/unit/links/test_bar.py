@@ -10,7 +10,7 @@ import pytest
 
 from dem_cli.geometry.rotation import quaternions, turned_further, turns_of
 from dem_cli.kernels.jit import kernel
-from dem_cli.links.bar import BAR, FINE, BarProfile, DrawnBar, Piece, Reinforcement, bars
+from dem_cli.links.bar import BAR, FINE, BarPiece, BarProfile, DrawnBar, Reinforcement, bars
 from dem_cli.links.link import FORCE, PLASTIC, STRETCH, all_forces
 
 EA, KB, SB, LONG = 2.26e7, 1e9, 4e4, 0.6
@@ -46,7 +46,10 @@ def straight(long: float = LONG, anchored=(False, False), element: float | None 
     """A bar along x across the joint at x = 0 of two blocks, by `long` in either."""
     own = profile(**more)
     centroids = np.array([[-1.0, 0.0], [1.0, 0.0]])
-    pieces = (Piece(0, np.array([[1.0 - long, 0.0], [1.0, 0.0]])), Piece(1, np.array([[-1.0, 0.0], [long - 1.0, 0.0]])))
+    pieces = (
+        BarPiece(0, np.array([[1.0 - long, 0.0], [1.0, 0.0]])),
+        BarPiece(1, np.array([[-1.0, 0.0], [long - 1.0, 0.0]])),
+    )
     drawn = DrawnBar(own, element or FINE / own.decay, anchored, pieces)
     return bars([None], [drawn], centroids).started(np.zeros(2)), bodies_at(centroids, unturned(2, 2))
 
@@ -140,7 +143,7 @@ def crooked(dimension: int, **more):
 
     def piece(block, *places):
         points = np.array([np.eye(dimension)[0] * x + y * up for x, y in places])
-        return Piece(block, points - centroids[block])
+        return BarPiece(block, points - centroids[block])
 
     through = [piece(0, (0.2, 0.5), (0.5, 0.5)), piece(1, (0.5, 0.5), (1.5, 0.5)), piece(2, (1.5, 0.5), (1.8, 0.5))]
     bent = [

@@ -12,7 +12,7 @@ from synthetic.tumbling import column, write_collapse
 
 from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.geometry.polyhedron import box, hull
-from dem_cli.model.model import OF_MODES
+from dem_cli.model.model import WHERE_ASKED_FOR
 from dem_cli.output.joint_table import write_joints
 from dem_cli.output.layout import CONTACTS, FRAMES, MODEL, declared
 from dem_cli.output.paraview.cells import CONVEX_POINT_SET, cells_of, outlines_of_joints
@@ -50,7 +50,7 @@ def test_every_component_has_its_name(run):
     with h5py.File(run[0] / "results.h5", "r") as file:
         for group, table in said.items():
             for name, what in declared(table, 3).items():
-                if name in (*OF_MODES, "stresses"):  # of blocks that deform alone
+                if name in (*WHERE_ASKED_FOR, "stresses"):  # where the case asks for it
                     assert name not in file["dem"][group]
                     continue
                 data = file["dem"][group][name]

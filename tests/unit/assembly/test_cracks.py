@@ -8,6 +8,7 @@ from engine import block, rectangle, scene, simulation
 
 from dem_cli.assembly import sanity
 from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.cracks import cracked
 from dem_cli.case.base import Crack
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import CaseError
@@ -16,7 +17,6 @@ from dem_cli.kernels import records as slot
 from dem_cli.limit.analysis import limit_loads
 from dem_cli.model.blocks import Block
 from dem_cli.model.places import undeformed
-from dem_cli.structures.cracks import cracked
 
 GLUE = {"law": "mohr-coulomb", "friction": 1.0, "cohesion": 1e9, "tension": 5e8}
 

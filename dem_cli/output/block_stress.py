@@ -1,0 +1,31 @@
+"""Mean stress of blocks from the forces at their contact points, rigid or not, and its principal values.
+
+In equilibrium V σ = Σ f ⊗ x over all forces on the surface of a block (Love 1927); weight acts evenly and adds nothing
+about the centroid. Loads at points of a block are not among contact forces: a block that has any lacks their share.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.model.model import Model
+from dem_cli.output.record import Frame
+
+
+def mean_stresses(model: Model, frame: Frame) -> np.ndarray:
+    """Along the axes of the world, tension positive, symmetric [Pa], (n_blocks, d, d); 0 of fixed blocks."""
+    contacts, d = frame.contacts, model.dimension
+    forces, total = contacts.forces(), np.zeros((model.n_blocks, d, d))
+    for side, sign in ((0, -1.0), (1, 1.0)):
+        blocks = contacts.blocks[:, side]
+        dyads = sign * forces[:, :, None] * (contacts.points - frame.positions[blocks])[:, None, :]
+        for i, j in np.ndindex(d, d):
+            total[:, i, j] += np.bincount(blocks, dyads[:, i, j], model.n_blocks)
+    total *= 0.5 / (model.shapes.volumes * model.thickness)[:, None, None]
+    total[model.fixed] = 0.0
+    return total + total.swapaxes(1, 2)
+
+
+def principal_values(stresses: np.ndarray) -> np.ndarray:
+    """Principal values of symmetric tensors (n, d, d), the largest tension first, (n, d)."""
+    return np.linalg.eigvalsh(stresses)[:, ::-1]
