@@ -93,6 +93,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "contact",
         "engine",
         "kernels.records",
+        "laws.stiffness",
         "model",
         "motion",
         "output.record",
