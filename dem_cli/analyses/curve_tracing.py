@@ -1,7 +1,7 @@
 """Tracing of a capacity curve: in ramps, once more in longer ones, and in implicit increments where these two differ.
 
 Ramps are quick, but where joints are so stiff that they would be long. Where joints slip as blocks are moved, a curve
-may hang on how long they are; then every increment is solved as a contact problem of its own
+may hang on how long ramps are; then every increment is solved as a contact problem of its own
 (statics/implicit_control.py), from gravity on, and the run says what changed.
 """
 
