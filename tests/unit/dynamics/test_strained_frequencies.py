@@ -1,4 +1,4 @@
-"""Natural frequencies of blocks that deform: columns in closed form, a wall beside finite elements, a bent cantilever."""
+"""Natural frequencies of blocks that deform: closed forms, a wall beside finite elements, a cantilever."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_cantilever_of_quadratic_blocks_vibrates_as_a_beam_that_shears():
 
 @pytest.mark.parametrize(("deformation", "degree"), [("none", 0), ("uniform-strain", 1), ("quadratic", 2)])
 def test_wall_vibrates_as_elements_do_that_can_do_just_as_much(deformation, degree):
-    """Soft joints in running bond, Poisson's ratio, oblong blocks: stiffness and coupled masses are those of elements."""
+    """Soft joints in running bond, Poisson's ratio, oblong blocks: stiffness and coupled masses of elements."""
     size, kn, ks = 0.1, 5e9, 2e9
     rows = [(-0.1, [0.0, 1.2]), (0.0, [0.0, 0.4, 0.8, 1.2]), (0.2, [0.0, 0.2, 0.6, 1.0, 1.2]), (0.4, [0.0, 0.8, 1.2])]
     wall = [
