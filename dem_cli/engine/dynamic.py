@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
-from dem_cli.engine.strain_rates import strain_rates, turned_loads
+from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
 from dem_cli.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
@@ -22,9 +22,6 @@ from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
 from dem_cli.links.link import N_STATE
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.engine.viscous import Damping
 
 
 class Looker(Protocol):
@@ -214,12 +211,17 @@ class DynamicSimulation(Simulation):
     def _energy_of(self, velocities: np.ndarray, turns: np.ndarray) -> float:
         """Kinetic energy of blocks that are turned like this, with real masses: those along principal axes [J]."""
         rotations = self.model.rotations
-        spins, rates = along_principal(velocities[:, rotations], self.shape.axes, turns), velocities[:, rotations.stop :]
+        spins, rates = (
+            along_principal(velocities[:, rotations], self.shape.axes, turns),
+            velocities[:, rotations.stop :],
+        )
         velocities = np.column_stack([velocities[:, : self.model.dimension], spins])
         inverse = self.loads.inverse_masses[:, : rotations.stop]
         moving = inverse > 0.0
         found = 0.5 * float((velocities[moving] ** 2 / inverse[moving]).sum())
-        return found + 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates)) if rates.size else found
+        return (
+            found + 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates)) if rates.size else found
+        )
 
     def note_kinetic_energy(self) -> None:
         """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""

@@ -3,7 +3,7 @@
 Leapfrog with real masses, in the frame that moves with the base: positions and forces at whole steps, velocities half
 a step behind. The ledger sums what each group of forces really did, force × mean velocity. In space torques kick with
 the tensors of inertia of the whole step, before and after which blocks turn freely (kernels/spin.py).
-Velocities of blocks that deform have their mean spins, behind these rates of modes (kernels/deformation/strain_rates.py).
+Velocities of blocks that deform have mean spins, behind these rates of modes (kernels/deformation/strain_rates.py).
 """
 
 from __future__ import annotations

@@ -92,7 +92,14 @@ def put_gains(rows, row, normal, arms, masses, mobilities, viscous, slips, more=
     a, b = _rates_by_impulses(arms[0], mobilities[0]), _rates_by_impulses(arms[1], mobilities[1])
     across, along = viscous
     x, y, z = normal
-    rigid = masses + (a[0] + b[0]), a[1] + b[1], a[2] + b[2], masses + (a[3] + b[3]), a[4] + b[4], masses + (a[5] + b[5])
+    rigid = (
+        masses + (a[0] + b[0]),
+        a[1] + b[1],
+        a[2] + b[2],
+        masses + (a[3] + b[3]),
+        a[4] + b[4],
+        masses + (a[5] + b[5]),
+    )
     xx, xy, xz, yy, yz, zz = with_mobility(rigid, more)
     if slips or along == 0.0:
         around = x * (xx * x + 2.0 * xy * y) + y * (yy * y + 2.0 * yz * z) + z * (zz * z + 2.0 * xz * x)

@@ -232,4 +232,3 @@ def _with_mobility(values, more):
         values[0] + more[0], values[1] + more[1], values[2] + more[2],
         values[3] + more[3], values[4] + more[4], values[5] + more[5],
     )  # fmt: skip
-

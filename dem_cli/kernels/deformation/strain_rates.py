@@ -115,7 +115,7 @@ def turn_modes(bodies, shape, strained, like, like_rotation):
 
 @inline
 def kick_modes(bodies, shape, strained):
-    """Rates of modes after a step, damped within it; from those before in `means`, forces in `unbalanced` less `drags`."""
+    """Rates of modes after a step, damped within it; from those before (`means`) and from `unbalanced` less `drags`."""
     velocities, unbalanced = bodies.velocities, bodies.unbalanced
     old, drags, pulled = bodies.means, bodies.drags, bodies.pulled
     keep, gain, n_dof = strained.keep, strained.gain, velocities.shape[1]
