@@ -16,7 +16,8 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
-WITH_REAL_MASSES = ("time-history", "fragility", "modes")
+IN_TIME = ("time-history", "fragility")
+WITH_REAL_MASSES = (*IN_TIME, "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -89,15 +90,13 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks deform by themselves where that is not known: with real masses, as they would vibrate far
+    """Materials whose blocks deform by themselves where that is not known: in time histories, as they would vibrate far
     too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
     """
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
-    reason = (
-        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
-    )
+    reason = f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in IN_TIME else ""
     held = next((key for key in LINKS if data.get(key)), None)
     reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
     for name, table in materials.items():
