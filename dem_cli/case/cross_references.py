@@ -16,6 +16,7 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
+REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
@@ -65,6 +66,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
     found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
+    found += reactions_in_time(data, analysis.get("kind"))
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
@@ -86,6 +88,17 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
             yield CaseProblem((*path, "quantity"), message)
         elif "component" not in table:
             yield CaseProblem((*path, "component"), "missing; analysis.of controls a displacement with a sign")
+
+
+def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
+    """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
+    asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")] if kind in WITH_REAL_MASSES else []
+    message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
+    return [
+        CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
+        for path, quantity in asked
+        if quantity in REACTIONS
+    ]
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:

@@ -91,6 +91,19 @@ def largest_overlap(sim: Simulation) -> float:
     return float(max(0.0, -sim.contacts.gaps.min(initial=0.0)))
 
 
+def reactions(sim: Simulation) -> np.ndarray:
+    """What holds blocks gives to them, forces [N] and moments about their centroids [N m], (n_blocks, d + r).
+
+    To those with restraints along what these hold, against joints, links and loads; to fixed blocks against joints and
+    links, without weight and loads of their own. Zero along all that is free.
+    """
+    model, columns = sim.model, slice(sim.model.rotations.stop)
+    dead, live = sim.control[slot.DEAD_FACTOR], sim.control[slot.LIVE_FACTOR] * sim.live_scale
+    applied = dead * model.dead_loads + live * model.live_loads
+    given = -(sim.bodies.forces[:, columns] + np.where(model.fixed[:, None], 0.0, applied))
+    return np.where(model.held, given, 0.0)
+
+
 def free_falls(sim: Simulation) -> np.ndarray:
     """Largest acceleration that its own loads alone can give each block [m per step²], (n_blocks,)."""
     loads, control, d = sim.loads, sim.control, sim.model.dimension

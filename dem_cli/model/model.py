@@ -140,6 +140,11 @@ class Model(ModelArrays):
         kept = found if fixed is None else found[self.fixed[found] == fixed]
         return kept if len(kept) else found
 
+    def held_among(self, name: str | None) -> np.ndarray:
+        """Numbers of those blocks of a name in the case file that are fixed or restrained in some motion."""
+        found = self.chosen(name)
+        return found[self.held[found].any(axis=1)]
+
     @cached_property
     def vertex_blocks(self) -> np.ndarray:
         """Block of each corner, (n_vertices,)."""
