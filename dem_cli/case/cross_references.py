@@ -66,7 +66,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
     found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
-    found += reactions_in_time(data, analysis.get("kind"))
+    found += [*reactions_in_time(data, analysis.get("kind")), *following_loads(data, analysis)]
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
@@ -99,6 +99,22 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
         for path, quantity in asked
         if quantity in REACTIONS
     ]
+
+
+def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Loads that follow blocks where that is not known: with real masses, and as the displacement that is controlled."""
+    for path, table in entries(data, "load"):
+        kind, follows = analysis.get("kind"), table.get("follows")
+        if follows is not None and kind in WITH_REAL_MASSES:
+            message = f"{show(follows)} is not known in kind = {show(kind)}: loads follow blocks in analyses without time"
+            yield CaseProblem((*path, "follows"), message)
+        lone = analysis.get("control") == "displacement" and "of" not in analysis
+        if follows == "block" and lone and table.get("kind") == "live":
+            message = (
+                "'block' is not allowed with control = 'displacement' unless analysis.of names a monitor: along a "
+                "direction that turns there is no displacement to go to; 'point' is"
+            )
+            yield CaseProblem((*path, "follows"), message)
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
