@@ -9,9 +9,7 @@ from dem_cli.contact.joints import JointArrays, JointProperties, points_of
 from dem_cli.contact.keys import same_rows
 
 
-def carry_memory(
-    narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, properties: JointProperties
-) -> None:
+def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, properties: JointProperties) -> None:
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
