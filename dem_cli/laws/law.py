@@ -47,7 +47,7 @@ class Law(Generic[JointTable]):
     residual: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
     # Of points in space that come to be while blocks are in each other: (parameters, overlaps [m], negative: open,
     # memory, kn of the points) -> normal forces [N], as `function` finds them at rest: a law that deforms for good
-    # across the joint takes off what is no spring, one that dilates or is bonded adds what holds them apart or together.
+    # across the joint takes off what is no spring, one that dilates or is bonded adds what it holds by that.
     pressed: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray] = (
         lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     )
