@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.state import SavedState
 
+WATCHED = 8  # looks: where a displacement is held, every so many of them is told
+
 
 class Followed(NamedTuple):
     """A displacement that is controlled instead of that of the live load."""
@@ -148,9 +150,10 @@ class DisplacementControl:
 
     def _rests(self) -> bool:
         sim, settings, calm = self.sim, self.settings, 0
-        for _ in range(settings.most // settings.look):
+        for number in range(settings.most // settings.look):
             sim.advance(settings.look, sim.guided_mode)
-            self.watch()
+            if number % WATCHED == 0:
+                self.watch()
             self.budget.spend(settings.look, "holding a displacement of the live load")
             calm = calm + 1 if sim.unbalanced < settings.tolerance else 0
             if calm == settings.looks_at_rest:
