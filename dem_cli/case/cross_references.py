@@ -92,7 +92,9 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
     """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
-    asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")] if kind in WITH_REAL_MASSES else []
+    asked = (
+        [(path, table.get("quantity")) for path, table in entries(data, "monitor")] if kind in WITH_REAL_MASSES else []
+    )
     message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
     return [
         CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
@@ -102,11 +104,11 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
 
 
 def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Loads that follow blocks where that is not known: with real masses, and as the displacement that is controlled."""
+    """Loads that follow blocks where that is not known: with real masses, or as what displacement control moves."""
     for path, table in entries(data, "load"):
         kind, follows = analysis.get("kind"), table.get("follows")
         if follows is not None and kind in WITH_REAL_MASSES:
-            message = f"{show(follows)} is not known in kind = {show(kind)}: loads follow blocks in analyses without time"
+            message = f"{show(follows)} is not known in kind = {show(kind)}: only without time loads follow"
             yield CaseProblem((*path, "follows"), message)
         lone = analysis.get("control") == "displacement" and "of" not in analysis
         if follows == "block" and lone and table.get("kind") == "live":

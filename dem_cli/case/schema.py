@@ -154,9 +154,17 @@ class Monitor(Selection):
         default=None, description="of a bar: how far along it from its start [m]", examples=[0.6]
     )
     quantity: Literal[
-        "displacement", "rotation", "velocity", "acceleration", "opening", "slip", "force", "elongation",
-        "reaction", "reaction_moment",
-    ] = Field(  # fmt: skip
+        "displacement",
+        "rotation",
+        "velocity",
+        "acceleration",
+        "opening",
+        "slip",
+        "force",
+        "elongation",
+        "reaction",
+        "reaction_moment",
+    ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "

@@ -22,7 +22,7 @@ class FollowingLoads(NamedTuple):
         return len(self.blocks) > 0
 
     def change(self, orientations: np.ndarray, dead: bool) -> np.ndarray:
-        """What the dead ones, or the live ones, are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
+        """What dead or live ones are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
 
         orientations: of all blocks, as Bodies has them.
         """

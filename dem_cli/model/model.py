@@ -14,7 +14,6 @@ import numpy as np
 
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
-from dem_cli.model.following_loads import FollowingLoads, no_following_loads
 from dem_cli.model.block_measures import (
     BlockMeasures,
     FaceMeasures,
@@ -24,6 +23,7 @@ from dem_cli.model.block_measures import (
     half_extents,
     part_measures,
 )
+from dem_cli.model.following_loads import FollowingLoads, no_following_loads
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
