@@ -16,8 +16,9 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
+IN_TIME = ("time-history", "fragility")
+WITH_REAL_MASSES = (*IN_TIME, "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
-WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -92,9 +93,9 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
     """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
-    asked = (
-        [(path, table.get("quantity")) for path, table in entries(data, "monitor")] if kind in WITH_REAL_MASSES else []
-    )
+    if kind not in WITH_REAL_MASSES:
+        return []
+    asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
     message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
     return [
         CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
@@ -104,12 +105,12 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
 
 
 def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Loads that follow blocks where that is not known: with real masses, or as what displacement control moves."""
+    """Loads that follow blocks where that is not known: with real masses, and as what displacement controls."""
     for path, table in entries(data, "load"):
         kind, follows = analysis.get("kind"), table.get("follows")
         if follows is not None and kind in WITH_REAL_MASSES:
-            message = f"{show(follows)} is not known in kind = {show(kind)}: only without time loads follow"
-            yield CaseProblem((*path, "follows"), message)
+            where = f"{show(follows)} is not known in kind = {show(kind)}"
+            yield CaseProblem((*path, "follows"), f"{where}: loads follow blocks in analyses without time")
         lone = analysis.get("control") == "displacement" and "of" not in analysis
         if follows == "block" and lone and table.get("kind") == "live":
             message = (
@@ -120,15 +121,13 @@ def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[
 
 
 def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks deform by themselves where that is not known: with real masses, as they would vibrate far
+    """Materials whose blocks deform by themselves where that is not known: in time histories, as they would vibrate far
     too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
     """
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
-    reason = (
-        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
-    )
+    reason = f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in IN_TIME else ""
     held = next((key for key in LINKS if data.get(key)), None)
     reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
     for name, table in materials.items():

@@ -71,6 +71,7 @@ class JointProperties(NamedTuple):
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * overlaps
+    bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
     rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
 

@@ -51,7 +51,7 @@ def quadratic_modes(
 
 def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np.ndarray, np.ndarray]:
     """young: Young's modulus × thickness [N/m]."""
-    points, weights = _quadrature(parts)
+    points, weights = quadrature(parts)
     area, values = weights.sum(), terms(points)
     pure = np.zeros((N_QUADRATIC, 2, TERMS))
     for k in range(3):
@@ -85,7 +85,7 @@ def _elasticity(
     return np.einsum("skp,st,tlp,p->kl", strain, plane, strain, weights)
 
 
-def _quadrature(parts: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def quadrature(parts: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Points [m] and weights [m²] in convex polygons, (n, 2) and (n,)."""
     triangles = np.concatenate([
         np.stack([np.repeat(part[:1], len(part) - 2, axis=0), part[1:-1], part[2:]], axis=1) for part in parts
