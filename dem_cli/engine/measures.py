@@ -15,6 +15,7 @@ from dem_cli.kernels.records import Bodies
 from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
+from dem_cli.model.following_loads import FollowingLoads
 from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, LinkRecord
 
 NET, ALL = 0, 1  # of Contacts.exchanged
@@ -53,20 +54,20 @@ def live_displacement(sim: Simulation) -> float:
 
     Of forces that follow their blocks: of the points that they go along with, along their directions as drawn.
     """
-    if sim.loads_follow:
-        return _displacement_of_followers(sim)
+    if sim.following is not None:
+        return _displacement_of_followers(sim, sim.following)
     d, rotations = sim.model.dimension, sim.model.rotations
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
     return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
-def _displacement_of_followers(sim: Simulation) -> float:
+def _displacement_of_followers(sim: Simulation, following: FollowingLoads) -> float:
     """The same where loads follow their blocks; restrained motions are zero."""
     turned = rotation_vectors(sim.bodies.orientations)
     motion = np.column_stack([displacements(sim), turned])
     drawn = float((sim.model.live_loads * motion)[sim.free].sum())
-    return sim.live_scale * (drawn + sim.model.following.beyond(sim.bodies.orientations, turned))
+    return sim.live_scale * (drawn + following.beyond(sim.bodies.orientations, turned))
 
 
 def live_force(sim: Simulation) -> float:
