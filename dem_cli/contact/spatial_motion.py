@@ -183,6 +183,11 @@ def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:
     return along_each_other(model, geometry.kinds, geometry.faces)
 
 
+def end_to_end(model: Model, geometry: SpatialMotion) -> np.ndarray:
+    """None, (n_joints,) bool: in space corners that meet share no joint."""
+    return np.zeros(len(geometry.kinds), bool)
+
+
 def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:
     """Nothing: only profiles have a recess."""
 

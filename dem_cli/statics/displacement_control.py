@@ -201,6 +201,11 @@ class CapacityCurve:
         """The point of the highest load."""
         return self.points[self.peak]
 
+    @property
+    def farthest(self) -> int:
+        """Number of the point of the largest displacement: the last one, unless a monitor turns back."""
+        return int(np.argmax(self.arrays()[0]))
+
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and internal multipliers, (n,) each."""
         values = np.array(self.points)
