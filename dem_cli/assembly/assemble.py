@@ -253,12 +253,12 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
     return with_imposed_strains(case, model) if case.strain else model
 
 
-def _following(model: Model, dead: Sequence[AppliedLoad], live: Sequence[AppliedLoad]) -> FollowingLoads:
+def _following(model: Model, dead: Sequence[AppliedLoad], live: Sequence[AppliedLoad]) -> FollowingLoads | None:
     """Loads that go along with their blocks. Raises CaseError: on blocks that deform."""
     acting = [*((load, True) for load in dead), *((load, False) for load in live)]
     found = [(load, is_dead) for load, is_dead in acting if load.follows is not None]
     if not found:
-        return model.following
+        return None
     if model.n_modes:
         message = "not known beside blocks that deform by themselves; 'joints' lumps them into their joints"
         raise CaseError([CaseProblem((*load.path, "follows"), message) for load, _ in found])

@@ -110,7 +110,7 @@ def held_problems(case: Case, model: Model) -> list[CaseProblem]:
     return [
         CaseProblem(
             ("monitor", i, "quantity"),
-            f"{show(monitor.quantity)} is not allowed of {monitor.said}: no block of it is fixed or has a [[restraint]]",
+            f"{show(monitor.quantity)} is not allowed of {monitor.said}: none of it is fixed or has a [[restraint]]",
         )
         for i, monitor in enumerate(case.monitor)
         if monitor.of_what_holds and not len(model.held_among(monitor.selected))

@@ -59,7 +59,7 @@ class Load(Selection):
     follows: Literal["point", "block"] | None = Field(
         default=None,
         description="where geometry moves: 'point', it goes along with the point of the block that it was put on; "
-        "'block', its direction turns with the block as well; default: it keeps direction and lever beside the centroid",
+        "'block', its direction turns with the block as well; default: it keeps direction and lever about the centroid",
         examples=["point"],
     )
 

@@ -164,7 +164,7 @@ class Monitor(Selection):
         "elongation",
         "reaction",
         "reaction_moment",
-    ] = Field(  # fmt: skip
+    ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "

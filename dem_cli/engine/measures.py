@@ -15,8 +15,10 @@ from dem_cli.kernels.records import Bodies
 from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
+from dem_cli.model.following_loads import FollowingLoads
 from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, LinkRecord
 
+ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
 NET, ALL = 0, 1  # of Contacts.exchanged
 
 
@@ -53,29 +55,39 @@ def live_displacement(sim: Simulation) -> float:
 
     Of forces that follow their blocks: of the points that they go along with, along their directions as drawn.
     """
-    if sim.loads_follow:
-        return _displacement_of_followers(sim)
+    if sim.following is not None:
+        return _displacement_of_followers(sim, sim.following)
     d, rotations = sim.model.dimension, sim.model.rotations
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
     return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
-def _displacement_of_followers(sim: Simulation) -> float:
+def _displacement_of_followers(sim: Simulation, following: FollowingLoads) -> float:
     """The same where loads follow their blocks; restrained motions are zero."""
     turned = rotation_vectors(sim.bodies.orientations)
     motion = np.column_stack([displacements(sim), turned])
     drawn = float((sim.model.live_loads * motion)[sim.free].sum())
-    return sim.live_scale * (drawn + sim.model.following.beyond(sim.bodies.orientations, turned))
+    return sim.live_scale * (drawn + following.beyond(sim.bodies.orientations, turned))
 
 
 def live_force(sim: Simulation) -> float:
-    """Sum of the forces of the live load at an internal multiplier of 1 [N]."""
-    return float(np.sqrt((sim.loads.live[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+    """Sum of the forces of the live load at an internal multiplier of 1 [N].
+
+    Of couples alone, of forces at the far ends of their blocks with the same moments.
+    """
+    live = sim.loads.live[sim.free]
+    force = float(np.sqrt((live[:, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+    moments = np.sqrt((live[:, sim.model.rotations] ** 2).sum(axis=1))
+    at_ends = float((moments / sim.shape.radii[sim.free]).sum())
+    return force if force > ROUND_OFF * at_ends else at_ends
 
 
 def live_travel(sim: Simulation) -> float:
-    """Displacement of the live load along itself since it was drawn: q·u over `live_force` [m]; 0 without one."""
+    """Displacement of the live load along itself since it was drawn: q·u over `live_force` [m]; 0 without one.
+
+    Of couples alone: how far the far ends of their blocks turned.
+    """
     force = live_force(sim)
     return live_displacement(sim) / force if force > 0.0 else 0.0
 

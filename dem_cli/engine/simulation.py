@@ -59,6 +59,7 @@ class Simulation:
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
         self.loads = loads_of(model, live_scale, self.shape.radii, relaxation.narrowest_arm)
+        self.following = model.following if kinematics == "large" else None
         self.drawn_dead = self.loads.dead.copy()  # before any of it follows
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
@@ -194,14 +195,14 @@ class Simulation:
     @property
     def loads_follow(self) -> bool:
         """Whether loads go along with blocks."""
-        return self.kinematics == "large" and bool(self.model.following)
+        return self.following is not None
 
     def present_loads(self) -> tuple[np.ndarray, np.ndarray]:
         """Dead and live loads of all blocks as they are now, about the centroids [N, N m], (n_blocks, d + r) each."""
         dead, live = self.model.dead_loads, self.model.live_loads
-        if not self.loads_follow:
+        if self.following is None:
             return dead, live
-        change, turned = self.model.following.change, self.bodies.orientations
+        change, turned = self.following.change, self.bodies.orientations
         return dead + change(turned, dead=True), live + change(turned, dead=False)
 
     def turn_loads(self) -> None:

@@ -92,5 +92,5 @@ def other_sizes(
         centroids=model.centroids + shifts,
         vertices=model.vertices - shifts[owner],
         dead_loads=dead,
-        following=model.following._replace(arms=model.following.arms - shifts[model.following.blocks]),
+        following=model.following and model.following.shifted(shifts),
     )

@@ -18,11 +18,12 @@ class FollowingLoads(NamedTuple):
     dead: np.ndarray  # constant; else times the multiplier, (n,) bool
     turning: np.ndarray  # whether the direction turns with the block, (n,) bool
 
-    def __bool__(self) -> bool:
-        return len(self.blocks) > 0
+    def shifted(self, shifts: np.ndarray) -> FollowingLoads:
+        """The same of blocks whose centroids are elsewhere by so much [m], (n_blocks, d)."""
+        return self._replace(arms=self.arms - shifts[self.blocks])
 
     def change(self, orientations: np.ndarray, dead: bool) -> np.ndarray:
-        """What the dead ones, or the live ones, are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
+        """What dead or live ones are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
 
         orientations: of all blocks, as Bodies has them.
         """
@@ -42,10 +43,3 @@ class FollowingLoads(NamedTuple):
         blocks, arms, forces, _, _ = (values[~self.dead] for values in self)
         swung = turning(orientations[blocks])(arms) - arms
         return float((forces * swung).sum() - (moments(arms, forces) * rotations[blocks]).sum())
-
-
-def no_following_loads(dimension: int = 2) -> FollowingLoads:
-    """None at all."""
-    return FollowingLoads(
-        np.zeros(0, np.int64), np.zeros((0, dimension)), np.zeros((0, dimension)), np.zeros(0, bool), np.zeros(0, bool)
-    )

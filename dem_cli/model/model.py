@@ -14,7 +14,6 @@ import numpy as np
 
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.topology import Topology, topology_of_polygons
-from dem_cli.model.following_loads import FollowingLoads, no_following_loads
 from dem_cli.model.block_measures import (
     BlockMeasures,
     FaceMeasures,
@@ -24,12 +23,12 @@ from dem_cli.model.block_measures import (
     half_extents,
     part_measures,
 )
+from dem_cli.model.following_loads import FollowingLoads
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
 NO_RESTRAINTS = np.zeros((0, 0), bool)
-NOTHING_FOLLOWS = no_following_loads()
 NO_PIECES = np.zeros((0, 2), np.int64)
 NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)
 
@@ -60,7 +59,7 @@ class ModelArrays(NamedTuple):
     principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
     links: tuple[Any, ...] = ()  # ties and the like, arrays of each kind that there is (links/link.py)
     link_names: tuple[str, ...] = ()  # of all of them, kind by kind
-    following: FollowingLoads = NOTHING_FOLLOWS  # loads, part of those above, that go along where geometry moves
+    following: FollowingLoads | None = None  # loads, part of those above, that go along where geometry moves
     # Of blocks that deform alone (model/uniform_strain.py), else empty:
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
@@ -228,7 +227,7 @@ class Model(ModelArrays):
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
             links=(),
             link_names=(),
-            following=NOTHING_FOLLOWS,
+            following=None,
             **{name: getattr(self, name)[pick] for name in WHERE_ASKED_FOR if len(getattr(self, name))},
         )
 

@@ -101,7 +101,8 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
         first = one["bracket"][0] if one["bracket"] else None
         rows.append(
             [
-                ", ".join(filter(None, (one["words"], one.get("reading")))), f"{straight:.1f}", minus(f"{100.0 * (straight / KINK - 1.0):+.0f} %"),
+                ", ".join(filter(None, (one["words"], one.get("reading")))),
+                f"{straight:.1f}", minus(f"{100.0 * (straight / KINK - 1.0):+.0f} %"),
                 f"{max(most, first or 0.0):.1f}", minus(f"{100.0 * (max(most, first or 0.0) / PEAK - 1.0):+.0f} %"),
                 f"{u[int(np.argmax(p))]:.1f}", "–" if there is None else f"{there:.1f}", f"{one['closure']:.0e}",
             ]

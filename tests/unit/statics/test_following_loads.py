@@ -86,3 +86,21 @@ def test_what_cannot_follow_is_refused(change, said):
             del table[key]
     with pytest.raises(CaseError, match=said):
         scene(case)
+
+
+@pytest.mark.parametrize("of", [None, "top"])
+def test_a_couple_alone_turns_a_block_over_its_toe(of):
+    """Two opposite forces: the displacement that is controlled is that of the corners, W R sin(α − θ) holds it."""
+    case = pushed(None, pressed=None)
+    pull = {"block": "block", "force": [-WEIGHT, 0.0], "at": [0.0, HIGH - 1.0], "kind": "live"}
+    case["load"] = [case["load"][0], pull]
+    if of is None:
+        del case["analysis"]["of"]
+    summary, records = solve(case)
+    assert summary["status"] == "ok"
+    row, radius = records.rows[-1], np.hypot(WIDE, HIGH) / 2.0
+    theta = abs(row.monitors[1])
+    assert row.load == pytest.approx(radius * np.sin(np.arctan(WIDE / HIGH) - theta), rel=1e-6)
+    assert row.live_displacement == pytest.approx(radius * theta, rel=1e-6)
+    assert (row.monitors[0] if of else row.live_displacement) == pytest.approx(GO, rel=6e-3)  # a ramp of ten stairs
+    assert abs(summary["energy_closure"]) < 1e-5

@@ -124,10 +124,17 @@ def test_monitors_follow_what_holds_blocks(dimension):
     assert records.rows[-1].monitors == pytest.approx([value for *_, value in asked], rel=1e-4)
 
 
+def checked(case: dict) -> None:
+    """Raises CaseError for what is wrong with a case and its monitors."""
+    made = scene(case)
+    if problems := monitor_problems(made.case, made.model):
+        raise CaseError(problems)
+
+
 @pytest.mark.parametrize(
     ("change", "monitor", "said"),
     [
-        ({}, {"block": "free", "quantity": "reaction"}, "'reaction' is not allowed of 'free': no block of it is fixed"),
+        ({}, {"block": "free", "quantity": "reaction"}, "'reaction' is not allowed of 'free': none of it is fixed"),
         ({}, {"point": [0.0, 0.1], "quantity": "reaction"}, "'reaction' is not allowed of a point"),
         ({}, {"block": "block", "quantity": "reaction_moment", "component": "x"}, "a moment has none in 2D"),
         ({"kind": "modes"}, {"block": "block", "quantity": "reaction"}, "only analyses without time follow"),
@@ -139,5 +146,4 @@ def test_reactions_of_what_nothing_holds_are_refused(change, monitor, said):
     case["analysis"] |= change
     case["monitor"] = [monitor]
     with pytest.raises(CaseError, match=said):
-        made = scene(case)
-        raise CaseError(monitor_problems(made.case, made.model))
+        checked(case)
