@@ -33,7 +33,7 @@ from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
-    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "left_out", "microrotations",
+    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "end_to_end", "facing", "find", "left_out", "microrotations",
     "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
