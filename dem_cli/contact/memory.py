@@ -22,7 +22,9 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
     target = np.flatnonzero(points >= 0)
     _copy(narrow, old, new, target, points[target])
     narrow.take_over(old, new, match, points >= 0)
-    orphans = np.setdiff1d(np.flatnonzero(_loaded(old)), match[match >= 0])
+    lost = _loaded(old)
+    lost[match[match >= 0]] = False
+    orphans = np.flatnonzero(lost)
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)

@@ -19,6 +19,7 @@ from dem_cli.links.link import N_STATE, LinkReading
 from dem_cli.links.matrices import reading_of
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
+from dem_cli.model.quadratic_modes import moved_by_modes
 from dem_cli.model.scales import origin_of
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ class Points(NamedTuple):
     rows: np.ndarray  # of their blocks in the samples, (n_points,)
     starts: np.ndarray  # centroids of their blocks, undeformed, as the samples count [m], (n_points, d)
     arms: np.ndarray  # from these centroids, undeformed [m], (n_points, d)
+    strained: np.ndarray  # the same of blocks as they deform, in their own axes [m], (n_points, d)
 
 
 class PointMotion:
@@ -43,7 +45,7 @@ class PointMotion:
     def __init__(self, points: Points, samples: np.ndarray):
         self.points, self.samples, self.d = points, samples[:, points.rows], points.arms.shape[1]
         self.orientations = self.samples[:, :, 0, self.d :]
-        self.arms = self.turned(points.arms)
+        self.arms = self.turned(points.strained)
 
     def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
@@ -186,10 +188,22 @@ class Monitors:
         sample = np.stack([places, sim.speeds[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
         links = np.concatenate([link.state for link in sim.links]) if sim.links else np.zeros((0, N_STATE))
+        self._strain(sim)
         found = self.series(sample[np.newaxis], still, links[np.newaxis])[0]
         for monitor in self._of_reactions:
             found[monitor.column] = monitor.value(sim)
         return tuple(found.tolist())
+
+    def _strain(self, sim: Simulation) -> None:
+        """Takes the points where the strains of their blocks have them at this instant."""
+        if not self.model.n_modes:
+            return
+        blocks, arms, shapes = self.watched[self._points.rows], self._points.arms, self.model.mode_shapes
+        found = moved_by_modes(
+            sim.bodies.modes[blocks], arms, self.model.shapes.radii[blocks], shapes[blocks] if len(shapes) else shapes
+        )
+        found[~arms.any(axis=1)] = 0.0  # centroids are those of the mass, which no mode moves
+        self._points = self._points._replace(strained=arms + found)
 
     def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
         """Over time, (n, n_monitors).
@@ -258,4 +272,4 @@ class Monitors:
         d = self.model.dimension
         blocks = np.array([block for block, _ in self._places], np.int64)
         arms = np.array([arm for _, arm in self._places]).reshape(-1, d)
-        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms)
+        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms, arms)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.state import SavedState
 
+WATCHED = 8  # looks: where a displacement is held, every so many of them is told
+
 
 class Followed(NamedTuple):
     """A displacement that is controlled instead of that of the live load."""
@@ -149,9 +151,10 @@ class DisplacementControl:
 
     def _rests(self) -> bool:
         sim, settings, calm = self.sim, self.settings, 0
-        for _ in range(settings.most // settings.look):
+        for number in range(settings.most // settings.look):
             sim.advance(settings.look, sim.guided_mode)
-            self.watch()
+            if number % WATCHED == 0:
+                self.watch()
             self.budget.spend(settings.look, "holding a displacement of the live load")
             calm = calm + 1 if sim.unbalanced < settings.tolerance else 0
             if calm == settings.looks_at_rest:
@@ -198,6 +201,11 @@ class CapacityCurve:
     def highest(self) -> CurvePoint:
         """The point of the highest load."""
         return self.points[self.peak]
+
+    @property
+    def farthest(self) -> int:
+        """Number of the point of the largest displacement: the last one, unless a monitor turns back."""
+        return int(np.argmax(self.arrays()[0]))
 
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and internal multipliers, (n,) each."""
