@@ -42,7 +42,8 @@ def wall(words: str, name: str) -> dict[str, Any]:
     return {
         "command": f"dem run cases/validation/{name}.toml", "words": words, "status": summary["status"],
         "closure": float(f"{summary['energy_closure']:.2g}"), "monitors": {k: round(v, 5) for k, v in found.items()},
-        "ground": ground(loaded.case, seen), "open": summary["joint_state"]["open"], "crack": round(summary["joint_state"]["crack_width"]["value"], 4),
+        "ground": ground(loaded.case, seen), "open": summary["joint_state"]["open"],
+        "crack": round(summary["joint_state"]["crack_width"]["value"], 4),
         "outlines": outlines, "fixed": model.fixed.tolist(),
     }  # fmt: skip
 
@@ -57,9 +58,7 @@ def ground(case: Any, seen: RunKeeper) -> list[list[float]]:
     down = 1e3 * abs(case.settlement[0].displacement[-1])
     rows = [row for row in seen.rows if row.stage in ("gravity", "settlement")]
     last = len(rows) - 1
-    return [
-        [round(down * i / last, 2), round(row.monitors[names.index("ground")], 1)] for i, row in enumerate(rows)
-    ]
+    return [[round(down * i / last, 2), round(row.monitors[names.index("ground")], 1)] for i, row in enumerate(rows)]
 
 
 def _around(points: np.ndarray) -> np.ndarray:
