@@ -1,10 +1,11 @@
 """Displacement control: equilibria at prescribed displacements of the live load, and the capacity curve that they make.
 
 The displacement is that of the live load itself, q·u over the sum of its forces: of one force that of its point along
-it, of shares of the weight the mean one, weighted by mass; of couples alone that of the far ends of their blocks. It grows by an increment in a smooth ramp, then stays until
-all forces balance; the multiplier is the reaction in its direction. Between both, velocities are steered towards the
-forces (FIRE, Bitzek et al. 2006) without changing that displacement (kernels/advance.py). Every point is a state at
-rest under its multiplier, reached from gravity on that way; where another way leads is for the analysis to find out.
+it, of shares of the weight the mean one, weighted by mass; of couples alone that of the far ends of their blocks. It
+grows by an increment in a smooth ramp, then stays until all forces balance; the multiplier is the reaction in its
+direction. Between both, velocities are steered towards the forces (FIRE, Bitzek et al. 2006) without changing that
+displacement (kernels/advance.py). Every point is a state at rest under its multiplier, reached from gravity on that
+way; where another way leads is for the analysis to find out.
 
 Where another displacement is controlled, a monitor, that of the live load is chosen so that the monitor comes to where
 it should: nothing but the live load pushes the structure there.

@@ -147,3 +147,36 @@ def test_reactions_of_what_nothing_holds_are_refused(change, monitor, said):
     case["monitor"] = [monitor]
     with pytest.raises(CaseError, match=said):
         checked(case)
+
+
+@pytest.mark.parametrize("by", ["moved", "load"])
+def test_a_beam_whose_support_settles(by):
+    """It turns about the edge of the other support: what it then asks of the one that sank, by lever arms.
+
+    That support is moved, or it is a block that can only sink, whose load is taken away.
+    """
+    weight, sunk = 2000.0 * 9.81 * 4.0 * 0.4, 0.05
+    foot = block("foot", rectangle(3.5, -0.5, 4.5, 0.0), **({"fixed": True} if by == "moved" else {}))
+    beam = block("beam", rectangle(0.0, 0.0, 4.0, 0.4))
+    case = tables(block("stays", rectangle(-0.5, -0.5, 0.5, 0.0), fixed=True), foot, beam)
+    case["joints"] = {"dry": {"friction": 0.02, "kn": 1e10}}  # no thrust between the supports
+    case["monitor"] = [{"block": "stays", "quantity": "reaction", "component": "y"}]
+    if by == "moved":
+        case["analysis"] = {"kind": "settlement"}
+        case["settlement"] = [{"block": "foot", "displacement": [0.0, -sunk]}]
+    else:
+        own = 2000.0 * 9.81 * 0.5
+        analysis = {"kind": "cycle", "pattern": "live", "control": "displacement", "path": [sunk], "step": sunk / 2}
+        case["analysis"] = analysis
+        case["restraint"] = [{"block": "foot", "fixed": ["x", "rotation"]}]
+        case["load"] = [
+            {"block": "foot", "force": [0.0, weight / 2 + own]},
+            {"block": "foot", "force": [0.0, -weight / 2], "kind": "live"},
+        ]
+    summary, records = solve(case)
+    assert summary["status"] == "ok"
+    carried = weight * (1.5 + 0.2 * sunk / 3.5) / 3.5  # by the foot: the beam leans towards it
+    row = records.rows[-1]
+    assert row.monitors[0] == pytest.approx(weight - carried, rel=3e-4)
+    if by == "load":
+        assert 0.5 * weight * (1.0 - row.load) == pytest.approx(carried, rel=3e-4)
