@@ -91,7 +91,9 @@ def _first(found: Modes) -> float | None:
 
 def _springs(sim: Simulation, contacts: str) -> np.ndarray:
     """Which contact points act, by the choice of the case, (n_points,) bool."""
-    return closed_points(sim) if contacts == "pressed" else touching_points(sim)
+    points = closed_points(sim) if contacts == "pressed" else touching_points(sim)
+    corners = sim.tracking.narrow.end_to_end(sim.model, sim.geometry)
+    return points & ~corners[sim.joints.owners]
 
 
 def _modes(sim: Simulation, closed: np.ndarray, count: int) -> Modes:

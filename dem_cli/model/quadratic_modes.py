@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.geometry.rotation import turned_by
+from dem_cli.model.uniform_strain import strains
 
 N_QUADRATIC = 6  # in the plane
 TERMS = 6  # 1, x, y, x², x y, y², of which each φ_k has coefficients for both directions
@@ -113,3 +114,15 @@ def displacements(shapes: np.ndarray, arms: np.ndarray, turns: np.ndarray) -> np
 def quadratic_loads(arms: np.ndarray, forces: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """What forces (n, 2) [N] at arms (n, 2) from the centroids do to the modes of shapes (n, 6, 2, 6) [N], (n, 6)."""
     return np.einsum("nkim,nm,ni->nk", shapes, terms(arms), forces)
+
+
+def moved_by_modes(modes: np.ndarray, arms: np.ndarray, radii: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """How far their blocks' deformation moves points, in the axes of the blocks [m], (n, d).
+
+    modes: amplitudes of the block of each point [m], (n, m); arms: from its centroid, undeformed [m], (n, d); radii
+    [m], (n,); shapes: of quadratic modes, (n, 6, 2, 6), or none of them.
+    """
+    found = np.einsum("nij,nj->ni", strains(modes, radii), arms)
+    if len(shapes):
+        found += np.einsum("nk,nkim,nm->ni", modes[:, -N_QUADRATIC:], shapes, terms(arms))
+    return found
