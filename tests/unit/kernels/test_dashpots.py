@@ -46,6 +46,7 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
         first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
         gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int), shares=np.ones(n),
         slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
+        motions=np.zeros(0), lifts=np.zeros(0), strained=None,
     )  # fmt: skip
     return joints, bodies, contacts, inverse, dampers
 
