@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.contact.geometry import geometry_of
 from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
@@ -93,7 +92,7 @@ def _first(found: Modes) -> float | None:
 def _springs(sim: Simulation, contacts: str) -> np.ndarray:
     """Which contact points act, by the choice of the case, (n_points,) bool."""
     points = closed_points(sim) if contacts == "pressed" else touching_points(sim)
-    corners = geometry_of(sim.model.dimension).end_to_end(sim.model, sim.geometry)
+    corners = sim.tracking.narrow.end_to_end(sim.model, sim.geometry)
     return points & ~corners[sim.joints.owners]
 
 

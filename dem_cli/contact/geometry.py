@@ -60,7 +60,7 @@ class NarrowPhase(Protocol[Geometry, Returning]):
         """Joints of the start that have an area which a bond can hold, (n_joints,) bool."""
 
     def end_to_end(self, model: Model, geometry: Geometry) -> np.ndarray:
-        """Joints without a length of corners that meet where blocks were drawn: they carry nothing, (n_joints,) bool."""
+        """Joints without a length, of corners that meet where blocks were drawn, (n_joints,) bool."""
 
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties

@@ -33,8 +33,8 @@ from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
-    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "left_out", "microrotations",
-    "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
+    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "end_to_end", "facing", "find", "left_out",
+    "microrotations", "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn

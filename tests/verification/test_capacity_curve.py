@@ -166,7 +166,7 @@ def test_a_monitor_that_the_load_does_not_move():
 
 
 def test_a_monitor_that_turns_back():
-    """The corner over the heel rises until it is over the toe, at √(b² + h²) − h, and comes down: its way out counts."""
+    """The corner over the heel rises until it is over the toe, by √(b² + h²) − h, and comes down."""
     width, height = 0.2, 1.0
     case = controlled(0.03, block("b", rectangle(0, 0, width, height)), friction=2.0, of="roof", loads_at=[0.01, 0.025])
     case["monitor"] = [ROOF | {"component": "y"}]
