@@ -16,8 +16,7 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
-IN_TIME = ("time-history", "fragility")
-WITH_REAL_MASSES = (*IN_TIME, "modes")
+WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
 WITH_LIVE_LOADS = ("load", "pressure")
 
@@ -66,7 +65,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
-    found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
+    found += [*strained_blocks(data), *controlled_monitor(data, analysis.get("of"))]
     found += [*reactions_in_time(data, analysis.get("kind")), *following_loads(data, analysis)]
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
@@ -120,16 +119,15 @@ def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[
             yield CaseProblem((*path, "follows"), message)
 
 
-def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks deform by themselves where that is not known: in time histories, as they would vibrate far
-    too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
+def strained_blocks(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Materials whose blocks deform by themselves where that is not known: beside ties and bars; blocks that bend in
+    space, or on joints that cannot tell.
     """
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
-    reason = f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in IN_TIME else ""
     held = next((key for key in LINKS if data.get(key)), None)
-    reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
+    reason = f"beside [[{held}]], which holds on to blocks that keep their shape" if held else ""
     for name, table in materials.items():
         way = table.get("deformation") if isinstance(table, dict) else None
         path = ("materials", name, "deformation")

@@ -99,7 +99,6 @@ def test_a_bent_column_that_turns_stays_as_bent_as_it_was():
     [
         (None, "dimension", 3, "not known in 3D"),
         ("joints", "points", 2, "too few"),
-        ("analysis", "kind", "time-history", "kind = 'time-history'"),
     ],
 )
 def test_what_is_not_known_is_refused(table, key, value, words):

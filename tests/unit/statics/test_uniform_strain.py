@@ -211,7 +211,6 @@ def test_rigid_blocks_among_others_stay_rigid():
     ("change", "key", "words"),
     [
         ({"materials.stone.young": None}, "deformation", "without 'young'"),
-        ({"analysis.kind": "time-history"}, "deformation", "kind = 'time-history'"),
         ({"strain": [{"block": "b0", "value": 1e-4}]}, "block", "'b0' is fixed"),
         ({"materials.stone.deformation": "joints", "strain": [{"block": "b1", "value": 1e-4}]}, "block", "no strain"),
     ],
