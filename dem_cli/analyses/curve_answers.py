@@ -29,7 +29,8 @@ def summary(job: Job, curve: CapacityCurve, force: float, scale: float) -> dict[
     displacements, loads = curve.arrays()
     loads = loads * scale
     peak, last = curve.highest, curve.points[-1]
-    wanted, system = analysis.idealise, bilinear(displacements, loads, analysis.idealise.secant, analysis.idealise.drop)
+    wanted, out = analysis.idealise, slice(curve.farthest + 1)
+    system = bilinear(displacements[out], loads[out], wanted.secant, wanted.drop)
     at = load_at(displacements, loads, np.array(analysis.loads_at))
     return {
         "displacements": displacements.tolist(),

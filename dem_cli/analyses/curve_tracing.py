@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"
+TURNS = 0.01  # of the farthest displacement of a monitor, by which it has turned back
 FOLLOWING, AGAIN, BY_INCREMENTS = (
     "following the capacity curve",
     "the same curve in longer steps",
@@ -73,7 +74,7 @@ class CurveTracing:
         finally:
             drawn.hand_over(self.curve)
             found |= {"capacity_curve": self._told(), "displacement_at_failure": self.curve.highest.largest}
-            self.job.warnings += _ends(self.curve)
+            self.job.warnings += _ends(self.curve) + self._turns()
         self.sim.restore(self.end)
 
     def _drawing(self, doing: str) -> _Drawing:
@@ -126,6 +127,16 @@ class CurveTracing:
         self.hangs = True
         self.job.warnings.append(f"{differ}; more of them (analysis.increments) come closer to slow loading ({reason})")
         return drawn
+
+    def _turns(self) -> list[str]:
+        """A warning where the monitor that is controlled turns back."""
+        end, far = self.curve.points[-1].displacement, self.curve.points[self.curve.farthest].displacement
+        if self.of is None or end >= (1.0 - TURNS) * far:
+            return []
+        return [
+            f"monitor '{self.of.name}' turns back at {far:.3g} m: loads_at and the bilinear system are those of the "
+            "curve up to there; control another one (analysis.of)"
+        ]
 
     def _told(self) -> dict[str, Any]:
         """What the summary says of the curve."""

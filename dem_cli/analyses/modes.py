@@ -91,7 +91,9 @@ def _first(found: Modes) -> float | None:
 
 def _springs(sim: Simulation, contacts: str) -> np.ndarray:
     """Which contact points act, by the choice of the case, (n_points,) bool."""
-    return closed_points(sim) if contacts == "pressed" else touching_points(sim)
+    points = closed_points(sim) if contacts == "pressed" else touching_points(sim)
+    corners = sim.tracking.narrow.end_to_end(sim.model, sim.geometry)
+    return points & ~corners[sim.joints.owners]
 
 
 def _modes(sim: Simulation, closed: np.ndarray, count: int) -> Modes:
@@ -137,11 +139,12 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     free = ~model.fixed
     turns = np.linalg.norm(shape[:, rotations], axis=1)
     reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + turns * sim.shape.radii
+    reach = reach + np.abs(shape[:, rotations.stop :]).sum(axis=1)
     size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
     turn = float(turns.max())
     amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")
-    return rest.moved(amplitude * shape)._replace(
+    return rest.moved(amplitude * shape[:, : rotations.stop])._replace(
         step=number,
         displacement=float(amplitude * np.sqrt((shape[:, :d] ** 2).sum(axis=1)).max()),
         velocities=np.zeros_like(rest.velocities),
@@ -232,7 +235,7 @@ def _scaled_moduli(case: Case, factor: float) -> dict[str, float]:
     return {
         name: factor * material.young
         for name, material in case.materials.items()
-        if material.young is not None and math.isfinite(material.moduli[0])
+        if material.young is not None and (material.strains or math.isfinite(material.moduli[0]))
     }
 
 

@@ -41,10 +41,11 @@ def _load(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, ta
     """Forces on one block, shared by several, or on what lies under them."""
     chosen = model.chosen(table.selected, False)
     if table.falls or (table.at is not None and len(chosen) > 1):
-        return falling_load(model, surfaces, path, table)
+        return falling_load(model, surfaces, path, table)._replace(follows=table.follows)
     points = model.centroids[chosen] if table.at is None else np.array([table.at])
     shares = np.ones(len(chosen)) if table.each else model.masses[chosen] / model.masses[chosen].sum()
     if len(chosen) == 1:
         shares = np.ones(1)
     forces = shares[:, np.newaxis] * np.array(table.force)
-    return AppliedLoad(path, table.kind == "dead", chosen, points, forces, np.zeros(len(chosen)))
+    dead = table.kind == "dead"
+    return AppliedLoad(path, dead, chosen, points, forces, np.zeros(len(chosen)), follows=table.follows)

@@ -25,6 +25,7 @@ from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
+from dem_cli.model.following_loads import FollowingLoads
 from dem_cli.model.model import NO_PIECES, Model
 from dem_cli.model.quadratic_modes import quadratic_loads, quadratic_modes
 from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
@@ -243,11 +244,30 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
         applied = [load for load in loads if not load.dead]
     live += _resultants(model, applied)
     dead_loads = weight + _resultants(model, dead)
-    model = model._replace(dead_loads=dead_loads, live_loads=np.where(free, live, 0.0))
+    model = model._replace(
+        dead_loads=dead_loads, live_loads=np.where(free, live, 0.0), following=_following(model, dead, applied)
+    )
     if not model.n_modes:
         return model
     model = model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
     return with_imposed_strains(case, model) if case.strain else model
+
+
+def _following(model: Model, dead: Sequence[AppliedLoad], live: Sequence[AppliedLoad]) -> FollowingLoads | None:
+    """Loads that go along with their blocks. Raises CaseError: on blocks that deform."""
+    acting = [*((load, True) for load in dead), *((load, False) for load in live)]
+    found = [(load, is_dead) for load, is_dead in acting if load.follows is not None]
+    if not found:
+        return None
+    if model.n_modes:
+        message = "not known beside blocks that deform by themselves; 'joints' lumps them into their joints"
+        raise CaseError([CaseProblem((*load.path, "follows"), message) for load, _ in found])
+    blocks = np.concatenate([load.blocks for load, _ in found])
+    points, forces = (np.concatenate([getattr(load, key) for load, _ in found]) for key in ("points", "forces"))
+    counts = [len(load.blocks) for load, _ in found]
+    are_dead, turning = ([is_dead for _, is_dead in found], [load.follows == "block" for load, _ in found])
+    arms = points - model.centroids[blocks]
+    return FollowingLoads(blocks, arms, forces, np.repeat(are_dead, counts), np.repeat(turning, counts))
 
 
 def _direction(case: Case) -> np.ndarray:

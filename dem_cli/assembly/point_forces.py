@@ -22,6 +22,9 @@ class AppliedLoad(NamedTuple):
     forces: np.ndarray  # [N], (n, d)
     weights: np.ndarray  # what of them is weight that the load of pattern "mass" shares in [N], (n,)
     area: float = 0.0  # of the surface that a pressure acts on [m²]
+    follows: str | None = (
+        None  # what the forces go along with: "point" of their block, or "block": turn with it as well
+    )
 
     @property
     def resultant(self) -> np.ndarray:

@@ -70,11 +70,12 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 
 
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors at a point where there is no block, of blocks that share no joint, or of links that there are not."""
+    """Monitors where there is no block, of blocks that share no joint, of links that there are not, of nothing held."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
     return (
         link_problems(case, model)
         + shared_problems(case, model)
+        + held_problems(case, model)
         + [
             CaseProblem(
                 ("monitor", i, "point"),
@@ -102,6 +103,18 @@ def link_problems(case: Case, model: Model) -> list[CaseProblem]:
     names = model.link_names
     twice = [(path, name) for k, (path, name) in enumerate(zip(paths, names)) if name in names[:k]]
     return found + [CaseProblem(path, f"{show(name)} is used twice; give another") for path, name in twice]
+
+
+def held_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Monitors of reactions of blocks that nothing holds."""
+    return [
+        CaseProblem(
+            ("monitor", i, "quantity"),
+            f"{show(monitor.quantity)} is not allowed of {monitor.said}: none of it is fixed or has a [[restraint]]",
+        )
+        for i, monitor in enumerate(case.monitor)
+        if monitor.of_what_holds and not len(model.held_among(monitor.selected))
+    ]
 
 
 def shared_problems(case: Case, model: Model) -> list[CaseProblem]:

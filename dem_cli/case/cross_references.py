@@ -17,6 +17,7 @@ SELECTING = (  # that select blocks
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
+REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -64,7 +65,8 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "pattern"), "'live' needs a [[load]] or [[pressure]] with kind = 'live'"))
     if analysis.get("kind") == "settlement" and not data.get("settlement"):
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
-    found += [*strained_blocks(data, analysis.get("kind")), *controlled_monitor(data, analysis.get("of"))]
+    found += [*strained_blocks(data), *controlled_monitor(data, analysis.get("of"))]
+    found += [*reactions_in_time(data, analysis.get("kind")), *following_loads(data, analysis)]
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
@@ -88,18 +90,44 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
             yield CaseProblem((*path, "component"), "missing; analysis.of controls a displacement with a sign")
 
 
-def strained_blocks(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Materials whose blocks deform by themselves where that is not known: with real masses, as they would vibrate far
-    too fast, and beside ties and bars; blocks that bend in space, or on joints that cannot tell.
+def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
+    """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
+    if kind not in WITH_REAL_MASSES:
+        return []
+    asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
+    message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
+    return [
+        CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
+        for path, quantity in asked
+        if quantity in REACTIONS
+    ]
+
+
+def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Loads that follow blocks where that is not known: with real masses, and as what displacement controls."""
+    for path, table in entries(data, "load"):
+        kind, follows = analysis.get("kind"), table.get("follows")
+        if follows is not None and kind in WITH_REAL_MASSES:
+            where = f"{show(follows)} is not known in kind = {show(kind)}"
+            yield CaseProblem((*path, "follows"), f"{where}: loads follow blocks in analyses without time")
+        lone = analysis.get("control") == "displacement" and "of" not in analysis
+        if follows == "block" and lone and table.get("kind") == "live":
+            message = (
+                "'block' is not allowed with control = 'displacement' unless analysis.of names a monitor: along a "
+                "direction that turns there is no displacement to go to; 'point' is"
+            )
+            yield CaseProblem((*path, "follows"), message)
+
+
+def strained_blocks(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Materials whose blocks deform by themselves where that is not known: beside ties and bars; blocks that bend in
+    space, or on joints that cannot tell.
     """
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
-    reason = (
-        f"in kind = {show(kind)}: strains need analyses without time; 'joints' is" if kind in WITH_REAL_MASSES else ""
-    )
     held = next((key for key in LINKS if data.get(key)), None)
-    reason = reason or (f"beside [[{held}]], which holds on to blocks that keep their shape" if held else "")
+    reason = f"beside [[{held}]], which holds on to blocks that keep their shape" if held else ""
     for name, table in materials.items():
         way = table.get("deformation") if isinstance(table, dict) else None
         path = ("materials", name, "deformation")

@@ -47,6 +47,7 @@ class Scope(NamedTuple):
 SCOPES = (
     Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
+    Scope("monitor.component", 3, "a moment has none in 2D", ("x", "y", "z"), beside=("quantity", "reaction_moment")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
     Scope("initial.axis", 3, "blocks tilt in their plane in 2D: give dimension = 3"),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),

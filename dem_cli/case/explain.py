@@ -44,7 +44,7 @@ EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
     "window windows door gate opening": "structure.wall.openings",
     "earthquake groundmotion accelerogram shaking quake pga": "motion",
     "mortar": "joints.mohr-coulomb.cohesion",
-    "crack cracking tensilestrength": "joints.mohr-coulomb.tension",
+    "cracking tensilestrength": "joints.mohr-coulomb.tension",
     "normalstiffness springs": "joints.kn",
     "overturning failureload seismiccapacity": "analysis.pushover",
     "dome crossvault barrelvault cupola": "structure.vault",

@@ -56,6 +56,12 @@ class Load(Selection):
         examples=[0.5],
     )
     kind: Kind = Field(default="dead", description=KIND, examples=["live"])
+    follows: Literal["point", "block"] | None = Field(
+        default=None,
+        description="where geometry moves: 'point', it goes along with the point of the block that it was put on; "
+        "'block', its direction turns with the block as well; default: it keeps direction and lever about the centroid",
+        examples=["point"],
+    )
 
     @model_validator(mode="after")
     def _a_force(self) -> Load:
@@ -73,6 +79,8 @@ class Load(Selection):
             raise KeyProblem("missing; say which blocks it acts on, or at which point or along which line", "block")
         if self.spread is not None and not placed:
             raise KeyProblem("not used without at or line", "spread")
+        if self.follows == "point" and not placed:
+            raise KeyProblem("'point' is not used without at or line: a force at the centroid follows it", "follows")
         if self.each and placed:
             raise KeyProblem(f"true is not allowed with {'at' if self.line is None else 'line'}", "each")
         return self

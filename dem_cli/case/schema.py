@@ -28,6 +28,7 @@ from dem_cli.case.base import (
     sequence_of,
 )
 from dem_cli.case.block_table import BlockTable
+from dem_cli.case.cross_references import REACTIONS
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
@@ -121,6 +122,7 @@ PLACES = ("block", "structure", "point", "between", "tie", "bar")  # where a mon
 OF_LINKS = {"tie": ("force", "elongation"), "bar": ("force", "slip")}
 AT_JOINTS = ("opening", "slip")
 OF_POINTS = ("displacement", "velocity", "acceleration")
+VECTORS = (*OF_POINTS, "rotation", *REACTIONS)  # what has components
 
 
 class Monitor(Selection):
@@ -152,14 +154,25 @@ class Monitor(Selection):
         default=None, description="of a bar: how far along it from its start [m]", examples=[0.6]
     )
     quantity: Literal[
-        "displacement", "rotation", "velocity", "acceleration", "opening", "slip", "force", "elongation"
+        "displacement",
+        "rotation",
+        "velocity",
+        "acceleration",
+        "opening",
+        "slip",
+        "force",
+        "elongation",
+        "reaction",
+        "reaction_moment",
     ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
         "a joint: opening [m] (largest separation of its two ends, in 3D of its corners, negative: pressed) or slip "
         "[m] of the second block against the first, at the middle, along the normal turned by +90°; in 3D its length; "
         "of a tie: force [N], tension positive, or elongation [m] since it was drawn; of a bar: force, or slip [m] "
-        "along it against its block",
+        "along it against its block; of blocks that are fixed or have a [[restraint]], in analyses without time: "
+        "reaction [N], what holds them gives to all of them together, or its reaction_moment [N m] about their common "
+        "centroid, where that is then",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
@@ -180,12 +193,12 @@ class Monitor(Selection):
             raise ValueError(f"{found} given; a monitor has one of {listed} and '{PLACES[-1]}'")
         if (self.at is None) == (self.bar is not None):
             raise KeyProblem("missing; how far along the bar [m]" if self.bar else "not used without bar", "at")
-        allowed = {"between": AT_JOINTS, **OF_LINKS}.get(given[0], (*OF_POINTS, "rotation"))
+        allowed = {"between": AT_JOINTS, **OF_LINKS, "point": (*OF_POINTS, "rotation")}.get(given[0], VECTORS)
         if self.quantity not in allowed:
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
             listed = ", ".join(f"'{name}'" for name in allowed)
             raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
-        if self.quantity not in (*OF_POINTS, "rotation") and self.component is not None:
+        if self.quantity not in VECTORS and self.component is not None:
             article = "an" if self.quantity[0] in "aeiou" else "a"
             raise KeyProblem(
                 f"'{self.component}' is not allowed; {article} {self.quantity} has no component", "component"
@@ -194,6 +207,11 @@ class Monitor(Selection):
             listed = ", ".join(f"'{name}'" for name in OF_POINTS)
             raise KeyProblem(f"true is not allowed; only {listed} are absolute or relative to the base", "absolute")
         return self
+
+    @property
+    def of_what_holds(self) -> bool:
+        """Whether it follows what fixed or restrained blocks are held by."""
+        return self.quantity in REACTIONS
 
     @property
     def place(self) -> str:

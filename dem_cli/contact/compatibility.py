@@ -1,11 +1,12 @@
-"""Compatibility of rigid blocks, B: from the motion of the blocks to the relative motion at every contact point.
+"""Compatibility of blocks, B: from the motion of the blocks to the relative motion at every contact point.
 
     w = B u        motion of b against a at every point: along its normal (opening, positive), then along its tangents
 
 One copy for limit analysis, natural frequencies, fictitious masses and the elastic path; 2D and 3D alike. A point has
 d rows, its normal first. Columns are degrees of freedom: block by block, translations first, then rotations; as a
-sparse matrix, those of free blocks alone, of which those that restraints hold are empty. The transpose gives the forces
-on the blocks from those at the points.
+sparse matrix, those of free blocks alone, of which those that restraints hold are empty. Modes of blocks that deform,
+where they are asked for, come behind the rotations of their block. The transpose gives the forces on the blocks from
+those at the points.
 """
 
 from __future__ import annotations
@@ -39,22 +40,36 @@ def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
     return one * np.array([-1.0, 1.0])[:, None]
 
 
-def free_columns(model: Model, joints: Joints) -> np.ndarray:
-    """Column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof)."""
-    n_dof = model.dead_loads.shape[1]
+def held_motions(model: Model, strains: bool) -> np.ndarray:
+    """Degrees of freedom that loads do not change, (n_blocks, n_dof) bool; strains: with modes of blocks."""
+    return np.column_stack([model.held, model.mode_stiffness == 0.0]) if strains else model.held
+
+
+def free_columns(model: Model, joints: Joints, strains: bool = False) -> np.ndarray:
+    """Column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof).
+
+    strains: as `held_motions`.
+    """
+    held = held_motions(model, strains)
+    n_dof = held.shape[1]
     column = np.full(model.n_blocks, -1)
     column[~model.fixed] = np.arange(int((~model.fixed).sum())) * n_dof
     blocks = joints.blocks[joints.owners]
-    return np.where(model.held[blocks], -1, column[blocks][:, :, None] + np.arange(n_dof))
+    return np.where(held[blocks], -1, column[blocks][:, :, None] + np.arange(n_dof))
 
 
-def compatibility(model: Model, joints: Joints) -> csr_matrix:
-    """B from the free degrees of freedom to the motion of b against a at every point, (n_points·d, n_free)."""
+def compatibility(model: Model, joints: Joints, strained: Bodies | None = None) -> csr_matrix:
+    """B from the free degrees of freedom to the motion of b against a at every point, (n_points·d, n_free).
+
+    strained: blocks that deform, as they are now, whose modes are further columns; None: all blocks are rigid.
+    """
     from scipy.sparse import csr_matrix
 
     rows = relative_motion(joints, model.dimension)
+    if strained is not None:
+        rows = np.concatenate([rows, strain_motion(model, joints, strained)], axis=3)
     n_points, d, _, n_dof = rows.shape
-    columns = np.broadcast_to(free_columns(model, joints)[:, None], rows.shape)
+    columns = np.broadcast_to(free_columns(model, joints, strained is not None)[:, None], rows.shape)
     used = (columns >= 0) & (rows != 0.0)
     counts = used.reshape(n_points * d, 2 * n_dof).sum(axis=1)
     starts = np.concatenate([[0], np.cumsum(counts)])

@@ -59,6 +59,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def bonds(self, model: Model, geometry: Geometry) -> np.ndarray:
         """Joints of the start that have an area which a bond can hold, (n_joints,) bool."""
 
+    def end_to_end(self, model: Model, geometry: Geometry) -> np.ndarray:
+        """Joints without a length, of corners that meet where blocks were drawn, (n_joints,) bool."""
+
     def chains_of(
         self, model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties
     ) -> Returning | None:

@@ -51,7 +51,8 @@ class DrawnFaces(NamedTuple):
         )  # fmt: skip
 
 
-# Normal forces [N] of points by parameters of their joints, overlaps [m], memory and kn: of laws/law.py, `pressed`.
+# Normal forces [N] of points by parameters of their joints, overlaps [m], negative: open, memory and kn
+# (laws/law.py: `pressed`).
 PressedLaw = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -70,7 +71,8 @@ class JointProperties(NamedTuple):
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
-    pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * overlaps
+    pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
+    bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
     rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
 

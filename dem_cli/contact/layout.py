@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -117,11 +118,12 @@ def steepest(layout: PointLayout, length: float) -> float:
     return max(float(np.abs(profile.slopes(places, gaps)).max()) for places, gaps, _ in drawn)
 
 
+@cache
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Places from 0 to 1 and weights of the Gauss–Lobatto rule with n ≥ 2 points, each (n,); the weights add up to 1.
 
     Exact for polynomials up to degree 2n − 3: from three points on, a joint under bending has the section modulus
-    and the moment of inertia of a rectangle. Source: Abramowitz and Stegun 25.4.32.
+    and the moment of inertia of a rectangle. Source: Abramowitz and Stegun 25.4.32. Nobody may write to them.
     """
     if n < 2:
         raise ValueError("the rule has at least two points")
@@ -130,4 +132,6 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     inner = 0.5 * (inner - inner[::-1])  # symmetric to the last digit
     x = np.concatenate([[-1.0], inner, [1.0]])
     weights = 1.0 / (n * (n - 1) * last(x) ** 2)
-    return 0.5 * (x + 1.0), weights / weights.sum()
+    places, weights = 0.5 * (x + 1.0), weights / weights.sum()
+    places.flags.writeable = weights.flags.writeable = False
+    return places, weights

@@ -5,27 +5,33 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.contact.geometry import AnyMovingNarrowPhase
-from dem_cli.contact.joints import JointArrays, PressedLaw, points_of
+from dem_cli.contact.joints import JointArrays, JointProperties, points_of
 from dem_cli.contact.keys import same_rows
 
 
-def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, pressed: PressedLaw) -> None:
+def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, properties: JointProperties) -> None:
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
-    that is nearest takes over. pressed: normal forces of points that are new, by their overlap (laws/law.py).
+    that is nearest takes over. properties: their law gives normal forces of new points by their overlap, and where it
+    is bonded, points go on from the gap that their forces belong to, that of the step before: else the next step would
+    find other forces at the same gap, and book their change as lost.
     """
     match = same_rows(old.geometry.keys, new.geometry.keys)
     points = _same_points(old, new, match)
     target = np.flatnonzero(points >= 0)
     _copy(narrow, old, new, target, points[target])
     narrow.take_over(old, new, match, points >= 0)
-    orphans = np.setdiff1d(np.flatnonzero(_loaded(old)), match[match >= 0])
+    lost = _loaded(old)
+    lost[match[match >= 0]] = False
+    orphans = np.flatnonzero(lost)
     newborn = np.flatnonzero(match < 0)
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)
     new.contacts.exchanged[:] = old.contacts.exchanged
-    narrow.book(old, new, points >= 0, pressed)
+    narrow.book(old, new, points >= 0, properties.pressed)
+    if properties.bonded:
+        new.contacts.gaps[target] = old.contacts.gaps[points[target]]
 
 
 def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:

@@ -154,8 +154,16 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
 
 
 def bonds(model: Model, geometry: PlanarGeometry) -> np.ndarray:
-    """All of them: joints in the plane are edges that overlap."""
-    return np.ones(len(geometry.keys), bool)
+    """Edges that overlap; not those that meet end to end."""
+    return ~end_to_end(model, geometry)
+
+
+def end_to_end(model: Model, geometry: PlanarGeometry) -> np.ndarray:
+    """Joints of the start without a length, as where four blocks have a corner in one place, (n_joints,) bool."""
+    sizes = np.diff(model.part_starts)
+    corners = model.vertices + np.repeat(model.centroids[model.part_blocks], sizes, axis=0)
+    whole = lengths_of(geometry.edges, corners).min(axis=1, initial=np.inf)
+    return overlap_lengths(geometry.edges, corners) <= END_TO_END * whole
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Chains | None:

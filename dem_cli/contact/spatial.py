@@ -263,6 +263,11 @@ def bonds(model: Model, geometry: SpatialGeometry) -> np.ndarray:
     return along_each_other(model, geometry.kinds, geometry.keys)
 
 
+def end_to_end(model: Model, geometry: SpatialGeometry) -> np.ndarray:
+    """None, (n_joints,) bool: in space corners that meet share no joint."""
+    return np.zeros(len(geometry.kinds), bool)
+
+
 def along_each_other(model: Model, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Pairs of faces (n, 2) of undeformed blocks that lie along each other, (n,) bool; of kinds (n,)."""
     return _along(model.faces.normals, kinds, faces)

@@ -33,8 +33,8 @@ from dem_cli.kernels.spatial_points import LOCAL, classify
 from dem_cli.model.model import Model
 
 __all__ = [
-    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "facing", "find", "left_out", "microrotations",
-    "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
+    "bonds", "book", "carry", "chains_of", "corners_of", "drawn", "end_to_end", "facing", "find", "left_out",
+    "microrotations", "open_gaps", "place", "points", "profile_fault", "sink", "take_over", "touching",
 ]  # fmt: skip
 
 BAND = 0.02  # of the shortest side of both faces: over so much of the rim normals turn
@@ -160,10 +160,10 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.n
 
 
 def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
-    """Energy that went or came with other points: new ones hold what their own overlap says, unless they are glued."""
+    """Energy that went or came with other points: new ones hold what their own gap and memory say, pressed or glued."""
     contacts, joints = new.contacts, new.joints
-    fresh = ~known & (contacts.normal >= 0.0)
-    overlaps = np.maximum(contacts.closure - contacts.gaps, 0.0)[fresh]
+    fresh = ~known
+    overlaps = (contacts.closure - contacts.gaps)[fresh]
     parameters = joints.law[joints.owners[fresh]]
     contacts.normal[fresh] = pressed(parameters, overlaps, contacts.memory[fresh], joints.kn[fresh])
     contacts.shear[fresh & (contacts.normal == 0.0)] = 0.0
@@ -181,6 +181,11 @@ def _held(of: JointArrays) -> float:
 def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:
     """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
     return along_each_other(model, geometry.kinds, geometry.faces)
+
+
+def end_to_end(model: Model, geometry: SpatialMotion) -> np.ndarray:
+    """None, (n_joints,) bool: in space corners that meet share no joint."""
+    return np.zeros(len(geometry.kinds), bool)
 
 
 def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:

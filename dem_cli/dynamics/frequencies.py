@@ -6,6 +6,9 @@ B: relative motion at every contact point (contact.compatibility), k: its normal
 G, on request: the geometric stiffness of the contact forces (dynamics.geometric_stiffness), W/(kn h) of the rest.
 In space M is not diagonal: moments of inertia are those about principal axes. There the eigenvalues are found with
 rotations about these axes; shapes have rotation vectors along the axes of the world.
+
+Modes of blocks that deform are further degrees of freedom behind the rotations, with their own stiffness in K and their
+consistent masses in M (model.mode_masses), which couple them with rotations and with each other; G leaves them out.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.contact.compatibility import compatibility
+from dem_cli.contact.compatibility import compatibility, held_motions
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
 from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
@@ -22,12 +25,13 @@ from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
 from dem_cli.links.matrices import elongations
 from dem_cli.links.matrices import geometric as geometric_of_links
+from dem_cli.model.mode_masses import mass_matrices
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from dem_cli.engine.simulation import Simulation
-    from dem_cli.kernels.records import Joints
+    from dem_cli.kernels.records import Bodies, Joints
     from dem_cli.model.model import Model
 
 
@@ -41,9 +45,10 @@ class System(NamedTuple):
     # for each link is below these
     geometric: csr_array | None  # L⁻ᵀ G L⁻¹ [1/s2], (n_free, n_free); None: left out
     masses: np.ndarray  # and principal moments of inertia [kg, kg m2], (n_free_blocks, n_dof)
-    axes: np.ndarray  # from principal axes to those of the world, (n_free_blocks, r, r)
+    axes: np.ndarray  # from principal axes to those of the world, with modes of blocks: from uncoupled motions to
+    # rotations and modes, orthogonal, (n_free_blocks, r + m, r + m)
     blocks: np.ndarray  # free blocks, in their order, (n_free_blocks,)
-    held: np.ndarray  # columns that restraints hold: nothing is in them, (n_free,) bool
+    held: np.ndarray  # columns that restraints hold, and modes of rigid blocks: nothing is in them, (n_free,) bool
     settings: FrequencySettings
 
     @property
@@ -97,11 +102,13 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     """
     contacts = sim.measured()  # and frames and levers of this instant
     model, joints = sim.model, sim.joints
-    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies.orientations)
+    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies)
     found = found._replace(rows=_with_links(found, sim, closed is not None))
     if not geometric:
         return found
     per_mass = _per_mass(found.masses, found.axes)
+    if model.n_modes:
+        per_mass = _rigid_motions(model) @ per_mass
     turning = geometric_stiffness(model, joints, sim.geometry, contacts, sim.bodies)
     if sim.links:
         turning = turning + geometric_of_links(sim.links, sim.bodies, model.fixed, sim.bodies.velocities.shape[1])
@@ -130,25 +137,64 @@ def springs_of(
     joints: Joints,
     closed: np.ndarray | None = None,
     settings: FrequencySettings = DEFAULT.frequency,
-    orientations: np.ndarray | None = None,
+    bodies: Bodies | None = None,
 ) -> System:
     """Springs and masses of joints whose frames and levers are current; closed: as for `system`.
 
-    orientations: of all blocks, as Bodies has them; None: none has turned.
+    bodies: where all blocks are, with the modes of those that deform; None: none has turned, and all are rigid.
     """
-    from scipy.sparse import diags_array
+    from scipy.sparse import diags_array, vstack
 
-    d = model.dimension
+    d, strained = model.dimension, bodies if model.n_modes else None
     blocks = np.flatnonzero(~model.fixed)
-    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), model.inertias[blocks]])
-    axes = principal_directions(model, orientations)[blocks]
+    turning, axes = (part[blocks] for part in _uncoupled(model, bodies))
+    masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), turning])
     springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
     if closed is not None:
         springs = springs * closed[:, None]
-    rows = diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints) @ _per_mass(masses, axes)
-    rows = rows.tocsr()
+    per_mass = _per_mass(masses, axes)
+    rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints, strained) @ per_mass).tocsr()
+    held = model.held_columns
+    if strained is not None:
+        rows, held = vstack([rows, _own_springs(model) @ per_mass]).tocsr(), held_motions(model, True)[blocks].ravel()
     rows.eliminate_zeros()
-    return System(rows, None, masses, axes, blocks, model.held_columns, settings)
+    return System(rows, None, masses, axes, blocks, held, settings)
+
+
+def _uncoupled(model: Model, bodies: Bodies | None) -> tuple[np.ndarray, np.ndarray]:
+    """Moments of inertia, and masses of modes, of motions of each block that are not coupled, (n_blocks, r + m); with
+    these motions as System.axes."""
+    if bodies is None or not model.n_modes:
+        return model.inertias, principal_directions(model, None if bodies is None else bodies.orientations)
+    matrix, r = mass_matrices(model), model.inertias.shape[1]
+    if r == 3:
+        matrix[:, :r] = matrices(bodies.orientations) @ matrix[:, :r]
+        matrix[:, :, :r] = matrix[:, :, :r] @ matrices(bodies.orientations).swapaxes(1, 2)
+    free = ~held_motions(model, True)[:, model.dimension :]
+    found, axes = np.diagonal(matrix, axis1=1, axis2=2).copy(), np.tile(np.eye(matrix.shape[1]), (len(matrix), 1, 1))
+    for block, kept in enumerate(free):  # those that are held stay what and where they are
+        among = np.ix_(kept, kept)
+        found[block, kept], axes[block][among] = np.linalg.eigh(matrix[block][among])
+    return found, axes
+
+
+def _own_springs(model: Model) -> csr_array:
+    """√K of the modes of blocks that deform, (n_free_blocks·m, n_free)."""
+    from scipy.sparse import coo_array
+
+    n_dof = model.rotations.stop + model.n_modes
+    stiffness = model.mode_stiffness[~model.fixed]
+    columns = n_dof * np.arange(len(stiffness))[:, None] + np.arange(model.rotations.stop, n_dof)
+    places = np.arange(stiffness.size), columns.ravel()
+    return coo_array((np.sqrt(stiffness.ravel()), places), shape=(stiffness.size, n_dof * len(stiffness))).tocsr()
+
+
+def _rigid_motions(model: Model) -> csr_array:
+    """From the free degrees of freedom of blocks that deform to those of rigid ones, (n_free_rigid, n_free)."""
+    from scipy.sparse import eye_array, kron
+
+    one = eye_array(model.rotations.stop, model.rotations.stop + model.n_modes)
+    return kron(eye_array(int((~model.fixed).sum())), one).tocsr()
 
 
 def principal_directions(model: Model, orientations: np.ndarray | None = None) -> np.ndarray:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
+from dem_cli.contact.compatibility import held_motions
 from dem_cli.contact.joints import JointProperties
 from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import Books
+from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
 from dem_cli.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
@@ -20,9 +22,6 @@ from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
 from dem_cli.links.link import N_STATE
 from dem_cli.model.model import Model
-
-if TYPE_CHECKING:
-    from dem_cli.engine.viscous import Damping
 
 
 class Looker(Protocol):
@@ -45,10 +44,13 @@ class DynamicSimulation(Simulation):
     ):
         self.damping = damping
         self.real, self.dt = False, 1.0
-        self.masses = np.where(model.held, 0.0, _masses(model))
+        self.strained = strain_rates(model, damping, self.dt)
+        self.masses = np.where(held_motions(model, model.n_modes > 0), 0.0, _masses(model))
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
             self.masses[:, model.rotations] = 0.0
+        self.masses[:, model.rotations.stop :] = 0.0  # matrices, in StrainRates
         super().__init__(model, law, properties, "large", settings=settings)
+        self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
         self.takes_back = False  # springs that press at the start go on pressing
 
     @property
@@ -68,7 +70,11 @@ class DynamicSimulation(Simulation):
         model = self.model
         self.rest()
         self.real, self.dt, self.time = True, dt, 0.0
-        self.loads.inverse_masses[:] = np.where(model.held, 0.0, 1.0 / _masses(model))
+        held = held_motions(model, model.n_modes > 0)
+        self.loads.inverse_masses[:] = np.where(held, 0.0, 1.0 / _masses(model))
+        self.strained = strain_rates(model, self.damping, dt)
+        if model.n_modes:
+            self.loads.dead[:] = turned_loads(self.strained, self.dead_loads, self.bodies.orientations)
         self.loads.speed_limits[:] = np.inf
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
         self.control[slot.MASS_RATE] = self.damping.mass
@@ -107,6 +113,7 @@ class DynamicSimulation(Simulation):
         """Dampers of the present joints; what they remember is with the points. closed: state of those closed."""
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn) if self.damping.in_joints else 0
+        of_modes = (n, 2, d, self.model.n_modes) if self.model.n_modes else (0,)
         self.dampers = Dampers(
             first=self.law.n_memory(d),
             viscosity=self.damping.viscosities(self.model, joints),
@@ -120,6 +127,9 @@ class DynamicSimulation(Simulation):
             states=np.where(contacts.normal[:n] != 0.0, closed, OPEN).astype(np.int8),
             masses=self.masses,
             pushes=np.zeros_like(self.bodies.velocities),
+            strained=self.strained,
+            motions=np.zeros(of_modes),
+            lifts=np.zeros(of_modes),
         )
 
     def _decays(self) -> np.ndarray:
@@ -168,19 +178,20 @@ class DynamicSimulation(Simulation):
 
     def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
         """Room for so many samples of blocks and of all links, every so many steps."""
-        samples = np.zeros((n_samples, len(blocks), 3, self.bodies.velocities.shape[1]))
+        samples = np.zeros((n_samples, len(blocks), 3, self.model.rotations.stop))
         n_links = sum(len(link.state) for link in self.links)
         return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
 
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""
-        d, n_dof = self.model.dimension, self.bodies.velocities.shape[1]
+        d, n_dof = self.model.dimension, self.model.rotations.stop
         return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
 
     def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
         run = compiled_shake(
-            self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links
-        )
+            self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
+            self.model.n_modes > 0, len(self.model.mode_shapes) > 0,
+        )  # fmt: skip
         return run(
             first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.geometry,
             self.contacts, self.links, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,
@@ -199,11 +210,18 @@ class DynamicSimulation(Simulation):
 
     def _energy_of(self, velocities: np.ndarray, turns: np.ndarray) -> float:
         """Kinetic energy of blocks that are turned like this, with real masses: those along principal axes [J]."""
-        spins = along_principal(velocities[:, self.model.rotations], self.shape.axes, turns)
+        rotations = self.model.rotations
+        spins, rates = (
+            along_principal(velocities[:, rotations], self.shape.axes, turns),
+            velocities[:, rotations.stop :],
+        )
         velocities = np.column_stack([velocities[:, : self.model.dimension], spins])
-        inverse = self.loads.inverse_masses
+        inverse = self.loads.inverse_masses[:, : rotations.stop]
         moving = inverse > 0.0
-        return 0.5 * float((velocities[moving] ** 2 / inverse[moving]).sum())
+        found = 0.5 * float((velocities[moving] ** 2 / inverse[moving]).sum())
+        return (
+            found + 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates)) if rates.size else found
+        )
 
     def note_kinetic_energy(self) -> None:
         """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""
@@ -238,9 +256,10 @@ class DynamicSimulation(Simulation):
         self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
 
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
-        """Of the last step, relative to the base [m/s², rad/s²], (n, n_dof)."""
-        bodies, shape = self.bodies, self.shape
-        means, kicked = (field.reshape(bodies.velocities.shape)[blocks] for field in (bodies.means, bodies.pulled))
+        """Of the last step, relative to the base [m/s², rad/s²], (n, d + r)."""
+        bodies, shape, columns = self.bodies, self.shape, slice(self.model.rotations.stop)
+        fields = (field.reshape(bodies.velocities.shape)[blocks, columns] for field in (bodies.means, bodies.pulled))
+        means, kicked = fields
         found = 2.0 * (kicked - means) / self.dt
         if len(shape.axes):
             rotations = self.model.rotations
@@ -250,10 +269,12 @@ class DynamicSimulation(Simulation):
 
 
 def _masses(model: Model) -> np.ndarray:
-    """Masses and moments of inertia of all blocks [kg, kg m²], (n_blocks, n_dof)."""
-    return np.column_stack([np.repeat(model.masses[:, None], model.dimension, axis=1), model.inertias])
+    """Masses and moments of inertia of all blocks [kg, kg m²], (n_blocks, n_dof); modes have that of their block."""
+    d, m = model.dimension, model.n_modes
+    masses = np.repeat(model.masses[:, None], d + m, axis=1)
+    return np.column_stack([masses[:, :d], model.inertias, masses[:, d:]])
 
 
 def no_watch(sim: Simulation) -> Watch:
     """Nobody looks: room for no sample, however long the stretch."""
-    return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.bodies.velocities.shape[1])))
+    return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.model.rotations.stop)))

@@ -57,6 +57,8 @@ def fictitious_masses(
     # Blocks that touch nothing now: as heavy as a typical block that does, or falling slowly.
     for k in range(masses.shape[1]):
         lonely = masses[:, k] <= 0.0
+        if not lonely.any():
+            continue
         if lonely.all():
             weights = np.maximum(np.abs(model.dead_loads).max(axis=1), 1e-300)
             masses[:, k] = weights / (free_fall * shape.radii) * (1.0 if k < model.dimension else shape.radii**2)

@@ -10,7 +10,6 @@ from dem_cli.assembly.restraints import MOTIONS
 from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
 from dem_cli.engine import measures
 from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels import records as slot
 from dem_cli.links.matrices import each
 
 SECTIONS = {"tie": "ties", "reinforcement": "bars"}  # kind of link: key of the summary
@@ -50,9 +49,7 @@ def _restraints(sim: Simulation) -> dict[str, Any]:
     model = sim.model
     if not len(model.restrained):
         return {}
-    columns, names = slice(model.rotations.stop), MOTIONS[model.dimension]
-    dead, live = sim.control[slot.DEAD_FACTOR], sim.control[slot.LIVE_FACTOR] * sim.live_scale
-    given = -(sim.bodies.forces[:, columns] + dead * model.dead_loads + live * model.live_loads)
+    given, names = measures.reactions(sim), MOTIONS[model.dimension]
     said = {
         model.block_ids[k]: {name: float(given[k, i]) for i, name in enumerate(names) if model.restrained[k, i]}
         for k in np.flatnonzero(model.restrained.any(axis=1)).tolist()

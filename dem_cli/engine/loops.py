@@ -16,6 +16,7 @@ from dem_cli.kernels.drift import (
     drift_strained_centroids,
     drift_strained_corners,
     drift_strained_solids,
+    drift_strained_tumbling,
     drift_tumbling,
 )
 from dem_cli.kernels.planar_forces import make_planar_forces
@@ -33,6 +34,7 @@ class Drifts(NamedTuple):
     in_pseudo_time: Callable
     in_time: Callable  # with real masses, in seconds
     strained: Callable  # in pseudo-time, of blocks that deform
+    strained_in_time: Callable
 
 
 def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
@@ -45,8 +47,8 @@ def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
 
 FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law
 DRIFTS = {
-    2: Drifts(drift_corners, drift_corners, drift_strained_corners),
-    3: Drifts(drift_solids, drift_tumbling, drift_strained_solids),
+    2: Drifts(drift_corners, drift_corners, drift_strained_corners, drift_strained_corners),
+    3: Drifts(drift_solids, drift_tumbling, drift_strained_solids, drift_strained_tumbling),
 }
 
 
@@ -85,8 +87,22 @@ def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int,
 
 
 @cache
-def compiled_shake(law: Law, profiled: bool, damped: bool, dimension: int = 2, links: tuple[str, ...] = ()):
+def compiled_shake(
+    law: Law,
+    profiled: bool,
+    damped: bool,
+    dimension: int = 2,
+    links: tuple[str, ...] = (),
+    strains: bool = False,
+    bends: bool = False,
+):
     """The stepping loop of time histories, as compiled_advance; compiled at its first call."""
+    if bends:
+        forces = make_profiled_forces(law.function, law.bonded, keeps=damped, meets=True, strains=True, bends=True)
+        return make_shake(forces, drift_bent_corners, damped, strains=True, bends=True)
+    if strains:
+        forces = FORCES[dimension](law, profiled, keeps=damped, meets=True, strains=True)
+        return make_shake(forces, DRIFTS[dimension].strained_in_time, damped, strains=True)
     forces = FORCES[dimension](law, profiled, keeps=damped, meets=True)
     return make_shake(forces, DRIFTS[dimension].in_time, damped, _pull(links, True))
 

@@ -15,8 +15,10 @@ from dem_cli.kernels.records import Bodies
 from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
+from dem_cli.model.following_loads import FollowingLoads
 from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, LinkRecord
 
+ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
 NET, ALL = 0, 1  # of Contacts.exchanged
 
 
@@ -49,20 +51,43 @@ def largest_elastic(sim: Simulation) -> float:
 
 
 def live_displacement(sim: Simulation) -> float:
-    """Work-conjugate displacement of the live load, q·u [J per unit multiplier]."""
+    """Work-conjugate displacement of the live load, q·u [J per unit multiplier].
+
+    Of forces that follow their blocks: of the points that they go along with, along their directions as drawn.
+    """
+    if sim.following is not None:
+        return _displacement_of_followers(sim, sim.following)
     d, rotations = sim.model.dimension, sim.model.rotations
     live, free = sim.loads.live, sim.free  # sums over free blocks: a far support changes no bit of them
     travel = (live[free, :d] * displacements(sim)[free]).sum()
     return float(travel + (live[free, rotations] * rotation_vectors(sim.bodies.orientations[free])).ravel().sum())
 
 
+def _displacement_of_followers(sim: Simulation, following: FollowingLoads) -> float:
+    """The same where loads follow their blocks; restrained motions are zero."""
+    turned = rotation_vectors(sim.bodies.orientations)
+    motion = np.column_stack([displacements(sim), turned])
+    drawn = float((sim.model.live_loads * motion)[sim.free].sum())
+    return sim.live_scale * (drawn + following.beyond(sim.bodies.orientations, turned))
+
+
 def live_force(sim: Simulation) -> float:
-    """Sum of the forces of the live load at an internal multiplier of 1 [N]."""
-    return float(np.sqrt((sim.loads.live[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+    """Sum of the forces of the live load at an internal multiplier of 1 [N].
+
+    Of couples alone, of forces at the far ends of their blocks with the same moments.
+    """
+    live = sim.loads.live[sim.free]
+    force = float(np.sqrt((live[:, : sim.model.dimension] ** 2).sum(axis=1)).sum())
+    moments = np.sqrt((live[:, sim.model.rotations] ** 2).sum(axis=1))
+    at_ends = float((moments / sim.shape.radii[sim.free]).sum())
+    return force if force > ROUND_OFF * at_ends else at_ends
 
 
 def live_travel(sim: Simulation) -> float:
-    """Displacement of the live load along itself since it was drawn: q·u over `live_force` [m]; 0 without one."""
+    """Displacement of the live load along itself since it was drawn: q·u over `live_force` [m]; 0 without one.
+
+    Of couples alone: how far the far ends of their blocks turned.
+    """
     force = live_force(sim)
     return live_displacement(sim) / force if force > 0.0 else 0.0
 
@@ -91,6 +116,19 @@ def largest_overlap(sim: Simulation) -> float:
     return float(max(0.0, -sim.contacts.gaps.min(initial=0.0)))
 
 
+def reactions(sim: Simulation) -> np.ndarray:
+    """What holds blocks gives to them, forces [N] and moments about their centroids [N m], (n_blocks, d + r).
+
+    To those with restraints along what these hold, against joints, links and loads; to fixed blocks against joints and
+    links, without weight and loads of their own. Zero along all that is free.
+    """
+    model, columns = sim.model, slice(sim.model.rotations.stop)
+    dead, live = sim.present_loads()
+    applied = sim.control[slot.DEAD_FACTOR] * dead + sim.control[slot.LIVE_FACTOR] * sim.live_scale * live
+    given = -(sim.bodies.forces[:, columns] + np.where(model.fixed[:, None], 0.0, applied))
+    return np.where(model.held, given, 0.0)
+
+
 def free_falls(sim: Simulation) -> np.ndarray:
     """Largest acceleration that its own loads alone can give each block [m per step²], (n_blocks,)."""
     loads, control, d = sim.loads, sim.control, sim.model.dimension
@@ -109,7 +147,7 @@ def energy_sums(sim: Simulation) -> EnergySums:
 def energy(sim: Simulation) -> Energy:
     """The energy ledger since the start [J]; external: applied loads and base without gravity."""
     books, d, free = sim.books(), sim.model.dimension, sim.free
-    weight, height = -sim.loads.dead[free, d - 1], displacements(sim)[free, d - 1]
+    weight, height = -sim.drawn_dead[free, d - 1], displacements(sim)[free, d - 1]
     if books.lag > 0.0:
         height = height - books.lag * sim.bodies.velocities[free, d - 1]
     gravity = float((weight * height).sum())

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import angles_of, beside, rotation_vectors, swept, tangents_of, turning
+from dem_cli.engine.measures import reactions
+from dem_cli.geometry.rotation import angles_of, beside, moments, rotation_vectors, swept, tangents_of, turning
 from dem_cli.kernels.records import NO_LINKS
 from dem_cli.links.link import N_STATE, LinkReading
 from dem_cli.links.matrices import reading_of
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
+from dem_cli.model.quadratic_modes import moved_by_modes
 from dem_cli.model.scales import origin_of
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ class Points(NamedTuple):
     rows: np.ndarray  # of their blocks in the samples, (n_points,)
     starts: np.ndarray  # centroids of their blocks, undeformed, as the samples count [m], (n_points, d)
     arms: np.ndarray  # from these centroids, undeformed [m], (n_points, d)
+    strained: np.ndarray  # the same of blocks as they deform, in their own axes [m], (n_points, d)
 
 
 class PointMotion:
@@ -42,7 +45,7 @@ class PointMotion:
     def __init__(self, points: Points, samples: np.ndarray):
         self.points, self.samples, self.d = points, samples[:, points.rows], points.arms.shape[1]
         self.orientations = self.samples[:, :, 0, self.d :]
-        self.arms = self.turned(points.arms)
+        self.arms = self.turned(points.strained)
 
     def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
@@ -119,6 +122,27 @@ class PointMonitor(NamedTuple):
         return np.tensordot(vectors[:, self.points], self.weights, (1, 0))
 
 
+class ReactionMonitor(NamedTuple):
+    """What holds blocks gives to all of them together: its force, or its moment about their common centroid."""
+
+    column: int
+    blocks: np.ndarray  # those of which something is held, (n,)
+    quantity: str
+    component: str | None
+
+    def value(self, sim: Simulation) -> float:
+        """At this instant [N or N m]; of a vector in space without a component its length."""
+        model, given = sim.model, reactions(sim)[self.blocks]
+        forces, vector = given[:, : model.dimension], given[:, : model.dimension].sum(axis=0)
+        if self.quantity == "reaction_moment":
+            masses, places = model.masses[self.blocks], sim.bodies.positions[self.blocks]
+            arms = places - masses @ places / masses.sum()
+            vector = (given[:, model.rotations] + moments(arms, forces)).sum(axis=0)
+        if self.component is not None:
+            return float(vector["xyz".index(self.component)])
+        return float(vector[0]) if len(vector) == 1 else float(np.linalg.norm(vector))
+
+
 class Monitors:
     """Values of all monitors of a case, in the order of the case file.
 
@@ -134,11 +158,15 @@ class Monitors:
         self._places: list[tuple[int, np.ndarray]] = []  # block and arm of every point
         self._at_points: list[PointMonitor] = []
         self._of_links: list[tuple[int, LinkReading]] = []  # monitor, and what it reads
+        self._of_reactions: list[ReactionMonitor] = []
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
             if (link := table.tie or table.bar) is not None:
                 number = model.link_names.index(link)
                 self._of_links.append((column, reading_of(model.links, number, table.quantity, table.at or 0.0)))
+            elif table.of_what_holds:
+                blocks_held = model.held_among(table.selected)
+                self._of_reactions.append(ReactionMonitor(column, blocks_held, table.quantity, table.component))
             elif table.between is None:
                 self._at_points.append(self._point_monitor(column, table, found))
             else:
@@ -160,7 +188,22 @@ class Monitors:
         sample = np.stack([places, sim.speeds[watched], sim.accelerations(watched)], axis=1)
         still = np.zeros((1, 3, self.model.dimension))
         links = np.concatenate([link.state for link in sim.links]) if sim.links else np.zeros((0, N_STATE))
-        return tuple(self.series(sample[np.newaxis], still, links[np.newaxis])[0].tolist())
+        self._strain(sim)
+        found = self.series(sample[np.newaxis], still, links[np.newaxis])[0]
+        for monitor in self._of_reactions:
+            found[monitor.column] = monitor.value(sim)
+        return tuple(found.tolist())
+
+    def _strain(self, sim: Simulation) -> None:
+        """Takes the points where the strains of their blocks have them at this instant."""
+        if not self.model.n_modes:
+            return
+        blocks, arms, shapes = self.watched[self._points.rows], self._points.arms, self.model.mode_shapes
+        found = moved_by_modes(
+            sim.bodies.modes[blocks], arms, self.model.shapes.radii[blocks], shapes[blocks] if len(shapes) else shapes
+        )
+        found[~arms.any(axis=1)] = 0.0  # centroids are those of the mass, which no mode moves
+        self._points = self._points._replace(strained=arms + found)
 
     def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
         """Over time, (n, n_monitors).
@@ -183,7 +226,7 @@ class Monitors:
         """Blocks of each monitor; that there are any is checked with the model."""
         found = list[tuple[int, ...]]()
         for monitor in self.tables:
-            if monitor.tie is not None or monitor.bar is not None:
+            if monitor.tie is not None or monitor.bar is not None or monitor.of_what_holds:
                 found.append(())
             elif monitor.point is None:
                 chosen = [self.model.chosen(name, False) for name in monitor.between or (monitor.selected,)]
@@ -229,4 +272,4 @@ class Monitors:
         d = self.model.dimension
         blocks = np.array([block for block, _ in self._places], np.int64)
         arms = np.array([arm for _, arm in self._places]).reshape(-1, d)
-        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms)
+        return Points(np.searchsorted(self.watched, blocks), self.model.centroids[blocks] - self.origin, arms, arms)

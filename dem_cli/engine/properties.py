@@ -69,9 +69,9 @@ def joint_properties(
     layouts = tuple(_layout(table, case, k in deforming, lands) for k, table in enumerate(tables))
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
     own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
-    pressed = mixed(tuple(laws)).pressed
+    law = mixed(tuple(laws))
     return JointProperties(
-        names, by_material, kn, ks, columns, intact, layouts, rigid, pressed, compliance, own_rows
+        names, by_material, kn, ks, columns, intact, layouts, rigid, law.pressed, law.bonded, compliance, own_rows
     )  # fmt: skip
 
 

@@ -98,6 +98,7 @@ class RelaxationSettings:
     shortest_ramp: int = 500  # steps: a shorter ramp of a load is none
     longest_ramp: int = 20_000  # steps
     stair: int = 20  # steps between the loads of a ramp
+    follow_every: int = 50  # steps between two looks at where loads that follow blocks are: they hardly turn meanwhile
     # The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what
     # it would not by itself.
     ramp_of_memory: int = 100  # steps per course

@@ -59,6 +59,8 @@ class Simulation:
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
         self.loads = loads_of(model, live_scale, self.shape.radii, relaxation.narrowest_arm)
+        self.following = model.following if kinematics == "large" else None
+        self.drawn_dead = self.loads.dead.copy()  # before any of it follows
         self.control = np.zeros(slot.N_CONTROL)
         self.control[slot.DEAD_FACTOR] = 1.0
         self.control[slot.DAMP] = relaxation.local_damping
@@ -178,15 +180,37 @@ class Simulation:
     def advance(self, n_steps: int, mode: int) -> None:
         """n_steps steps of one mode (kernels.records), with detection when it is due. Raises KeyboardInterrupt."""
         left, load = n_steps, 0.0
+        longest = min(self.longest, self.settings.relaxation.follow_every) if self.loads_follow else self.longest
         while left > 0:
             look()
-            done = self._step(min(left, self.longest), mode)
+            self.turn_loads()
+            done = self._step(min(left, longest), mode)
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
             if self.kinematics == "large" and self.tracking.due(self.bodies):
                 self.detect()
         self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
+
+    @property
+    def loads_follow(self) -> bool:
+        """Whether loads go along with blocks."""
+        return self.following is not None
+
+    def present_loads(self) -> tuple[np.ndarray, np.ndarray]:
+        """Dead and live loads of all blocks as they are now, about the centroids [N, N m], (n_blocks, d + r) each."""
+        dead, live = self.model.dead_loads, self.model.live_loads
+        if self.following is None:
+            return dead, live
+        change, turned = self.following.change, self.bodies.orientations
+        return dead + change(turned, dead=True), live + change(turned, dead=False)
+
+    def turn_loads(self) -> None:
+        """Takes along loads that follow their blocks to where these are."""
+        if self.loads_follow:
+            dead, live = self.present_loads()
+            self.loads.dead[:] = np.where(self.model.held, 0.0, dead)
+            self.loads.live[:] = np.where(self.model.held, 0.0, live * self.live_scale)
 
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
@@ -437,6 +461,7 @@ class Simulation:
         self.safety = saved.safety
         for link, state in zip(self.links, saved.links, strict=True):
             link.state[:] = state
+        self.turn_loads()
 
     # -- energy ------------------------------------------------------------------------------------
 

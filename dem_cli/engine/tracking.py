@@ -78,7 +78,7 @@ class JointTracking:
         self.measured(bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
-        carry_memory(motion_of(self.model.dimension), old, new, self.properties.pressed)
+        carry_memory(motion_of(self.model.dimension), old, new, self.properties)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
             asked = old.geometry.keys[old.contacts.stale[:-1] == 1]

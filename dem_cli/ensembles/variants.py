@@ -92,4 +92,5 @@ def other_sizes(
         centroids=model.centroids + shifts,
         vertices=model.vertices - shifts[owner],
         dead_loads=dead,
+        following=model.following and model.following.shifted(shifts),
     )

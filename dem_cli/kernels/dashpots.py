@@ -11,6 +11,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.kernels.deformation.strain_dashpots import (
+    arm_of,
+    give_pushes,
+    mobility_along,
+    plus_modes,
+    push_modes,
+    put_motions,
+)
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
@@ -20,7 +28,7 @@ OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
 @inline
-def _put_gains(gains, point, reaches, masses, mobilities, viscous):
+def _put_gains(gains, point, frame, reaches, masses, mobilities, viscous, motions, lifts):
     """How far an impulse goes in one turn to where its error is none: 1 / (1 + C K), across and along the joint.
 
     viscous: C, half of damping × step across and along the joint [kg]; K: rates by impulses at the point [1/kg];
@@ -31,6 +39,7 @@ def _put_gains(gains, point, reaches, masses, mobilities, viscous):
     for k in range(2):
         inverse = masses
         inverse += turning_a * dot(levers_a[k], levers_a[k]) + turning_b * dot(levers_b[k], levers_b[k])
+        inverse = mobility_along(motions, lifts, point, frame[k], inverse)
         gains[point, k] = 1.0 / (1.0 + viscous[k] * inverse)
 
 
@@ -75,7 +84,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     positions, velocities = bodies.positions, bodies.velocities
     viscosity, rates, gains = dampers.viscosity, dampers.rates, dampers.gains
     states, seen, shares, first = dampers.states, dampers.slips, dampers.shares, dampers.first
-    pushes = dampers.pushes
+    pushes, motions, lifts = dampers.pushes, dampers.motions, dampers.lifts
     pushes[:] = 0.0
     d, n_elements, n_met = len(like), dampers.elements.shape[0], 0
     for number in range(blocks.shape[0]):
@@ -95,6 +104,9 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            put_motions(motions, lifts, dampers.strained, bodies, point, 0, a, arm_of(frame, reach_a))
+            put_motions(motions, lifts, dampers.strained, bodies, point, 1, b, arm_of(frame, reach_b))
+            relative = plus_modes(motions, velocities, point, a, b, relative)
             opening, sliding = rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b)
             rates[point, 0] = opening
             store(rates, point, 1, sliding)
@@ -105,7 +117,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 shares[point] = 0.5 + closed
             weight = shares[point] * half
             viscous = (weight * kns[point], weight * kss[point])
-            _put_gains(gains, point, (reach_a, reach_b), masses, mobilities, viscous)
+            _put_gains(gains, point, frame, (reach_a, reach_b), masses, mobilities, viscous, motions, lifts)
             push, along = memory[point, first], load(memory, point, first + 1, sliding)
             push = max(push, least_of(normals[point], dt))
             memory[point, first] = push
@@ -117,6 +129,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             add_at(pushes, b, 0, force, 1.0)
             add_at(pushes, a, d, torque_at(reach_a, force, push, along), -1.0)
             add_at(pushes, b, d, torque_at(reach_b, force, push, along), 1.0)
+            push_modes(motions, pushes, point, a, b, force)
             if n_elements > 0:
                 stiffness, reaches = (kns[point], kss[point]), (reach_a, reach_b)
                 pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
@@ -139,6 +152,7 @@ def pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, clos
     add_at(forces, b, 0, force, 1.0)
     add_at(forces, a, d, torque_at(reaches[0], force, normal, shear), -1.0)
     add_at(forces, b, d, torque_at(reaches[1], force, normal, shear), 1.0)
+    push_modes(dampers.motions, forces, point, a, b, force)
 
 
 @inline
@@ -169,7 +183,7 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, lik
     viscosity, rates, gains, states, shares, first = (
         dampers.viscosity, dampers.rates, dampers.gains, dampers.states, dampers.shares, dampers.first
     )  # fmt: skip
-    d, n = len(like), blocks.shape[0]
+    d, n, motions = len(like), blocks.shape[0], dampers.motions
     for i in range(n):
         number = n - 1 - i if backwards else i
         joint = np.uint64(number)
@@ -194,7 +208,8 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, lik
             frame = load_frame(frames, point, like)
             reach_a, reach_b = reach_of(joints, point, 0, xa, like), reach_of(joints, point, 1, xb, like)
             push, along = memory[point, first], load(memory, point, first + 1, like[1:])
-            opening, sliding = rates_at(frame, reach_a, reach_b, axpy(-1.0, va, vb), spin_a, spin_b)
+            relative = plus_modes(motions, velocities, point, a, b, axpy(-1.0, va, vb))
+            opening, sliding = rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b)
             weight = half * shares[point]
             error = weight * kns[point] * (rates[point, 0] + opening) + push
             mean = axpy(1.0, load(rates, point, 1, sliding), sliding)
@@ -208,6 +223,7 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, backwards, lik
             new, new_along = new - push, axpy(-1.0, along, new_along)
             force = compose(frame, new, new_along, scale(0.0, like))
             va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
+            push_modes(dampers.lifts, velocities, point, a, b, force)
             spin_a = axpy(-1.0, spun(mobility_a, torque_at(reach_a, force, new, new_along)), spin_a)
             spin_b = axpy(1.0, spun(mobility_b, torque_at(reach_b, force, new, new_along)), spin_b)
         if touched:
@@ -229,6 +245,7 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
             velocities[block, k] += inverse_masses[block, k] * pushes[block, k]
         push = load(pushes, block, d, like_rotation)
         add_at(velocities, block, d, spun(load_mobility(mobilities, block, like), push), 1.0)
+        give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
     for _ in range(turns):
         _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, False, like, like_rotation)
         _sweep(joints, contacts, bodies, inverse_masses, dampers, dt, True, like, like_rotation)
@@ -250,6 +267,7 @@ def book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rota
                 continue
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            relative = plus_modes(dampers.motions, velocities, point, a, b, relative)
             reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
             reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
             opening, sliding = rates_at(load_frame(frames, point, like), reach_a, reach_b, relative, spin_a, spin_b)

@@ -225,3 +225,19 @@ def drift_tumbling(bodies, shape, dt, like):
         store_mobility(mobilities, i, principal, moments)
     _take_corners(bodies, shape, bodies.turns)
     return largest
+
+
+@inline
+def drift_strained_tumbling(bodies, shape, dt, like):
+    """As drift_tumbling, of blocks that deform."""
+    deform(bodies, dt)
+    drift_tumbling(bodies, shape, dt, like)
+    largest = 0.0
+    for number in range(bodies.positions.shape[0]):
+        i = np.uint64(number)
+        bodies.travel[i] += dt * stretching_speed(bodies, i, like)
+        largest = max(largest, bodies.travel[i])
+        store_gradient(bodies, shape, i, like)
+        store_matrix(bodies.covectors, i, transposed(inverse(load_matrix(bodies.gradients, i, like))))
+    _take_corners(bodies, shape, bodies.gradients)
+    return largest

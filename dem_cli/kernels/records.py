@@ -242,6 +242,19 @@ class Ground(NamedTuple):
     velocities: np.ndarray  # of them, after each step [m/s, rad/s], (n_steps, n_moving, n_dof)
 
 
+class StrainRates(NamedTuple):
+    """Rates of the modes of blocks in a time history (kernels/deformation/strain_rates.py); empty: all are rigid."""
+
+    turns: np.ndarray  # W: by which rates of modes turn a block less than its mean [rad/m], (n_blocks, r, m)
+    masses: np.ndarray  # of modes, beside the mean spin [kg], (n_blocks, m, m)
+    viscosity: np.ndarray  # of modes [N s/m], (n_blocks, m)
+    keep: np.ndarray  # rates after a step by those before [-], (n_blocks, m, m)
+    gain: np.ndarray  # and by forces [s/kg], (n_blocks, m, m)
+    mobilities: np.ndarray  # rates by impulses [1/kg], (n_blocks, m, m)
+    radii: np.ndarray  # of blocks [m], (n_blocks,)
+    bends: np.ndarray  # as BlockShapes.bends
+
+
 class Dampers(NamedTuple):
     """Masses and viscous joints of time histories.
 
@@ -263,6 +276,9 @@ class Dampers(NamedTuple):
     masses: np.ndarray  # and moments of inertia in the plane; 0 of supports, and where inertia is a tensor (in
     # space: BlockShapes.inertias), (n_blocks, n_dof)
     pushes: np.ndarray  # impulses of the step before on the blocks [N s, N m s], (n_blocks, n_dof)
+    strained: StrainRates
+    motions: np.ndarray  # of points by rates of modes of both blocks [-], (n_points, 2, d, m); of rigid blocks: (0,)
+    lifts: np.ndarray  # rates of modes by impulses there [1/kg], of the same shape
 
 
 NO_LINKS = np.zeros((0, 0, 3))

@@ -3,6 +3,7 @@
 Leapfrog with real masses, in the frame that moves with the base: positions and forces at whole steps, velocities half
 a step behind. The ledger sums what each group of forces really did, force × mean velocity. In space torques kick with
 the tensors of inertia of the whole step, before and after which blocks turn freely (kernels/spin.py).
+Velocities of blocks that deform have mean spins, behind these rates of modes (kernels/deformation/strain_rates.py).
 """
 
 from __future__ import annotations
@@ -11,6 +12,14 @@ from collections.abc import Callable
 
 from dem_cli.kernels.advance import local_drag
 from dem_cli.kernels.dashpots import book_elements, book_supports
+from dem_cli.kernels.deformation.quadratic import bend, resist_bending
+from dem_cli.kernels.deformation.strain_rates import (
+    book_modes,
+    kick_modes,
+    resist_in_time,
+    stretch_in_time,
+    turn_by_modes,
+)
 from dem_cli.kernels.jit import always_inline, inline, kernel, literal_unroll, named
 from dem_cli.kernels.records import (
     CONTACT,
@@ -96,7 +105,8 @@ def _book(
 def _sample(step, dt, bodies, shape, watch, like_rotation):
     """Place, mean velocity and acceleration of the watched blocks at this step."""
     positions, velocities, means, samples = bodies.positions, bodies.velocities, bodies.means, watch.samples
-    n_dof, d = velocities.shape[1], positions.shape[1]
+    d = positions.shape[1]
+    n_dof = d + len(like_rotation)
     row = step // watch.every
     for j in range(watch.blocks.shape[0]):
         block = watch.blocks[j]
@@ -122,11 +132,16 @@ def _sample_links(step, links, watch):
 
 
 def make_shake(
-    contact_forces: Callable, drift: Callable, damped: bool, link_forces: Callable | None = None
+    contact_forces: Callable,
+    drift: Callable,
+    damped: bool,
+    link_forces: Callable | None = None,
+    strains: bool = False,
+    bends: bool = False,
 ) -> Callable:
     """The compiled loop for one contact loop and the links that there are.
 
-    damped: with dashpots or Maxwell elements in the joints.
+    damped: with dashpots or Maxwell elements in the joints; strains: blocks deform; bends: in quadratic modes as well.
     """
     linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
@@ -137,24 +152,34 @@ def make_shake(
     ):  # fmt: skip
         """Steps first, first + 1 ... of a stretch, up to n_steps; returns those done (fewer when detection is due)."""
         velocities, forces, unbalanced = bodies.velocities, bodies.forces, bodies.unbalanced
-        means, drags, pulled = bodies.means, bodies.drags, bodies.pulled
+        means, drags, pulled, strained = bodies.means, bodies.drags, bodies.pulled, dampers.strained
         dead_loads, inverse_masses, scales = loads.dead, loads.inverse_masses, loads.force_scales
         damp, rate, n_dof = control[DAMP], control[MASS_RATE], velocities.shape[1]
-        n_moving = ground.moving.shape[0]
+        n_moving, n_given = ground.moving.shape[0], ground.velocities.shape[2]
         done = 0
         for step in range(first, first + n_steps):
             forces[:] = 0.0
+            if strains:
+                stretch_in_time(bodies, shape, strained, like, like_rotation)
+            if bends:
+                bend(bodies, shape)
             ledger[FRICTION] += contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation)
             if linked:
                 ledger[FRICTION] += pull(links, bodies, like, like_rotation)
+            if bends:
+                resist_bending(bodies, shape)
+            if strains:
+                resist_in_time(bodies, shape, strained, like, like_rotation)
             if damped:
                 met = meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
                 velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, bodies.mobilities, means,
                 drags, pulled, ground.accelerations[step], damp, rate, dt, like, like_rotation,
             )  # fmt: skip
+            if strains:
+                kick_modes(bodies, shape, strained)
             for j in range(n_moving):
-                for k in range(n_dof):
+                for k in range(n_given):
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
@@ -166,6 +191,8 @@ def make_shake(
                     book_supports(
                         joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip
+            if strains:
+                book_modes(bodies, shape, strained, rate, dt, ledger)
             _book(
                 velocities, forces, unbalanced, inverse_masses, dampers.masses, shape, bodies.turns, means, pulled,
                 drags, rate, dt, ledger, like_rotation,
@@ -174,6 +201,8 @@ def make_shake(
                 _sample(step, dt, bodies, shape, watch, like_rotation)
                 if linked:
                     _sample_links(step, links, watch)
+            if strains:
+                turn_by_modes(bodies, shape, strained, dt, like, like_rotation)
             moved = drift(bodies, shape, dt, like)
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
@@ -192,5 +221,7 @@ def make_shake(
         drift,
         "damped" if damped else "",
         *((link_forces,) if link_forces is not None else ()),
+        *["strains"] * strains,
+        *["bends"] * bends,
     )
     return shake

@@ -20,6 +20,14 @@ from dem_cli.kernels.dashpots import (
     resist_in_plane,
     touch,
 )
+from dem_cli.kernels.deformation.strain_dashpots import (
+    give_pushes,
+    mobility_of,
+    plus_modes,
+    push_modes,
+    put_motions,
+    with_mobility,
+)
 from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, spun, sweep
 from dem_cli.kernels.vec import add_at, axpy, components, compose, dot, load, load_frame, scale, store
@@ -75,17 +83,24 @@ def _rates_by_impulses(arm, mobility):
 
 
 @always_inline
-def put_gains(rows, row, normal, arms, masses, mobilities, viscous, slips):
+def put_gains(rows, row, normal, arms, masses, mobilities, viscous, slips, more=()):
     """Gain and inverse viscosity of a point, columns GAIN, EVENLY and ACROSS.
 
-    viscous: C, half of damping × step across and along the joint [kg]; masses: sum of both inverse masses.
+    viscous: C, half of damping × step across and along the joint [kg]; masses: sum of both inverse masses. more: rates
+    by impulses of blocks that deform, beside those of rigid ones.
     """
     a, b = _rates_by_impulses(arms[0], mobilities[0]), _rates_by_impulses(arms[1], mobilities[1])
     across, along = viscous
     x, y, z = normal
-    xx, xy, xz, yy, yz, zz = (
-        masses + (a[0] + b[0]), a[1] + b[1], a[2] + b[2], masses + (a[3] + b[3]), a[4] + b[4], masses + (a[5] + b[5])
-    )  # fmt: skip
+    rigid = (
+        masses + (a[0] + b[0]),
+        a[1] + b[1],
+        a[2] + b[2],
+        masses + (a[3] + b[3]),
+        a[4] + b[4],
+        masses + (a[5] + b[5]),
+    )
+    xx, xy, xz, yy, yz, zz = with_mobility(rigid, more)
     if slips or along == 0.0:
         around = x * (xx * x + 2.0 * xy * y) + y * (yy * y + 2.0 * yz * z) + z * (zz * z + 2.0 * xz * x)
         share = 1.0 / (1.0 / across + around)
@@ -135,6 +150,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     )  # fmt: skip
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     pushes[:] = 0.0
+    motions, lifts = dampers.motions, dampers.lifts
     with_elements, n_met, n_rows = dampers.elements.shape[0] > 0, 0, 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
@@ -157,9 +173,12 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             met, closed = touch(states, seen, slips, point)
             frame, place = load_frame(frames, point, like), load(joints.points, point, 0, like)
             arms = (axpy(-1.0, xa, place), axpy(-1.0, xb, place))
+            put_motions(motions, lifts, dampers.strained, bodies, point, 0, a, arms[0])
+            put_motions(motions, lifts, dampers.strained, bodies, point, 1, b, arms[1])
             share = 1.0
             if met or with_elements:
-                opening, sliding = rates_at(frame, arms[0], arms[1], relative, spin_a, spin_b)
+                moved = plus_modes(motions, velocities, point, a, b, relative)
+                opening, sliding = rates_at(frame, arms[0], arms[1], moved, spin_a, spin_b)
                 rates[point, 0] = opening
                 store(rates, point, 1, sliding)
                 n_met += met
@@ -178,7 +197,9 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 store(rows, row, IMPULSE, impulse)
                 rows[row, LEAST] = least
                 viscous = (share * half * kns[point], share * half * kss[point])
-                put_gains(rows, row, frame[0], arms, masses, mobilities, viscous, slipping)
+                more = mobility_of(motions, lifts, point)
+                put_gains(rows, row, frame[0], arms, masses, mobilities, viscous, slipping, more)
+                push_modes(motions, pushes, point, a, b, impulse)
                 pushed = axpy(1.0, impulse, pushed)
                 turned_a = axpy(1.0, moment(arms[0], impulse), turned_a)
                 turned_b = axpy(1.0, moment(arms[1], impulse), turned_b)
@@ -201,7 +222,7 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards
     rows, packed, holders, memory, first = (
         dampers.gains, dampers.packed, dampers.holders, contacts.memory, dampers.first
     )  # fmt: skip
-    n = blocks.shape[0]
+    n, motions = blocks.shape[0], dampers.motions
     for i in range(n):
         number = n - 1 - i if backwards else i
         joint = np.uint64(number)
@@ -221,10 +242,12 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards
             impulse = load(rows, row, IMPULSE, like)
             arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
             turning = axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b))
-            new = given_up(rows, row, normal, impulse, axpy(1.0, turning, axpy(-1.0, va, vb)))
+            rate = plus_modes(motions, velocities, holders[row], a, b, axpy(1.0, turning, axpy(-1.0, va, vb)))
+            new = given_up(rows, row, normal, impulse, rate)
             store(rows, row, IMPULSE, new)
             gain = axpy(-1.0, impulse, new)
             va, vb = axpy(-mass_a, gain, va), axpy(mass_b, gain, vb)
+            push_modes(dampers.lifts, velocities, holders[row], a, b, gain)
             spin_a = axpy(-1.0, spun(mobility_a, moment(arm_a, gain)), spin_a)
             spin_b = axpy(1.0, spun(mobility_b, moment(arm_b, gain)), spin_b)
             if last:
@@ -244,18 +267,22 @@ def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns
     if dampers.packed[-1] == 0:
         return
     velocities, pushes, old = bodies.velocities, dampers.pushes, bodies.means
+    n_dof = velocities.shape[1]
     for block in range(velocities.shape[0]):
         push = load(pushes, block, 3, like_rotation)
         turning = spun(load_mobility(bodies.mobilities, block, like), push)
         for k in range(3):
-            i = block * 6 + k
+            i = block * n_dof + k
             velocities[block, k] += old[i] + inverse_masses[block, k] * pushes[block, k]
             velocities[block, 3 + k] += old[i + 3]
+        for k in range(6, n_dof):
+            velocities[block, k] += old[block * n_dof + k]
         add_at(velocities, block, 3, turning, 1.0)
+        give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
     for turn in range(turns):
         _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, False, False, like, like_rotation)
         last = turn == turns - 1
         _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, True, last, like, like_rotation)
     for block in range(velocities.shape[0]):
-        for k in range(6):
-            velocities[block, k] -= old[block * 6 + k]
+        for k in range(n_dof):
+            velocities[block, k] -= old[block * n_dof + k]

@@ -140,7 +140,7 @@ def store_mobility(mobilities, row, axes, moments):
 
 @always_inline
 def _kick_in_space(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row):
-    first = 6 * row + 3
+    first = velocities.shape[1] * row + 3
     x = unbalanced[row, 3] - drags[first]
     y = unbalanced[row, 4] - drags[first + 1]
     z = unbalanced[row, 5] - drags[first + 2]
@@ -173,7 +173,7 @@ def _powers_in_space(drained, dashpots, velocities, old, pulled, shape, turns, r
     moments = load(shape.inertias, row, 0, (0.0, 0.0, 0.0))
     if moments[0] == 0.0:
         return drained, dashpots
-    first, after = 6 * row + 3, load(velocities, row, 3, moments)
+    first, after = velocities.shape[1] * row + 3, load(velocities, row, 3, moments)
     before = (old[first], old[first + 1], old[first + 2])
     kicked = (pulled[first], pulled[first + 1], pulled[first + 2])
     axes = principal_axes(turns, shape.axes, row)

@@ -39,6 +39,11 @@ def elastic(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     return -kn * gap, axpy(-ks, slide, shear), False
 
 
+def pressed(parameters, overlaps, memory, kn):
+    """kn × overlap [N], tension where the blocks are held together."""
+    return kn * np.where(memory[:, 0] == 0.0, np.maximum(overlaps, 0.0), overlaps)
+
+
 ELASTIC = Law(
     name="elastic",
     parameters=ElasticJoint,
@@ -46,6 +51,7 @@ ELASTIC = Law(
     columns=lambda table, kn: (kn,),
     shear_limit=lambda parameters, normal, memory, kn: np.full(len(normal), np.inf),
     envelope=lambda parameters, kn: envelope(len(kn), cohesion=np.inf, tension=np.inf),
+    pressed=pressed,
     scalars=1,
     intact=(1.0,),
     bonded=True,

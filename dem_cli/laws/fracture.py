@@ -134,6 +134,14 @@ def columns(table, kn):
     )  # fmt: skip
 
 
+def pressed(parameters, overlaps, memory, kn):
+    """kn × overlap [N]; in tension along the secant to where it opened, at most what is left of ft A."""
+    elastic = memory[:, STRENGTH] * parameters[:, 2] / parameters[:, 0]  # of the opening at the peak [m]
+    opened = memory[:, OPENED] + elastic
+    left = np.divide(elastic, opened, out=np.zeros(len(kn)), where=opened > 0.0)
+    return kn * np.where(overlaps > 0.0, overlaps, -np.minimum(-left * overlaps, elastic))
+
+
 FRACTURE = Law(
     name="fracture",
     parameters=FractureJoint,
@@ -142,6 +150,7 @@ FRACTURE = Law(
     shear_limit=shear_limit,
     envelope=intact,
     residual=lambda parameters, kn: frictional(parameters[:, 4]),
+    pressed=pressed,
     scalars=2,
     intact=(1.0,),
     bonded=True,

@@ -45,10 +45,11 @@ class Law(Generic[JointTable]):
     # no straight lines. `residual`: what is left when a point has slid and opened for long; None: all of it.
     envelope: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
     residual: Callable[[np.ndarray, np.ndarray], Envelope] | None = None
-    # Of points that come to be while blocks are in each other: (parameters, overlaps [m], memory, kn of the points) ->
-    # normal forces [N]. A law that deforms for good across the joint takes off what is no spring.
+    # Of points in space that come to be while blocks are in each other: (parameters, overlaps [m], negative: open,
+    # memory, kn of the points) -> normal forces [N], as `function` finds them at rest: a law that deforms for good
+    # across the joint takes off what is no spring, one that dilates or is bonded adds what it holds by that.
     pressed: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray] = (
-        lambda parameters, overlaps, memory, kn: kn * overlaps
+        lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     )
     scalars: int = 0  # numbers that a point remembers
     vectors: int = 0  # vectors along the tangents that it remembers beside them

@@ -194,6 +194,16 @@ def columns(table, kn):
     )  # fmt: skip
 
 
+def pressed(parameters, overlaps, memory, kn):
+    """kn × overlap [N], that by dilation included; tension as far as the bond holds it."""
+    tangent = parameters[:, 7]
+    slips = np.sqrt((memory[:, SLIP : SLIP + 2] ** 2).sum(axis=1))
+    closed = overlaps + tangent * np.minimum(slips, np.where(tangent > 0.0, parameters[:, 8], 0.0))
+    left = np.where(memory[:, STATE] == BROKEN, parameters[:, 5] * kn / parameters[:, 0], 0.0)
+    pulled = np.clip(kn * (closed + memory[:, PULLED]), -left, 0.0)
+    return np.where((memory[:, STATE] == INTACT) | (closed >= 0.0), kn * closed, pulled)
+
+
 MOHR_COULOMB = Law(
     name="mohr-coulomb",
     parameters=MohrCoulombJoint,
@@ -202,6 +212,7 @@ MOHR_COULOMB = Law(
     shear_limit=shear_limit,
     envelope=intact,
     residual=broken,
+    pressed=pressed,
     scalars=2,
     vectors=1,
     intact=(INTACT,),

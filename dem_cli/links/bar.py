@@ -38,14 +38,14 @@ class BarProfile(CaseModel):
         examples=[4.0e8],
     )
     bond_stiffness: Positive = Field(
-        description="force per slip and length of bar [N/m per m of bar]", examples=[1.0e9]
+        description="bond force per slip, per length of bar: N/m per m [Pa]", examples=[1.0e9]
     )
     bond_strength: Positive | None = Field(
-        default=None, description="largest bond force per length [N per m of bar]; default: no limit", examples=[4.0e4]
+        default=None, description="largest bond force per length of bar [N/m]; default: no limit", examples=[4.0e4]
     )
     dowel_stiffness: Positive | None = Field(
         default=None,
-        description="the same across the bar, where a joint bends it [N/m per m of bar]; default: bond_stiffness",
+        description="as bond_stiffness, across the bar, where a joint bends it [Pa]; default: bond_stiffness",
         examples=[1.0e9],
     )
 

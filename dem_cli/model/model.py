@@ -23,6 +23,7 @@ from dem_cli.model.block_measures import (
     half_extents,
     part_measures,
 )
+from dem_cli.model.following_loads import FollowingLoads
 
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
@@ -58,6 +59,7 @@ class ModelArrays(NamedTuple):
     principal_axes: np.ndarray = NO_AXES  # from the principal axes of each block to its own, quaternions, (n_blocks, 4)
     links: tuple[Any, ...] = ()  # ties and the like, arrays of each kind that there is (links/link.py)
     link_names: tuple[str, ...] = ()  # of all of them, kind by kind
+    following: FollowingLoads | None = None  # loads, part of those above, that go along where geometry moves
     # Of blocks that deform alone (model/uniform_strain.py), else empty:
     mode_stiffness: np.ndarray = NO_MODES  # 0: rigid blocks among them [N/m], (n_blocks, m)
     dead_mode_loads: np.ndarray = NO_MODES  # what dead loads do to the modes [N], (n_blocks, m)
@@ -140,6 +142,11 @@ class Model(ModelArrays):
         kept = found if fixed is None else found[self.fixed[found] == fixed]
         return kept if len(kept) else found
 
+    def held_among(self, name: str | None) -> np.ndarray:
+        """Numbers of those blocks of a name in the case file that are fixed or restrained in some motion."""
+        found = self.chosen(name)
+        return found[self.held[found].any(axis=1)]
+
     @cached_property
     def vertex_blocks(self) -> np.ndarray:
         """Block of each corner, (n_vertices,)."""
@@ -220,6 +227,7 @@ class Model(ModelArrays):
             principal_axes=self.principal_axes[pick] if len(self.principal_axes) else self.principal_axes,
             links=(),
             link_names=(),
+            following=None,
             **{name: getattr(self, name)[pick] for name in WHERE_ASKED_FOR if len(getattr(self, name))},
         )
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.geometry.rotation import turned_by
+from dem_cli.model.uniform_strain import strains
 
 N_QUADRATIC = 6  # in the plane
 TERMS = 6  # 1, x, y, x², x y, y², of which each φ_k has coefficients for both directions
@@ -51,7 +52,7 @@ def quadratic_modes(
 
 def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np.ndarray, np.ndarray]:
     """young: Young's modulus × thickness [N/m]."""
-    points, weights = _quadrature(parts)
+    points, weights = quadrature(parts)
     area, values = weights.sum(), terms(points)
     pure = np.zeros((N_QUADRATIC, 2, TERMS))
     for k in range(3):
@@ -85,7 +86,7 @@ def _elasticity(
     return np.einsum("skp,st,tlp,p->kl", strain, plane, strain, weights)
 
 
-def _quadrature(parts: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def quadrature(parts: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Points [m] and weights [m²] in convex polygons, (n, 2) and (n,)."""
     triangles = np.concatenate([
         np.stack([np.repeat(part[:1], len(part) - 2, axis=0), part[1:-1], part[2:]], axis=1) for part in parts
@@ -113,3 +114,15 @@ def displacements(shapes: np.ndarray, arms: np.ndarray, turns: np.ndarray) -> np
 def quadratic_loads(arms: np.ndarray, forces: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """What forces (n, 2) [N] at arms (n, 2) from the centroids do to the modes of shapes (n, 6, 2, 6) [N], (n, 6)."""
     return np.einsum("nkim,nm,ni->nk", shapes, terms(arms), forces)
+
+
+def moved_by_modes(modes: np.ndarray, arms: np.ndarray, radii: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """How far their blocks' deformation moves points, in the axes of the blocks [m], (n, d).
+
+    modes: amplitudes of the block of each point [m], (n, m); arms: from its centroid, undeformed [m], (n, d); radii
+    [m], (n,); shapes: of quadratic modes, (n, 6, 2, 6), or none of them.
+    """
+    found = np.einsum("nij,nj->ni", strains(modes, radii), arms)
+    if len(shapes):
+        found += np.einsum("nk,nkim,nm->ni", modes[:, -N_QUADRATIC:], shapes, terms(arms))
+    return found

@@ -90,7 +90,8 @@ def curve_verdict(curve: Any, reference: ReferenceTable) -> dict[str, Any]:
         answer["missed"] = reference.missed
     if not isinstance(curve, Mapping) or "loads" not in curve:
         return answer | {"problem": f"the summary has no '{reference.path}': only control = 'displacement' finds one"}
-    ours, end = np.array(curve["displacements"]), float(curve["displacements"][-1])
+    ours = np.maximum.accumulate(np.array(curve["displacements"], float))  # of a monitor that turns back: its way out
+    end = float(ours[-1])
     if end < places.max():
         return answer | {"problem": f"the curve ends at {end:.3g} m, before {places.max():.3g} m of the reference"}
     found = np.interp(places, ours, curve["loads"])

@@ -24,6 +24,8 @@ MONITOR_UNITS = {
     "acceleration": "m/s2",
     "force": "N",
     "elongation": "m",
+    "reaction": "N",
+    "reaction_moment": "N m",
 }
 MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base

@@ -48,7 +48,7 @@ _FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
 _TEXT = h5py.string_dtype()
-_UNSAID = ("aliases", "selections", "links", "link_names")  # of a model: the case file says them
+_UNSAID = ("aliases", "selections", "links", "link_names", "following")  # of a model: the case file says them
 JointsOf = Callable[[Model], FollowedJoints]
 
 

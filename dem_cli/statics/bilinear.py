@@ -65,5 +65,8 @@ def _area(x: np.ndarray, y: np.ndarray, end: float) -> float:
 
 
 def load_at(displacements: np.ndarray, loads: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Loads of a curve at displacements [m], (n,): between its points in proportion, not a number beyond its end."""
-    return np.interp(places, displacements, loads, right=np.nan)
+    """Loads of a curve at displacements [m], (n,): between its points in proportion, not a number beyond its end.
+
+    Of a curve that turns back, when it first gets there.
+    """
+    return np.interp(places, np.maximum.accumulate(displacements), loads, right=np.nan)

@@ -1,10 +1,11 @@
 """Displacement control: equilibria at prescribed displacements of the live load, and the capacity curve that they make.
 
 The displacement is that of the live load itself, q·u over the sum of its forces: of one force that of its point along
-it, of shares of the weight the mean one, weighted by mass. It grows by an increment in a smooth ramp, then stays until
-all forces balance; the multiplier is the reaction in its direction. Between both, velocities are steered towards the
-forces (FIRE, Bitzek et al. 2006) without changing that displacement (kernels/advance.py). Every point is a state at
-rest under its multiplier, reached from gravity on that way; where another way leads is for the analysis to find out.
+it, of shares of the weight the mean one, weighted by mass; of couples alone that of the far ends of their blocks. It
+grows by an increment in a smooth ramp, then stays until all forces balance; the multiplier is the reaction in its
+direction. Between both, velocities are steered towards the forces (FIRE, Bitzek et al. 2006) without changing that
+displacement (kernels/advance.py). Every point is a state at rest under its multiplier, reached from gravity on that
+way; where another way leads is for the analysis to find out.
 
 Where another displacement is controlled, a monitor, that of the live load is chosen so that the monitor comes to where
 it should: nothing but the live load pushes the structure there.
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from dem_cli.engine.budget import Budget
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.state import SavedState
+
+WATCHED = 8  # looks: where a displacement is held, every so many of them is told
 
 
 class Followed(NamedTuple):
@@ -148,9 +151,10 @@ class DisplacementControl:
 
     def _rests(self) -> bool:
         sim, settings, calm = self.sim, self.settings, 0
-        for _ in range(settings.most // settings.look):
+        for number in range(settings.most // settings.look):
             sim.advance(settings.look, sim.guided_mode)
-            self.watch()
+            if number % WATCHED == 0:
+                self.watch()
             self.budget.spend(settings.look, "holding a displacement of the live load")
             calm = calm + 1 if sim.unbalanced < settings.tolerance else 0
             if calm == settings.looks_at_rest:
@@ -197,6 +201,11 @@ class CapacityCurve:
     def highest(self) -> CurvePoint:
         """The point of the highest load."""
         return self.points[self.peak]
+
+    @property
+    def farthest(self) -> int:
+        """Number of the point of the largest displacement: the last one, unless a monitor turns back."""
+        return int(np.argmax(self.arrays()[0]))
 
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and internal multipliers, (n,) each."""

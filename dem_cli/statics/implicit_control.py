@@ -40,6 +40,8 @@ def why_not(sim: Simulation) -> str | None:
 
     if sim.links or sim.model.n_modes or sim.properties.rough:
         return "no implicit increments with ties, profiles or blocks that deform"
+    if sim.loads_follow:
+        return "no implicit increments with loads that follow their blocks"
     try:
         friction_of(sim.joints, sim.law)
     except UsageError:

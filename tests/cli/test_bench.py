@@ -8,8 +8,10 @@ import numba
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.bench import joints, others, registry, sweeps
+from dem_cli.bench import joints, kernels, others, registry, sweeps
 from dem_cli.bench.cases import KNOWN_STRUCTURES
+from dem_cli.bench.spatial import sizes
+from dem_cli.bench.spatial.cases import wall_out_of_plane
 from dem_cli.cli import main as cli
 from dem_cli.cli.bench import command
 from dem_cli.engine.properties import joint_properties, law_of
@@ -20,16 +22,19 @@ def bench(*words: str):
     return CliRunner().invoke(cli.main, ["bench", *words])
 
 
-COMPILED = ("coulomb", "mohr-coulomb, 5 points", "coulomb, profile of 3 sides")  # of the joint models
+COMPILED = ("coulomb",)  # of the joint models
+STEPPED = (kernels.FIXED, kernels.LARGE, "fixed, 3D", "time history")  # of the kinds of steps
 
 
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
-    """All groups; of the joint models, each of which is compiled twice, and of the runs of a sweep only some."""
+    """All groups, of each a little: joint models and kinds of steps are compiled one by one."""
     folder = tmp_path_factory.mktemp("bench")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(joints, "VARIANTS", {name: joints.VARIANTS[name] for name in COMPILED})
+        patch.setattr(kernels, "KINDS", tuple(kind for kind in kernels.KINDS if kind.name in STEPPED))
         patch.setattr(sweeps, "FEW_RUNS", 4)
+        patch.setattr(sizes, "SIZES_IN_SPACE", (wall_out_of_plane(4, 6),))
         done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
     assert done.exit_code == 0, done.output
     return folder, json.loads((folder / "all.json").read_text("utf-8"))["groups"]

@@ -117,3 +117,18 @@ def test_shear_stays_below_the_limit_that_is_reported(name):
         assert np.all(force <= limit[carries] * (1 + 1e-9) + 1e-7)  # 1e-9 of the strength is none
         slips = (np.diff(done.slip, prepend=0.0) > 1e-12)[carries]
         np.testing.assert_allclose(force[slips], limit[carries][slips], rtol=1e-9, atol=1e-7)
+
+
+@each_joint
+def test_a_new_point_holds_what_the_law_finds_at_its_gap(name):
+    """`pressed`, of points that come to be with the memory of others: the force wherever a path stops for a step."""
+    law = JOINTS[name]
+    for title, path in PATHS[3].items():
+        path = np.repeat(path[::4], 4, axis=0)
+        for touches in (True, False):
+            done = drive(law.law, law.table, path, touches=touches, **law.stiffness)
+            rows, kn = np.tile(law.columns, (len(path), 1)), np.full(len(path), law.kn * law.area)
+            found = law.law.pressed(rows, -path[:, 0], done.memory, kn)
+            np.testing.assert_allclose(
+                found[3::4], done.normal[3::4], atol=1e-12 * law.kn * U, err_msg=f"{title} {touches}"
+            )

@@ -31,17 +31,10 @@ def extruded_tables(tables: dict[str, Any]) -> dict[str, Any]:
         for table in _each(found, key):
             if name in table:
                 table[name] = [table[name][0], 0.0, table[name][1]]
-    for block in _each(found, "block"):
-        half = block.pop("thickness", 1.0) / 2.0
-        if "vertices" in block:
-            block |= {"polygon": block.pop("vertices"), "y": [-half, half]}
-        else:
-            sides = [[[[x, y, z] for x, z in part] for y in (-half, half)] for part in block["parts"]]
-            block["parts"] = [near + far for near, far in sides]
     for joint in found.get("joints", {}).values():  # two points at its ends: four at its corners
         if joint.get("law") not in ("elastic", "mohr-coulomb", "fracture") and "profile" not in joint:
             joint.setdefault("points", "vertices")
-    for key, turned in (("monitor", _monitor), ("settlement", _settlement), ("initial", _initial)):
+    for key, turned in TURNED.items():
         for table in _each(found, key):
             turned(table)
     return found
@@ -51,6 +44,19 @@ def _each(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
     """The tables of a name, one or several."""
     one = tables.get(key, [])
     return one if isinstance(one, list) else [one]
+
+
+def _block(table: dict[str, Any]) -> None:
+    half = table.pop("thickness", 1.0) / 2.0
+    if "vertices" in table:
+        table |= {"polygon": table.pop("vertices"), "y": [-half, half]}
+    else:
+        sides = [[[[x, y, z] for x, z in part] for y in (-half, half)] for part in table["parts"]]
+        table["parts"] = [near + far for near, far in sides]
+
+
+def _bar(table: dict[str, Any]) -> None:
+    table["path"] = [[x, 0.0, z] for x, z in table["path"]]
 
 
 def _monitor(table: dict[str, Any]) -> None:
@@ -75,3 +81,6 @@ VECTORS = (
     ("structure", "origin"), ("load", "force"), ("load", "at"), ("monitor", "point"), ("analysis", "direction"),
     ("settlement", "displacement"), ("motion", "direction"), ("initial", "displacement"),
 )  # fmt: skip
+TURNED = {
+    "block": _block, "reinforcement": _bar, "monitor": _monitor, "settlement": _settlement, "initial": _initial,
+}  # fmt: skip

@@ -165,6 +165,23 @@ def test_a_monitor_that_the_load_does_not_move():
     assert any("does not move monitor 'base'" in line for line in summary["warnings"])
 
 
+def test_a_monitor_that_turns_back():
+    """The corner over the heel rises until it is over the toe, by √(b² + h²) − h, and comes down."""
+    width, height = 0.2, 1.0
+    case = controlled(0.03, block("b", rectangle(0, 0, width, height)), friction=2.0, of="roof", loads_at=[0.01, 0.025])
+    case["monitor"] = [ROOF | {"component": "y"}]
+    summary, _ = solve(case)
+    diagonal, lean = np.hypot(width, height), np.arctan2(width, height)
+    turned = np.arccos((height + 0.01) / diagonal)  # left to go
+    first, second = (one["load"] for one in summary["capacity_curve"]["loads_at"])
+    assert first == pytest.approx(np.tan(turned), rel=0.02)  # between the points of the curve in proportion
+    assert np.isnan(second) or second is None
+    far = summary["capacity_curve"]["bilinear"]["ultimate_displacement"]
+    assert 0.0 < far <= diagonal - height
+    assert any("turns back at 0.019" in line for line in summary["warnings"]), summary["warnings"]
+    assert lean > turned
+
+
 def test_to_and_fro_of_a_monitor():
     """Turning points are those of the monitor: the corner that is pushed against x goes along with the block."""
     path = [0.001, -0.001]

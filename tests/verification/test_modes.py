@@ -56,6 +56,20 @@ def test_the_geometry_of_the_start_knows_no_weight():
     assert solve(case)[0]["frequencies"] == pytest.approx(solve(light)[0]["frequencies"], rel=1e-9)
 
 
+def test_corners_that_meet_are_no_springs():
+    """Four blocks with a corner in one place, on geometry that moves: those aslant from each other share nothing."""
+    stones = [
+        block(f"b{i}{j}", rectangle(0.4 * i, 0.2 * j, 0.4 * i + 0.4, 0.2 * j + 0.2)) for j in (0, 1) for i in (0, 1)
+    ]
+    keys = {"kind": "modes", "contacts": "touching"}
+    found = {
+        way: solve(tables(GROUND, *stones, joints=joint(5e9, 2e9), analysis=keys | {"kinematics": way}))[0]
+        for way in ("fixed", "large")
+    }
+    assert found["large"]["springs"]["touching"] == found["fixed"]["springs"]["touching"] == 12
+    assert found["large"]["frequencies"] == pytest.approx(found["fixed"]["frequencies"], rel=1e-3)
+
+
 STONES = {
     "slender": (SLENDER,),
     "narrower above": STACK,

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array
-from scipy.sparse.linalg import spsolve
+from scipy.sparse import block_diag, coo_array, csr_array, eye_array
+from scipy.sparse.linalg import eigsh, spsolve
 
 GAUSS = (np.array([-1.0, 0.0, 1.0]) * np.sqrt(0.6), np.array([5.0, 8.0, 5.0]) / 9.0)
 EDGE = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30.0  # ∫ N Nᵀ along an edge of length one
@@ -30,6 +30,7 @@ class ElasticWall(NamedTuple):
     thickness: float  # [m]
     kn: float  # of the joints [Pa/m]
     ks: float
+    density: float = 0.0  # [kg/m³]; displacements do not need it
 
 
 def quadratic(x: float) -> tuple[np.ndarray, np.ndarray]:
@@ -59,36 +60,79 @@ def displacement(wall: ElasticWall, loaded: int, size: float, direction: int = 0
     size: of the elements [m], which all sides of blocks are multiples of. degree: displacements are polynomials of this
     degree (0: rigid motions) in each block, at most 2; None: as the elements can.
     """
+    mesh = _mesh(wall, size)
+    weights = np.zeros(2 * mesh.first[-1])
+    at = _elements(mesh.cells[loaded], mesh.first[loaded])
+    share = np.outer([1, 4, 1], [1, 4, 1]).ravel() / 36.0 / len(at)
+    np.add.at(weights, 2 * at + direction, np.tile(share, (len(at), 1)))
+    fields = _fields(wall, mesh, degree)
+    weights, matrix = fields.T @ weights, fields.T @ stiffness_matrix(wall, mesh, size) @ fields
+    return float(weights @ spsolve(matrix.tocsc(), weights))
+
+
+def frequencies(wall: ElasticWall, size: float, count: int, degree: int | None = None) -> np.ndarray:
+    """The lowest natural frequencies [Hz], (count,); size, degree: as for `displacement`."""
+    mesh = _mesh(wall, size)
+    fields, one = _fields(wall, mesh, degree), np.kron(np.kron(EDGE, EDGE), np.eye(2))
+    mass, blocks = _Entries(), range(len(mesh.cells))
+    for block in blocks:
+        mass.add(_elements(mesh.cells[block], mesh.first[block]), wall.density * wall.thickness * size**2 * one)
+    matrices = (fields.T @ matrix @ fields for matrix in (stiffness_matrix(wall, mesh, size), mass.matrix()))
+    stiff, heavy = (matrix.tocsc() for matrix in matrices)
+    found = eigsh(stiff, k=count, M=heavy, sigma=0.0, v0=np.ones(stiff.shape[0]))[0]
+    return np.sqrt(np.sort(found)) / (2.0 * np.pi)
+
+
+class Mesh(NamedTuple):
+    """Elements of all blocks, numbered block by block."""
+
+    cells: np.ndarray  # elements along x and y of each block, (n, 2)
+    nodes: np.ndarray  # the same of nodes, (n, 2)
+    first: np.ndarray  # first node of each block, and their number, (n + 1,)
+
+
+def _mesh(wall: ElasticWall, size: float) -> Mesh:
     cells = np.rint((wall.high - wall.low) / size).astype(int)
     nodes = 2 * cells + 1
-    first = np.concatenate([[0], np.cumsum(nodes.prod(axis=1))])
-    rows, columns, entries = [], [], []
+    return Mesh(cells, nodes, np.concatenate([[0], np.cumsum(nodes.prod(axis=1))]))
 
-    def add(at: np.ndarray, matrix: np.ndarray) -> None:
+
+class _Entries:
+    """Entries of a sparse matrix, element by element."""
+
+    def __init__(self) -> None:
+        self.rows, self.columns, self.entries = list[np.ndarray](), list[np.ndarray](), list[np.ndarray]()
+
+    def add(self, at: np.ndarray, matrix: np.ndarray) -> None:
+        """The same matrix at the nodes `at` (n, k) of several elements, two displacements each."""
         dofs = (2 * at[:, :, None] + np.arange(2)).reshape(len(at), -1)
         shape = (*dofs.shape, dofs.shape[1])
-        rows.append(np.broadcast_to(dofs[:, :, None], shape).ravel())
-        columns.append(np.broadcast_to(dofs[:, None, :], shape).ravel())
-        entries.append(np.broadcast_to(matrix, shape).ravel())
+        self.rows.append(np.broadcast_to(dofs[:, :, None], shape).ravel())
+        self.columns.append(np.broadcast_to(dofs[:, None, :], shape).ravel())
+        self.entries.append(np.broadcast_to(matrix, shape).ravel())
 
-    one, weights = element(wall), np.zeros(2 * first[-1])
-    for block in range(len(cells)):
-        at = _elements(cells[block], first[block])
-        add(at, one)
-        if block == loaded:
-            share = np.outer([1, 4, 1], [1, 4, 1]).ravel() / 36.0 / len(at)
-            np.add.at(weights, 2 * at + direction, np.tile(share, (len(at), 1)))
-    for a, b, axis in _interfaces(wall, cells, first, size):
+    def matrix(self) -> csr_array:
+        """Their sum."""
+        places = np.concatenate(self.rows), np.concatenate(self.columns)
+        return coo_array((np.concatenate(self.entries), places)).tocsr()
+
+
+def stiffness_matrix(wall: ElasticWall, mesh: Mesh, size: float) -> csr_array:
+    """Of all elements and interfaces [N/m], two displacements for each node, x first."""
+    one, found = element(wall), _Entries()
+    for block in range(len(mesh.cells)):
+        found.add(_elements(mesh.cells[block], mesh.first[block]), one)
+    for a, b, axis in _interfaces(wall, mesh.cells, mesh.first, size):
         stiffness = np.diag([wall.kn, wall.ks] if axis == 0 else [wall.ks, wall.kn]) * wall.thickness * size
-        add(np.hstack([a, b]), np.kron(np.array([[1.0, -1.0], [-1.0, 1.0]]), np.kron(EDGE, stiffness)))
-    matrix = coo_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns)))).tocsr()
-    held = np.concatenate([np.full(2 * n, fixed) for n, fixed in zip(nodes.prod(axis=1), wall.fixed, strict=True)])
-    free = np.flatnonzero(~held)
-    matrix, weights = matrix[free][:, free], weights[free]
-    if degree is not None:
-        fields = _polynomials(nodes[~wall.fixed], degree)
-        matrix, weights = fields.T @ matrix @ fields, fields.T @ weights
-    return float(weights @ spsolve(matrix.tocsc(), weights))
+        found.add(np.hstack([a, b]), np.kron(np.array([[1.0, -1.0], [-1.0, 1.0]]), np.kron(EDGE, stiffness)))
+    return found.matrix()
+
+
+def _fields(wall: ElasticWall, mesh: Mesh, degree: int | None) -> csr_array:
+    """Displacements of all nodes by those that are free, or by the polynomials of each block that is."""
+    held = np.concatenate([np.full(2 * n, fixed) for n, fixed in zip(mesh.nodes.prod(axis=1), wall.fixed, strict=True)])
+    free = eye_array(len(held), format="csr")[:, np.flatnonzero(~held)]
+    return free if degree is None else free @ _polynomials(mesh.nodes[~wall.fixed], degree)
 
 
 def _polynomials(nodes: np.ndarray, degree: int) -> csr_array:

@@ -29,12 +29,12 @@ def pushovers() -> list[Path]:
 def known(tables: dict[str, Any]) -> bool:
     """Whether all joints are Coulomb's and closed: limit analysis has no other law, and knows the drawing alone.
 
-    Not where displacement is controlled: such cases are about their curves.
+    Not where displacement is controlled: such cases are about their curves. The path knows no ties and bars.
     """
     if tables["analysis"].get("control") == "displacement":
         return False
     coulomb = all(joint.get("law", "coulomb") == "coulomb" for joint in tables["joints"].values())
-    return coulomb and "imperfection" not in tables
+    return coulomb and not {"imperfection", "tie", "reinforcement"} & set(tables)
 
 
 def name_of(file: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,17 +28,30 @@ FACES = {
 }  # which coordinate has which value
 FIRST = 5e-6  # m: a joint that is open so far has cracked
 SOFT = 0.5  # of the first stiffness, below which a curve has its kink
+CORNERS = ('joints.mortar.points="vertices"',)
+STIFF = ("bars.corner.bond_stiffness=2e10", "bars.top.bond_stiffness=3e10")
+READINGS = [  # of the paper, beside that of the cases: words, wall, keys that are changed
+    ("points at the corners alone", "without bars", CORNERS),
+    ("points at the corners alone", "with bars", CORNERS),
+    ("bond ten times as stiff", "with bars", STIFF),
+    ("both", "with bars", (*CORNERS, *STIFF)),
+]
 
 
-def measure() -> list[dict[str, Any]]:
-    """Both walls."""
-    return [wall(words, name) for words, name in CASES_OF.items()]
+def measure() -> dict[str, Any]:
+    """Both walls, and what other readings of the paper make of them."""
+    kept = ("words", "status", "closure", "bracket", "deflections", "pressures")
+    others = [(words, of, wall(of, CASES_OF[of], changes)) for words, of, changes in READINGS]
+    return {
+        "walls": [wall(words, name) for words, name in CASES_OF.items()],
+        "readings": [{"reading": words} | {key: found[key] for key in kept} for words, _, found in others],
+    }
 
 
-def wall(words: str, name: str) -> dict[str, Any]:
+def wall(words: str, name: str, changes: Sequence[str] = ()) -> dict[str, Any]:
     """Pressure [kPa], deflection of the middle [mm] and cracks where it was furthest."""
     path = CASES / "validation" / f"{name}.toml"
-    loaded, seen = api.load_case(path), RunKeeper()
+    loaded, seen = api.load_case(path, changes), RunKeeper()
     model = api.build_model(loaded)
     summary = solve(loaded.case, model, seen).summary
     rows = [row for row in seen.rows if row.stage in ("gravity", "loading", "collapse")]
@@ -77,33 +91,35 @@ def kink(found: dict[str, Any]) -> float:
     return float(p[soft[0]])
 
 
-def values(found: list[dict[str, Any]]) -> dict[str, Any]:
+def values(found: dict[str, Any]) -> dict[str, Any]:
     """What the page shows."""
     rows = []
-    for one in found:
+    for one in [*found["walls"], *found["readings"]]:
         u, p = np.array(one["deflections"]), np.array(one["pressures"])
         straight, most = kink(one), p.max()
         there = float(np.interp(DEFLECTION, u, p)) if u.max() >= 0.97 * DEFLECTION else None
         first = one["bracket"][0] if one["bracket"] else None
         rows.append(
             [
-                one["words"], f"{straight:.1f}", minus(f"{100.0 * (straight / KINK - 1.0):+.0f} %"),
+                ", ".join(filter(None, (one["words"], one.get("reading")))),
+                f"{straight:.1f}", minus(f"{100.0 * (straight / KINK - 1.0):+.0f} %"),
                 f"{max(most, first or 0.0):.1f}", minus(f"{100.0 * (max(most, first or 0.0) / PEAK - 1.0):+.0f} %"),
                 f"{u[int(np.argmax(p))]:.1f}", "–" if there is None else f"{there:.1f}", f"{one['closure']:.0e}",
             ]
         )  # fmt: skip
     head = ("", "half as stiff from [kPa]", "test: 34", "highest [kPa]", "test: 58", "middle there [mm]",
             "at 26.7 mm [kPa]", "energy closes to")  # fmt: skip
-    plain, bars = found
-    after = plain["pressures"][-1]
-    return {"curves": table(head, rows), "after": f"{after:.1f}", "closure": f"{abs(bars['closure']):.0e}"}
+    plain, bars = found["walls"]
+    after, most = plain["pressures"][-1], [max(one["pressures"]) for one in (bars, *found["readings"][1:3])]
+    peaks = {name: f"{value:.1f}" for name, value in zip(("bars", "corners", "stiff"), most, strict=True)}
+    return {"curves": table(head, rows), "after": f"{after:.1f}", "closure": f"{abs(bars['closure']):.0e}"} | peaks
 
 
-def draw_curves(found: list[dict[str, Any]], path: Path) -> None:
+def draw_curves(found: dict[str, Any], path: Path) -> None:
     """Pressure over deflection, both walls and what is printed of the test."""
     with style.figure(path, figsize=(6.4, 4.0)) as figure:
         axis = figure.subplots()
-        for one, colour in zip(found, (style.GREY, style.STAGE_COLOURS["loading"]), strict=True):
+        for one, colour in zip(found["walls"], (style.GREY, style.STAGE_COLOURS["loading"]), strict=True):
             axis.plot(one["deflections"], one["pressures"], color=colour, label=f"dem, {one['words']}")
         axis.plot([DEFLECTION], [PEAK], "s", color=style.REFERENCE, label="test: largest pressure")
         axis.axhline(KINK, color=style.REFERENCE, ls=":", lw=1.0, label="test: first cracks")
@@ -111,10 +127,10 @@ def draw_curves(found: list[dict[str, Any]], path: Path) -> None:
         axis.legend(fontsize=8)
 
 
-def draw_cracks(found: list[dict[str, Any]], path: Path) -> None:
+def draw_cracks(found: dict[str, Any], path: Path) -> None:
     """Open joints on the outer faces of both walls, unfolded, as wide as they are open."""
     with style.figure(path, figsize=(9.0, 5.4)) as figure:
-        for axis, one in zip(figure.subplots(2, 1), found, strict=True):
+        for axis, one in zip(figure.subplots(2, 1), found["walls"], strict=True):
             widest = max((crack[-1] for crack in one["cracks"]), default=1.0)
             for face, (shift, turned, width) in _unfolded().items():
                 outline = [shift, shift + width, shift + width, shift], [0.0, 0.0, HEIGHT, HEIGHT]

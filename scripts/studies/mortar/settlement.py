@@ -15,7 +15,8 @@ from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.template import minus, table
 
-CASES_OF = {"in the plane": "bui_settlement_plane", "in space": "bui_settlement"}
+CASES_OF = {"in the plane": "bui_settlement_plane", "by load": "bui_settlement_load", "in space": "bui_settlement"}
+BORNE = 3489.8  # N: what the ground carries before it gives way, 7/15 of the wall
 FRONT = -1e-6  # m: corners in front of this in space
 
 
@@ -41,9 +42,23 @@ def wall(words: str, name: str) -> dict[str, Any]:
     return {
         "command": f"dem run cases/validation/{name}.toml", "words": words, "status": summary["status"],
         "closure": float(f"{summary['energy_closure']:.2g}"), "monitors": {k: round(v, 5) for k, v in found.items()},
-        "open": summary["joint_state"]["open"], "crack": round(summary["joint_state"]["crack_width"]["value"], 4),
+        "ground": ground(loaded.case, seen), "open": summary["joint_state"]["open"],
+        "crack": round(summary["joint_state"]["crack_width"]["value"], 4),
         "outlines": outlines, "fixed": model.fixed.tolist(),
     }  # fmt: skip
+
+
+def ground(case: Any, seen: RunKeeper) -> list[list[float]]:
+    """What the ground carries [N] at each settlement [mm]; nothing where no monitor has it."""
+    if case.analysis.kind == "cycle":
+        return [[round(1e3 * row.live_displacement, 2), round(BORNE * (1.0 - row.load), 1)] for row in seen.rows]
+    names = [one.name for one in case.monitor]
+    if "ground" not in names:
+        return []
+    down = 1e3 * abs(case.settlement[0].displacement[-1])
+    rows = [row for row in seen.rows if row.stage in ("gravity", "settlement")]
+    last = len(rows) - 1
+    return [[round(down * i / last, 2), round(row.monitors[names.index("ground")], 1)] for i, row in enumerate(rows)]
 
 
 def _around(points: np.ndarray) -> np.ndarray:
@@ -63,13 +78,17 @@ def values(found: list[dict[str, Any]]) -> dict[str, Any]:
         ]
         for one in found
     ]  # fmt: skip
-    return {
+    forces = {one["words"]: [force for _, force in one["ground"]] for one in found}
+    least = {"moved": min(forces["in the plane"]), "loaded": min(forces["by load"])}
+    said = {name: f"{value:,.0f}" for name, value in least.items()}
+    said["first"] = f"{found[1]['ground'][1][1]:,.0f}"
+    return said | {
         "walls": table(("", "status", *(f"{n} [mm]" for n in names), "widest crack [mm]", "energy closes to"), rows)
     }
 
 
 def draw(found: list[dict[str, Any]], path: Path) -> None:
-    """Both walls in the end."""
+    """The walls in the end."""
     with style.figure(path, figsize=(9.6, 3.8)) as figure:
         for axis, one in zip(figure.subplots(1, len(found), squeeze=False)[0], found, strict=True):
             for outline, fixed in zip(one["outlines"], one["fixed"], strict=True):
@@ -79,4 +98,15 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
             axis.axis("off")
 
 
-PICTURES = {"settlement": draw}
+def draw_ground(found: list[dict[str, Any]], path: Path) -> None:
+    """What the ground carries over its settlement: moved at a steady pace, and by load."""
+    with style.figure(path, figsize=(5.6, 3.6)) as figure:
+        axis = figure.subplots()
+        for one, colour in zip(found[:2], (style.GREY, style.STAGE_COLOURS["loading"]), strict=True):
+            words = "by load" if one["words"] == "by load" else "moved"
+            axis.plot(*np.transpose(one["ground"]), color=colour, label=words)
+        axis.set(xlabel="settlement [mm]", ylabel="the ground carries [N]", ylim=(0.0, None))
+        axis.legend(fontsize=8)
+
+
+PICTURES = {"settlement": draw, "settlement_ground": draw_ground}

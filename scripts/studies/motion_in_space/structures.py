@@ -134,10 +134,12 @@ def spreading(*blocks: dict, apart: float, component: str) -> dict:
     """The right springing moves out slowly; the crown is watched."""
     case = history(*blocks, duration=1.0, friction=0.7)
     del case["damping"]
-    moved = [apart, 0.0] if component == "y" else [apart, 0.0, 0.0]
+    flat = component == "y"
+    case["joints"]["dry"]["points"] = 2 if flat else "vertices"  # the same at the ends of each joint
+    moved = [apart, 0.0] if flat else [apart, 0.0, 0.0]
     case["analysis"] = {"kind": "settlement"}
     case["settlement"] = [{"block": "right", "displacement": moved}]
-    case["monitor"] = [{"block": "v4" if component == "y" else "v4-1", "component": component}]
+    case["monitor"] = [{"block": "v4" if flat else "v4-1", "component": component}]
     return case
 
 

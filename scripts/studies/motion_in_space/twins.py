@@ -41,9 +41,11 @@ def twin_case(file: Path, case: Case, model: Model, *overrides: str) -> LoadedCa
             tables[key] = [_TABLES[key](dict(table)) for table in listed]
     for table in tables.get("motion", []):
         table |= {"file": str((file.parent / table["file"]).resolve())} if "file" in table else {}
+    lands = case.analysis.kind == "time-history"
     for name, joint in tables.get("joints", {}).items():
         if joint.get("profile") is None:
-            joint["points"] = "vertices" if case.joints[name].contact_points(2) == 2 else "vertices+centre"
+            ends = case.joints[name].contact_points(2, lands=lands) == 2
+            joint["points"] = "vertices" if ends else "vertices+centre"
     for table, name in zip(tables.get("monitor", []), monitor_names(case.monitor), strict=True):
         table["name"] = name
     if "direction" in tables.get("analysis", {}):

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.post import style
-from studies.shear_walls.walls import KN, MM, draw_curve, draw_tests, legend_below, load_at, peak, wall
+from studies.shear_walls.walls import FORCES, KN, MM, draw_curve, draw_tests, legend_below, load_at, peak, wall
 from studies.template import minus, table
 
-FORCES = (100, 200, 250)  # vertical loads [kN]
 STRENGTHS = (0.5, 1.0, 2.0)  # tension of the stones [MPa]
 COHESION = 1.5  # over tension
 STIFFNESS = 6e10  # of the bond, kn and ks [Pa/m]: some eight times that of the joints
@@ -44,10 +43,10 @@ def values(found: list[dict[str, Any]]) -> dict[str, Any]:
             rows.append((f"SW{run['force']}", f"{run['strength']:g}" if "strength" in run else "whole",
                          f"{KN * load:.1f}", f"{MM * at:.1f}", minus(f"{100.0 * (load / highest - 1.0):+.0f} %"),
                          *("–" if value is None else f"{KN * value:.1f}" for value in there),
-                         f"{run['seconds']:.0f}"))  # fmt: skip
+                         f"{abs(run['closure']):.0e}", f"{run['seconds']:.0f}"))  # fmt: skip
     return {
         "rows": table(("wall", "tension [MPa]", "peak [kN]", "at [mm]", "over the higher test",
-                       *(f"at {MM * place:g} mm" for place in PLACES), "CPU [s]"), rows),
+                       *(f"at {MM * place:g} mm" for place in PLACES), "energy closes to", "CPU [s]"), rows),
         "closure": max(abs(run["closure"]) for run in runs),
         "cohesion": COHESION, "stiffness": STIFFNESS, "energy": ENERGY,
     }  # fmt: skip
@@ -56,8 +55,8 @@ def values(found: list[dict[str, Any]]) -> dict[str, Any]:
 def draw_cracks(found: list[dict[str, Any]], path: Path) -> None:
     """Each wall at every strength, over its tests."""
     colours = (style.COLLAPSE, style.SYSTEM, style.LIMIT)
-    with style.figure(path, figsize=(11.0, 4.2)) as figure:
-        for axis, one in zip(figure.subplots(1, len(found)).ravel(), found, strict=True):
+    with style.figure(path, figsize=(10.0, 7.0)) as figure:
+        for axis, one in zip(figure.subplots(2, 2).ravel(), found, strict=True):
             draw_tests(axis, one["whole"])
             for colour, run in zip(colours, one["cracking"], strict=True):
                 draw_curve(axis, run, f"stones of {run['strength']:g} MPa", color=colour, lw=1.3)

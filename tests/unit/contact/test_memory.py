@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from engine import block, rectangle, simulation, steps, tables
+from studies.space.structures import box
 
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
@@ -51,6 +52,31 @@ def test_detection_changes_nothing_that_is_loaded():
         sim.set_load(0.55)
         steps(sim, 500)
     assert np.array_equal(one.bodies.positions, two.bodies.positions)
+
+
+BOND = {"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e7, "tension": 1e7, "kn": 1e9, "ks": 5e8}
+
+
+def bonded(dimension: int) -> Simulation:
+    """A block glued to its base, which trembles when its weight and a push come on at once; nothing breaks."""
+    push = [{"kind": "live", "block": "b", "force": [W, 0.0, 0.0][:dimension]}]
+    if dimension == 2:
+        return on_base(joints={"dry": BOND}, load=push)
+    blocks = [box("base", (-1, -1, -1), (3, 2, 0), fixed=True), box("b", (0, 0, 0), (1, 1, 1))]
+    return simulation(tables(*blocks, dimension=3, joints={"dry": BOND}, load=push), "large")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_bonds_lose_nothing_to_detections(dimension):
+    """Nothing slips and nothing breaks: no step after a detection may book a change of force as work lost."""
+    sim = bonded(dimension)
+    sim.use(0.25, damping=0.0)
+    sim.set_load(0.5)
+    for _ in range(200):
+        sim.advance(3, slot.HOLD_LOAD)
+        sim.detect()
+    assert sim.elastic_energy() > 0.0
+    assert sim.ledger[slot.FRICTION] == pytest.approx(0.0, abs=1e-9 * sim.elastic_energy())
 
 
 def test_stiffness_of_a_point_survives_its_shrinking_overlap():

@@ -17,7 +17,9 @@ from click.testing import CliRunner
 import dem_cli
 from dem_cli.cli.main import main
 from dem_cli.errors import CaseError, UsageError
+from dem_cli.output.record import Frame
 
+SAME_IN_FILES = tuple(name for name in Frame._fields if name not in ("contacts", "stresses", "links"))
 COLUMN = {
     "title": "Two blocks",
     "materials": {"stone": {"density": 2400.0}},
@@ -115,7 +117,7 @@ def test_open_gives_what_run_gave(tmp_path):
             np.testing.assert_array_equal(monitor.values, opened.monitors[name].values)
         assert len(made.frames) == len(opened.frames) > 3
         for one, two in zip(made.frames, opened.frames, strict=True):
-            assert all(np.array_equal(a, b) for a, b in zip(one[:-3], two[:-3], strict=True))
+            assert all(np.array_equal(getattr(one, name), getattr(two, name)) for name in SAME_IN_FILES)
             assert all(np.array_equal(a, b) for a, b in zip(one.contacts, two.contacts, strict=True))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, solve, tables
 
+from dem_cli.assembly.validate import monitor_problems
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import CaseError
 from dem_cli.limit.analysis import limit_loads
@@ -102,3 +103,80 @@ def test_what_cannot_be_held_is_refused(dimension, change, said):
     case["restraint"][0] |= change
     with pytest.raises(CaseError, match=said):
         scene(case)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_monitors_follow_what_holds_blocks(dimension):
+    """A block that cannot turn, pushed at its middle: F h/2 holds it level, the ground gives weight and push back."""
+    push, up = 0.3 * WEIGHT, "y" if dimension == 2 else "z"
+    asked = [("base", "reaction", "x", -push), ("base", "reaction", up, WEIGHT), ("base", "reaction", None,
+             np.hypot(push, WEIGHT)), ("b*", "reaction", up, WEIGHT)]  # fmt: skip
+    # The push turns the block clockwise, in space about y: what holds it gives F h/2 the other way round.
+    level = 0.5 * push * HIGH * (1.0 if dimension == 2 else -1.0)
+    asked.append(("block", "reaction_moment", None if dimension == 2 else "y", level))
+    case = slender(dimension=dimension, kind="gravity")
+    case["load"] = [{"block": "block", "force": [push] + [0.0] * (dimension - 1)}]
+    case["monitor"] = [
+        {"name": f"{i}", "block": block, "quantity": quantity} | ({"component": axis} if axis else {})
+        for i, (block, quantity, axis, _) in enumerate(asked)
+    ]
+    _, records = solve(case)
+    assert records.rows[-1].monitors == pytest.approx([value for *_, value in asked], rel=1e-4)
+
+
+def checked(case: dict) -> None:
+    """Raises CaseError for what is wrong with a case and its monitors."""
+    made = scene(case)
+    if problems := monitor_problems(made.case, made.model):
+        raise CaseError(problems)
+
+
+@pytest.mark.parametrize(
+    ("change", "monitor", "said"),
+    [
+        ({}, {"block": "free", "quantity": "reaction"}, "'reaction' is not allowed of 'free': none of it is fixed"),
+        ({}, {"point": [0.0, 0.1], "quantity": "reaction"}, "'reaction' is not allowed of a point"),
+        ({}, {"block": "block", "quantity": "reaction_moment", "component": "x"}, "a moment has none in 2D"),
+        ({"kind": "modes"}, {"block": "block", "quantity": "reaction"}, "only analyses without time follow"),
+    ],
+)
+def test_reactions_of_what_nothing_holds_are_refused(change, monitor, said):
+    case = slender(kind="gravity")
+    case["block"].append(block("free", rectangle(0.5, 0.0, 0.7, 0.2)))
+    case["analysis"] |= change
+    case["monitor"] = [monitor]
+    with pytest.raises(CaseError, match=said):
+        checked(case)
+
+
+@pytest.mark.parametrize("by", ["moved", "load"])
+def test_a_beam_whose_support_settles(by):
+    """It turns about the edge of the other support: what it then asks of the one that sank, by lever arms.
+
+    That support is moved, or it is a block that can only sink, whose load is taken away.
+    """
+    weight, sunk = 2000.0 * 9.81 * 4.0 * 0.4, 0.05
+    foot = block("foot", rectangle(3.5, -0.5, 4.5, 0.0), **({"fixed": True} if by == "moved" else {}))
+    beam = block("beam", rectangle(0.0, 0.0, 4.0, 0.4))
+    case = tables(block("stays", rectangle(-0.5, -0.5, 0.5, 0.0), fixed=True), foot, beam)
+    case["joints"] = {"dry": {"friction": 0.02, "kn": 1e10}}  # no thrust between the supports
+    case["monitor"] = [{"block": "stays", "quantity": "reaction", "component": "y"}]
+    if by == "moved":
+        case["analysis"] = {"kind": "settlement"}
+        case["settlement"] = [{"block": "foot", "displacement": [0.0, -sunk]}]
+    else:
+        own = 2000.0 * 9.81 * 0.5
+        analysis = {"kind": "cycle", "pattern": "live", "control": "displacement", "path": [sunk], "step": sunk / 2}
+        case["analysis"] = analysis
+        case["restraint"] = [{"block": "foot", "fixed": ["x", "rotation"]}]
+        case["load"] = [
+            {"block": "foot", "force": [0.0, weight / 2 + own]},
+            {"block": "foot", "force": [0.0, -weight / 2], "kind": "live"},
+        ]
+    summary, records = solve(case)
+    assert summary["status"] == "ok"
+    carried = weight * (1.5 + 0.2 * sunk / 3.5) / 3.5  # by the foot: the beam leans towards it
+    row = records.rows[-1]
+    assert row.monitors[0] == pytest.approx(weight - carried, rel=3e-4)
+    if by == "load":
+        assert 0.5 * weight * (1.0 - row.load) == pytest.approx(carried, rel=3e-4)
