@@ -40,9 +40,10 @@ prepare() {
         "$python" -m venv --clear "$venv" || fail "could not make $venv"
     fi
     say "installing dem and what it needs (once, about a minute)"
+    # Without --no-compile pip would compile every module to bytecode; Python does so with those that a run imports.
     rm -f "$venv"/.installed-*
     if ! "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-warn-script-location \
-        --constraint "$root/constraints.txt" --editable "$root[$extra]" >"$venv/install.log" 2>&1; then
+        --no-compile --constraint "$root/constraints.txt" --editable "$root[$extra]" >"$venv/install.log" 2>&1; then
         tail -n 15 "$venv/install.log" >&2
         fail "the installation failed; the whole output is in $venv/install.log"
     fi

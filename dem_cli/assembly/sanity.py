@@ -15,7 +15,7 @@ from dem_cli.errors import CaseProblem
 from dem_cli.geometry.convex import distance
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
+from dem_cli.model.places import blocks_at, undeformed
 from dem_cli.structures.registry import loose_ends, unsaid
 from dem_cli.structures.wall_outline import Outlined
 
@@ -212,7 +212,7 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _away(case: Case, model: Model, i: int, enough: float) -> float:
-    """How far a load acts from its block [m]; 0 where a corner is nearer than `enough`: the rest takes a solver."""
+    """How far a load acts from its block [m]; 0 within it and near a corner, by `enough`: the rest takes a solver."""
     load = case.load[i]
     chosen = model.chosen(load.selected, False)
     if load.at is None or load.falls or len(chosen) != 1:
@@ -220,7 +220,7 @@ def _away(case: Case, model: Model, i: int, enough: float) -> float:
     number, corners, starts = chosen[0], undeformed(model), model.part_starts
     own = np.flatnonzero(model.part_blocks == number)
     near = np.concatenate([corners[starts[p] : starts[p + 1]] for p in own]) - np.array(load.at)
-    if np.sqrt((near**2).sum(axis=1)).min() <= enough:
+    if np.sqrt((near**2).sum(axis=1)).min() <= enough or number in blocks_at(model, np.array(load.at)):
         return 0.0
     return min(distance(corners[starts[p] : starts[p + 1]], np.array(load.at)) for p in own)
 

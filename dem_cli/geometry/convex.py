@@ -20,18 +20,37 @@ class CommonBody(NamedTuple):
 def distance(corners: np.ndarray, point: np.ndarray) -> float:
     """How far a point is from a convex body with these corners (n, d) [m]; 0 inside.
 
-    The nearest point is a mean of the corners with weights w >= 0: those of the least |sum w (corner - point)|^2 +
-    (1 - sum w)^2, which points the same way whatever the sum is. Bounded least squares (Stark and Parker 1995): that of
-    Lawson and Hanson, scipy's nnls, ends early where corners are symmetric to the last digits (1 % off).
+    In the plane the nearest point lies on a line between two corners. In space it is a mean of the corners with weights
+    w >= 0: those of the least |sum w (corner - point)|^2 + (1 - sum w)^2, which points the same way whatever the sum
+    is. Bounded least squares (Stark and Parker 1995): that of Lawson and Hanson, scipy's nnls, ends early where corners
+    are symmetric to the last digits (1 % off).
     """
-    from scipy.optimize import lsq_linear
-
     arms = np.asarray(corners, float) - point
     scale = float(np.abs(arms).max()) or 1.0
+    if arms.shape[1] == 2:
+        away = _to_lines(arms) if _all_on_one_side(arms) else 0.0
+        return away if away > ROUND_OFF * scale else 0.0
+    from scipy.optimize import lsq_linear  # 0.3 s
+
     rows, wanted = np.vstack([arms.T / scale, np.ones(len(arms))]), np.append(np.zeros(arms.shape[1]), 1.0)
     weights = lsq_linear(rows, wanted, (0.0, np.inf), method="bvls", tol=1e-15).x
     away = float(np.linalg.norm(weights @ arms) / weights.sum())
     return away if away > ROUND_OFF * scale else 0.0
+
+
+def _all_on_one_side(arms: np.ndarray) -> bool:
+    """Whether all corners are seen within less than half a turn, from outside; arms: to them [m], (n, 2)."""
+    angles = np.sort(np.arctan2(arms[:, 1], arms[:, 0]))
+    return float(np.diff(angles, append=angles[0] + 2.0 * math.pi).max()) > math.pi
+
+
+def _to_lines(arms: np.ndarray) -> float:
+    """Least distance from the lines between all corners [m]; arms: to them, (n, 2)."""
+    i, j = np.triu_indices(len(arms), 1)
+    along = arms[j] - arms[i]
+    squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    shares = np.clip(-(arms[i] * along).sum(axis=1) / squares, 0.0, 1.0)
+    return float(np.linalg.norm(arms[i] + shares[:, np.newaxis] * along, axis=1).min())
 
 
 def common(normals: np.ndarray, offsets: np.ndarray) -> CommonBody | None:

@@ -7,6 +7,7 @@ go on running old machine code.
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import importlib
 import os
@@ -26,7 +27,10 @@ from numba import literal_unroll
 from numba.core import event
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
-from numba.extending import overload, register_jitable
+from numba.extending import overload as numba_overload
+from numba.extending import register_jitable
+
+from dem_cli.kernels.compilation.callees import CALLEE
 
 __all__ = [
     "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "literal_unroll",
@@ -96,6 +100,32 @@ class Compilation(event.Listener):
             self.seconds += time.perf_counter() - self._begun
 
 
+class Uncollected(event.Listener):
+    """Python collects no garbage while it compiles: it would look at a million live objects again and again.
+
+    That was a fifth of the time of compilation.
+    """
+
+    def __init__(self) -> None:
+        self._depth, self._was_on = 0, False
+
+    def on_start(self, event: event.Event) -> None:
+        """A kernel, or something inside of it."""
+        if not self._depth:
+            self._was_on = gc.isenabled()
+            gc.disable()
+        self._depth += 1
+
+    def on_end(self, event: event.Event) -> None:
+        """From the last one on as it was before."""
+        self._depth -= 1
+        if not self._depth and self._was_on:
+            gc.enable()
+
+
+event.register("numba:compile", Uncollected())
+
+
 def _load_numba_without_blas() -> None:
     """numba imports scipy.linalg when it first meets an array, only to learn whether there is a BLAS: 0.2 s.
 
@@ -162,7 +192,7 @@ def kernel(function: Callable) -> CompiledKernel:
 
 # What kernels call allocates nothing and keeps no array, so that references to arrays need no counting: counted at each
 # call inside a branching loop, they cost several times the work of a law. (`_nrt`: numba's runtime for references.)
-inline = register_jitable(_nrt=False)
+inline = register_jitable(_nrt=False, **CALLEE)
 
 
 def named(function: Callable, *parts: Callable | str) -> Callable:
@@ -177,4 +207,9 @@ def named(function: Callable, *parts: Callable | str) -> Callable:
 
 
 # For what is called for each point of the contact loop.
-always_inline = register_jitable(forceinline=True, _nrt=False)
+always_inline = register_jitable(forceinline=True, _nrt=False, **CALLEE)
+
+
+def overload(function: Callable) -> Callable:
+    """What compiled code takes for a plain function: the decorated one returns it, by the types of its arguments."""
+    return cast(Callable, numba_overload(function, jit_options=CALLEE))

@@ -93,10 +93,12 @@ def _buildable(loaded: LoadedCase, first: SweepJob | None) -> None:
 
 
 def _light(loaded: LoadedCase, plan: SweepPlan) -> tuple[Override, ...]:
-    """No snapshots, and no following of the collapse."""
+    """No snapshots, and no following of the collapse; a capacity curve goes as far as that says, and stays."""
     swept = {override.path[:2] for run in plan.runs for override in run.overrides}
-    other_kinds = swept & {("analysis",), ("analysis", "kind")}
-    follows = "follow" in type(loaded.case.analysis).model_fields and not other_kinds
+    other_kinds = swept & {("analysis",), ("analysis", "kind"), ("analysis", "control")}
+    analysis = loaded.case.analysis
+    by_load = getattr(analysis, "control", "load") == "load"
+    follows = "follow" in type(analysis).model_fields and by_load and not other_kinds
     keys = [(key, value) for key, value in LIGHT if follows or not key.startswith("analysis")]
     return tuple(Override(key, tuple(key.split(".")), value) for key, value in keys)
 

@@ -22,6 +22,19 @@ from dem_cli.errors import OutputError
 from dem_cli.post.sweep_table import read_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_capacity_curves_go_as_far_as_the_case_says(tmp_path):
+    path, curve = tmp_path / "curve.toml", 'follow = 1e-4\nincrements = 10\ncontrol = "displacement"'
+    text = SMALL.replace("follow = 0.01", curve).replace("courses = 2", "courses = 1")
+    path.write_text(text + '[sweep]\n"joints.dry.friction" = [0.3]\n', encoding="utf-8")
+    code, _, words = dem("sweep", path, "-o", tmp_path / "out", "-j", 1)
+    assert code == 0, words
+    (row,) = table(tmp_path / "out")
+    assert float(row["failure_load"]) == pytest.approx(0.3, rel=3e-3)
+    assert "follow = 0.0001" in (tmp_path / "out" / "runs" / row["run"] / "case.toml").read_text(encoding="utf-8")
+
+
 DEM = [sys.executable, "-m", "dem_cli"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
 SMALL = """

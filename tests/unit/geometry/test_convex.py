@@ -37,6 +37,16 @@ def test_distance_in_the_plane():
     assert distance(triangle, np.array([4.0, 3.0])) == pytest.approx(12.0 / 5.0)
     assert distance(triangle, np.array([1.0, 1.0])) == 0.0
     assert distance(triangle, np.array([-3.0, -4.0])) == pytest.approx(5.0)
+    assert distance(triangle, np.array([2.0, -1.0])) == pytest.approx(1.0)
+
+
+@given(point=coordinates, half=sides, far=st.floats(-1e4, 1e4))
+@settings(deadline=None, max_examples=60)
+def test_distance_from_a_rectangle(point, half, far):
+    """Its corners in no order."""
+    point, half = np.array(point[:2]), np.array(half[:2])
+    exact = np.linalg.norm(np.maximum(np.abs(point) - half, 0.0))
+    assert distance(SIGNS[:4, 1:] * half + far, point + far) == pytest.approx(exact, abs=1e-10 + 1e-14 * abs(far))
 
 
 def box_planes(middle, half):
