@@ -76,4 +76,4 @@ class CalleeCompiler(Compiler):
         return [passes]
 
 
-CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}  # options of numba's `jit`
+CALLEE: dict[str, Any] = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}  # options of numba's `jit`
