@@ -104,7 +104,7 @@ def values(found: dict[str, Any]) -> dict[str, Any]:
                 ", ".join(filter(None, (one["words"], one.get("reading")))),
                 f"{straight:.1f}", minus(f"{100.0 * (straight / KINK - 1.0):+.0f} %"),
                 f"{max(most, first or 0.0):.1f}", minus(f"{100.0 * (max(most, first or 0.0) / PEAK - 1.0):+.0f} %"),
-                f"{u[int(np.argmax(p))]:.1f}", "–" if there is None else f"{there:.1f}", f"{one['closure']:.0e}",
+                f"{u[int(np.argmax(p))]:.1f}", "–" if there is None else f"{there:.1f}", f"{abs(one['closure']):.0e}",
             ]
         )  # fmt: skip
     head = ("", "half as stiff from [kPa]", "test: 34", "highest [kPa]", "test: 58", "middle there [mm]",
