@@ -40,7 +40,7 @@ prepare() {
         "$python" -m venv --clear "$venv" || fail "could not make $venv"
     fi
     say "installing dem and what it needs (once, about a minute)"
-    # pip compiles every module to bytecode, a third of the time; a run imports one in ten, which Python compiles and keeps.
+    # pip compiles every module to bytecode, a long while; Python compiles and keeps those that a run imports.
     local bytecode=--compile
     [ "$extra" = dev ] || [ -n "${PYTHONDONTWRITEBYTECODE:-}" ] || bytecode=--no-compile
     rm -f "$venv"/.installed-*
