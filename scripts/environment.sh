@@ -40,10 +40,12 @@ prepare() {
         "$python" -m venv --clear "$venv" || fail "could not make $venv"
     fi
     say "installing dem and what it needs (once, about a minute)"
-    # Without --no-compile pip would compile every module to bytecode; Python does so with those that a run imports.
+    # pip compiles every module to bytecode, a long while; Python compiles and keeps those that a run imports.
+    local bytecode=--compile
+    [ "$extra" = dev ] || [ -n "${PYTHONDONTWRITEBYTECODE:-}" ] || bytecode=--no-compile
     rm -f "$venv"/.installed-*
     if ! "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-warn-script-location \
-        --no-compile --constraint "$root/constraints.txt" --editable "$root[$extra]" >"$venv/install.log" 2>&1; then
+        "$bytecode" --constraint "$root/constraints.txt" --editable "$root[$extra]" >"$venv/install.log" 2>&1; then
         tail -n 15 "$venv/install.log" >&2
         fail "the installation failed; the whole output is in $venv/install.log"
     fi

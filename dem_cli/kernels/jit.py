@@ -212,4 +212,4 @@ always_inline = register_jitable(forceinline=True, _nrt=False, **CALLEE)
 
 def overload(function: Callable) -> Callable:
     """What compiled code takes for a plain function: the decorated one returns it, by the types of its arguments."""
-    return cast(Callable, numba_overload(function, jit_options=CALLEE))
+    return cast(Callable, numba_overload(function, jit_options=cast(Any, CALLEE)))
