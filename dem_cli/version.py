@@ -6,7 +6,7 @@ import json
 import shlex
 from pathlib import Path
 
-__version__ = "0.8.0"
+__version__ = "0.9.0"
 NAME = "dem-cli"  # of the distribution, which no index has: it comes from a checkout
 _HERE = Path(__file__).resolve().parent.parent
 

@@ -175,7 +175,7 @@ def _deformation(case: Case, sim: Simulation) -> Rows:
             rows.append((f"blocks {name}", f"deform, lumped into their joints: E {young:.4g} Pa, G {shear:.4g} Pa"))
     if properties.compliance is None or not len(joints.blocks):
         return rows
-    named, shares = properties.between(sim.model, joints.blocks), shares_of_blocks(sim)
+    named, shares = properties.between(sim.model, joints.blocks), shares_of_blocks(sim, properties.compliance)
     together = properties.stiffness_of(named, sim.geometry.faces)[0]
     for k, name in enumerate(properties.names):
         here = (named == k) & (shares > 0.0)

@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
+from dem_cli.engine.audit import unbending
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -152,6 +153,7 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
 
 
 def _doubts(job: Job, found: Modes, sim: Simulation) -> None:
+    job.warnings += unbending(job.case, sim)
     tables, rigid = job.case.joints, dict(zip(sim.properties.names, sim.properties.rigid, strict=True))
     names = [name for name, table in tables.items() if rigid[name] or (table.ks == "auto" and table.kn != "auto")]
     if names:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
@@ -240,13 +241,13 @@ def contact_record(sim: Simulation) -> ContactRecord:
     return record if used.all() else ContactRecord(*(values[used] for values in record))
 
 
-def shares_of_blocks(sim: Simulation) -> np.ndarray:
+def shares_of_blocks(sim: Simulation, compliance: BlockCompliance | None) -> np.ndarray:
     """Compliance of the blocks on either side of each joint over that of the joint alone, kn h/E [-], (n_joints,)."""
     properties, joints = sim.properties, sim.joints
-    if properties.compliance is None:
+    if compliance is None:
         return np.zeros(len(joints.blocks))
     named = properties.between(sim.model, joints.blocks)
-    return properties.compliance.shares(properties.kn[named], sim.geometry.faces, named)
+    return compliance.shares(properties.kn[named], sim.geometry.faces, named)
 
 
 def frame(sim: Simulation, stage: str) -> Frame:

@@ -30,13 +30,13 @@ PLANAR = [path for path in FILES if read(path).get("dimension", 2) == 2]
 
 
 def known_to_the_oracle(path: Path) -> bool:
-    """Blocks in the plane, one kind of plane joint whose friction stays, no bars."""
+    """Blocks in the plane, one kind of plane joint whose friction stays, no bars, nothing held."""
     case = read(path)
     (joint, *others) = case["joints"].values()
     return (
         path in PLANAR
         and not others
-        and "reinforcement" not in case
+        and not {"reinforcement", "restraint"} & set(case)
         and joint.get("law", "coulomb") == "coulomb"
         and not {"profile", "softening"} & set(joint)
     )

@@ -8,7 +8,7 @@ import numba
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.bench import joints, kernels, others, registry, sweeps
+from dem_cli.bench import joints, kernels, others, precision, registry, sweeps, time_histories
 from dem_cli.bench.cases import KNOWN_STRUCTURES
 from dem_cli.bench.spatial import sizes
 from dem_cli.bench.spatial.cases import wall_out_of_plane
@@ -33,7 +33,9 @@ def quick(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(joints, "VARIANTS", {name: joints.VARIANTS[name] for name in COMPILED})
         patch.setattr(kernels, "KINDS", tuple(kind for kind in kernels.KINDS if kind.name in STEPPED))
-        patch.setattr(sweeps, "FEW_RUNS", 4)
+        patch.setattr(sweeps, "FEW_RUNS", 2)
+        patch.setattr(precision, "QUICK_CASES", ("COL14",))
+        patch.setattr(time_histories, "QUICK_MARGINS", (time_histories.USUAL,))
         patch.setattr(sizes, "SIZES_IN_SPACE", (wall_out_of_plane(4, 6),))
         done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
     assert done.exit_code == 0, done.output

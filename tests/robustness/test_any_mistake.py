@@ -28,7 +28,7 @@ EXTRA_IN_THE_PLANE = """
 block = "base"
 displacement = [0.0, -0.01]
 """
-QUICK = settings(deadline=None, max_examples=150, suppress_health_check=list(HealthCheck))
+QUICK = settings(deadline=None, max_examples=60, suppress_health_check=list(HealthCheck))
 
 words = st.sampled_from(["", "auto", "wall", "x", "kind", "stone", "dry", "live", "settlement", "é\n\"'"])
 scalars = st.one_of(st.booleans(), st.integers(-5, 50), st.floats(), words, st.dates())

@@ -41,7 +41,7 @@ def test_statics_are_near_the_thesis():
     assert sum(map(abs, errors)) / len(errors) < 0.015
 
 
-@pytest.mark.parametrize("name", ["T72_B_0.57", "T72_C_0.46", "T72_D_0.69", "T72_E_0.34"])
+@pytest.mark.parametrize("name", ["T72_C_0.46", "T72_D_0.69"])
 def test_table_7_2_is_statics(name):
     row = ROWS[name]
     found = load_path.run("validation/column_14_profile", *shapes.overrides(row), QUICK)
@@ -74,7 +74,7 @@ def test_five_sides_on_the_way():
     assert value(FOURTEEN, "nc_E_lo") < load_path.middle(found) < 1.06 * value(FOURTEEN, "nc_E_hi")
 
 
-@pytest.mark.parametrize("name", ["T74_B1", "T74_C1", "T75_A2", "T75_B2", "T75_C2"])
+@pytest.mark.parametrize("name", ["T74_C1", "T75_A2", "T75_B2"])
 def test_tables_7_4_and_7_5(name):
     """Within one step of the thesis's load, and as statics say."""
     blocks, height = heights.COLUMNS[name]

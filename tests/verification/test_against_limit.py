@@ -28,7 +28,7 @@ FAST = (
     "wall_with_door", "windows_mu050", "windows_mu065",
     "point_loads_mu060", "point_loads_mu070", "pushed_course_mu070", "heavy_beam",
 )  # fmt: skip
-LONG = ("wall_2", "wall_3")
+LONG = ("wall_2",)
 TABLE = tables.rows_of(storage.read("loads"))
 
 

@@ -2,12 +2,14 @@
 
 Numba makes of each of them a wrapper for C, optimises it and turns it into machine code that nothing ever runs: the
 kernel takes its LLVM code in, optimises it where it stands and is all that is executed. A kernel has up to a hundred.
+Numba does not promise to keep what this takes: versions that it was not tried with compile callees as they do.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
@@ -76,4 +78,7 @@ class CalleeCompiler(Compiler):
         return [passes]
 
 
-CALLEE: dict[str, Any] = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}  # options of numba's `jit`
+TRIED = "0.68."  # numba
+CALLEE: dict[str, Any] = {}  # options of numba's `jit`
+if numba.__version__.startswith(TRIED):
+    CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}

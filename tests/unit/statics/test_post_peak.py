@@ -17,7 +17,7 @@ from dem_cli.engine.track import Track
 from dem_cli.statics.post_peak import CurvePeak, follow
 
 WALL = Path(__file__).resolve().parents[3] / "cases" / "verification" / "wall_3.toml"
-SLENDER = ("structure.0.courses=40", "structure.0.blocks_per_course=5", "analysis.follow=0.02")
+SLENDER = ("structure.0.courses=28", "structure.0.blocks_per_course=5", "analysis.follow=0.02")
 
 
 def curve(records) -> tuple[np.ndarray, np.ndarray]:
@@ -26,8 +26,8 @@ def curve(records) -> tuple[np.ndarray, np.ndarray]:
     return np.array([row.displacement for row in rows]), np.array([row.load for row in rows])
 
 
-def test_the_curve_of_a_wall_of_40_courses_passes_its_failure_load():
-    """Within 2 %; it peaked 16 % above when it was followed as fast as a small wall. The mark lies on the curve."""
+def test_the_curve_of_a_slender_wall_passes_its_failure_load():
+    """Within 2 %; one of 40 courses peaked 16 % above, followed as fast as a small wall. The mark lies on the curve."""
     summary, records = engine.solve(WALL, *SLENDER)
     displacement, load = curve(records)
     failure = summary["failure_load"]
