@@ -36,6 +36,8 @@ def quick(tmp_path_factory):
         patch.setattr(sweeps, "FEW_RUNS", 2)
         patch.setattr(precision, "QUICK_CASES", ("COL14",))
         patch.setattr(time_histories, "QUICK_MARGINS", (time_histories.USUAL,))
+        patch.setattr(time_histories, "DASHPOTS", {"dashpots": []})
+        patch.setattr(precision, "AXES", (precision.AXES[0], precision.AXES[-1]))
         patch.setattr(sizes, "SIZES_IN_SPACE", (wall_out_of_plane(4, 6),))
         done = bench("--quick", "--json", str(folder / "all.json"), "-o", str(folder / "page"))
     assert done.exit_code == 0, done.output
