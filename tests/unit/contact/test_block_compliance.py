@@ -12,8 +12,10 @@ from scipy.sparse.linalg import spsolve
 from dem_cli.assembly.sanity import problems
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.engine.audit import unbending
 from dem_cli.engine.measures import shares_of_blocks
-from dem_cli.engine.properties import joint_properties
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError
 from dem_cli.model.scales import smallest_edge
 
@@ -87,6 +89,19 @@ def test_rigid_blocks_are_as_before(stone):
     assert properties.compliance is None
     assert properties.rows is None
     assert moved(column(stone=stone), np.array([0.0, -1e5, 0.0]))[1] == pytest.approx(-1e5 / A * N / KN, rel=1e-9)
+
+
+@pytest.mark.parametrize(("deformation", "kn", "said"), [
+    ("uniform-strain", KN, True), ("uniform-strain", 0.1 * E / H, False), ("quadratic", KN, False),
+    ("joints", KN, False),
+])  # fmt: skip
+def test_blocks_that_do_not_bend_beside_stiff_joints_say_so(deformation, kn, said):
+    """kn h/E = 4 and 0.1."""
+    made = scene(column(stone=STONE | {"deformation": deformation}, joint={"friction": 0.6, "kn": kn}))
+    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "fixed")
+    found = unbending(made.case, sim)
+    assert len(found) == said
+    assert all("deform 4 times as much as joint 'dry'" in text and "do not bend" in text for text in found)
 
 
 def test_fixed_blocks_are_supports_whatever_their_material():
