@@ -22,9 +22,7 @@ class AppliedLoad(NamedTuple):
     forces: np.ndarray  # [N], (n, d)
     weights: np.ndarray  # what of them is weight that the load of pattern "mass" shares in [N], (n,)
     area: float = 0.0  # of the surface that a pressure acts on [m²]
-    follows: str | None = (
-        None  # what the forces go along with: "point" of their block, or "block": turn with it as well
-    )
+    follows: str | None = None  # a "point" of their block that forces go along with, or "block": they turn with it too
 
     @property
     def resultant(self) -> np.ndarray:

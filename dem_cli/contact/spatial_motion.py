@@ -17,6 +17,7 @@ from dem_cli.contact.spatial import (
     along_each_other,
     corners_of,
     drawn,
+    end_to_end,
     facing,
     find,
     left_out,
@@ -181,11 +182,6 @@ def _held(of: JointArrays) -> float:
 def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:
     """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
     return along_each_other(model, geometry.kinds, geometry.faces)
-
-
-def end_to_end(model: Model, geometry: SpatialMotion) -> np.ndarray:
-    """None, (n_joints,) bool: in space corners that meet share no joint."""
-    return np.zeros(len(geometry.kinds), bool)
 
 
 def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:

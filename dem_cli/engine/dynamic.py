@@ -211,17 +211,15 @@ class DynamicSimulation(Simulation):
     def _energy_of(self, velocities: np.ndarray, turns: np.ndarray) -> float:
         """Kinetic energy of blocks that are turned like this, with real masses: those along principal axes [J]."""
         rotations = self.model.rotations
-        spins, rates = (
-            along_principal(velocities[:, rotations], self.shape.axes, turns),
-            velocities[:, rotations.stop :],
-        )
+        spins = along_principal(velocities[:, rotations], self.shape.axes, turns)
+        rates = velocities[:, rotations.stop :]
         velocities = np.column_stack([velocities[:, : self.model.dimension], spins])
         inverse = self.loads.inverse_masses[:, : rotations.stop]
         moving = inverse > 0.0
         found = 0.5 * float((velocities[moving] ** 2 / inverse[moving]).sum())
-        return (
-            found + 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates)) if rates.size else found
-        )
+        if rates.size:
+            found += 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates))
+        return found
 
     def note_kinetic_energy(self) -> None:
         """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""

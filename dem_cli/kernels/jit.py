@@ -73,53 +73,71 @@ def cache_is_cold() -> bool:
     return next(Path(CACHE).rglob("*.nbi"), None) is None
 
 
-class Compilation(event.Listener):
+class _Outermost(event.Listener):
+    """Hears where compilation of a kernel begins and ends, not that of what it calls."""
+
+    _depth = 0
+
+    def on_start(self, event: event.Event) -> None:
+        """A kernel, or something inside of it."""
+        if not self._depth:
+            self.begins()
+        self._depth += 1
+
+    def on_end(self, event: event.Event) -> None:
+        """A kernel, or something inside of it."""
+        self._depth -= 1
+        if not self._depth:
+            self.ends()
+
+    def begins(self) -> None:
+        """A kernel."""
+        raise NotImplementedError
+
+    def ends(self) -> None:
+        """The same kernel."""
+        raise NotImplementedError
+
+
+class Compilation(_Outermost):
     """Compilation that really happens, not what comes from the cache: told when it begins, its seconds counted.
 
     `with Compilation(tell).heard():` listens; `tell` is called once for each kernel, with what it calls.
     """
 
     def __init__(self, tell: Callable[[], None]) -> None:
-        self.tell, self.seconds, self._depth, self._begun = tell, 0.0, 0, 0.0
+        self.tell, self.seconds, self._begun = tell, 0.0, 0.0
 
     def heard(self) -> AbstractContextManager:
         """Listens inside of it."""
         return event.install_listener("numba:compile", self)
 
-    def on_start(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        if not self._depth:
-            self._begun = time.perf_counter()
-            self.tell()
-        self._depth += 1
+    def begins(self) -> None:
+        """Its time counts, and that of what it calls within it."""
+        self._begun = time.perf_counter()
+        self.tell()
 
-    def on_end(self, event: event.Event) -> None:
-        """Its time counts where it stands in no other."""
-        self._depth -= 1
-        if not self._depth:
-            self.seconds += time.perf_counter() - self._begun
+    def ends(self) -> None:
+        """Adds its time."""
+        self.seconds += time.perf_counter() - self._begun
 
 
-class Uncollected(event.Listener):
+class Uncollected(_Outermost):
     """Python collects no garbage while it compiles: it would look at a million live objects again and again.
 
     That was a fifth of the time of compilation.
     """
 
-    def __init__(self) -> None:
-        self._depth, self._was_on = 0, False
+    _was_on = False
 
-    def on_start(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        if not self._depth:
-            self._was_on = gc.isenabled()
-            gc.disable()
-        self._depth += 1
+    def begins(self) -> None:
+        """No more from here on."""
+        self._was_on = gc.isenabled()
+        gc.disable()
 
-    def on_end(self, event: event.Event) -> None:
-        """From the last one on as it was before."""
-        self._depth -= 1
-        if not self._depth and self._was_on:
+    def ends(self) -> None:
+        """As it was before."""
+        if self._was_on:
             gc.enable()
 
 
