@@ -20,7 +20,7 @@ from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
-from dem_cli.statics.hysteresis import loops
+from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -69,8 +69,8 @@ class LoadPath:
         self.found: dict[str, Any] = {"turning_points": [], "loops": []}
         self.way = WAYS[job.case.analysis.control](job, track)
         self.turn, self.steps = 0, 0  # turning points that were reached, steps since the last of them
-        self.states, self.turns = [(0.0, 0.0)], [0]
         self.at_rest = measures.live_travel(self.sim)
+        self.states, self.turns = [state_of(self.sim, self.at_rest)], [0]
 
     @stage
     def walk(self) -> None:
@@ -97,7 +97,7 @@ class LoadPath:
             track.frame("collapse")
             return False
         track.write("loading")
-        self.states.append((measures.live_travel(sim) - self.at_rest, sim.load * sim.live_scale))
+        self.states.append(state_of(sim, self.at_rest))
         return True
 
     def _turn(self, target: float) -> None:
@@ -106,14 +106,13 @@ class LoadPath:
         self.track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
         point: dict[str, Any] = {"load": load, "displacement": measures.largest_displacement(sim)}
-        point["live_displacement"] = self.states[-1][0]
+        point["live_displacement"] = self.states[-1].displacement
         if analysis.control == "displacement":
             point |= {"controlled": target} if analysis.of is None else {"controlled": target, "of": analysis.of}
         self.found["turning_points"].append(point)
         self.turn, self.steps = self.turn + 1, 0
         self.turns.append(len(self.states) - 1)
-        displacements, loads = np.array(self.states).T
-        made = loops(analysis.path, self.turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
+        made = loops(analysis.path, self.turns, self.states, measures.live_force(sim) / sim.live_scale)
         self.found["loops"] = [loop._asdict() for loop in made]
 
 

@@ -354,13 +354,14 @@ def _creep_to_rest(sim: Simulation, looks: int) -> bool:
 @stage
 def _released_in_motion(sim: Simulation, budget: Budget, load: float, far: float) -> float:
     """Share of the work of a constant load that is released, once blocks moved on by so much [m] and any is."""
-    start, ledger, way = sim.places(), measures.energy_sums(sim), _MovingOn()
+    start, ledger, way, begun = sim.places(), measures.energy_sums(sim), _MovingOn(), sim.steps
     chunk = sim.settings.relaxation.chunk
     sim.stages.resumed(way)
     while way.moved < far or way.released <= 0.0:
         sim.stages.offer(way)
-        sim.advance(chunk, slot.HOLD_LOAD)
-        budget.spend(chunk, f"at load multiplier {load * sim.live_scale:.5g}")
+        steps = chunk * (1 + (sim.steps - begun) // (10 * chunk))  # a look costs as many
+        sim.advance(steps, slot.HOLD_LOAD)
+        budget.spend(steps, f"at load multiplier {load * sim.live_scale:.5g}")
         check_finite(sim)
         way.moved = float(np.abs(sim.places() - start).max())
         now = measures.energy_sums(sim)
