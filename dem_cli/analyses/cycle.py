@@ -21,7 +21,7 @@ from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
-from dem_cli.statics.hysteresis import loops
+from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -57,8 +57,8 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
     """Every value of the path, after each of whose steps all forces balance; what is found goes to `found` at once."""
     analysis = job.case.analysis
     go = WAYS[analysis.control](job, track)
-    value, states, turns = 0.0, [(0.0, 0.0)], [0]
     at_rest = measures.live_travel(sim)
+    value, states, turns = 0.0, [state_of(sim, at_rest)], [0]
     for turn, target in enumerate(analysis.path):
         for next_value in values_between(value, target, analysis.step):
             share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
@@ -69,18 +69,17 @@ def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> N
                 track.frame("collapse")
                 return
             track.write("loading")
-            states.append((measures.live_travel(sim) - at_rest, sim.load * sim.live_scale))
+            states.append(state_of(sim, at_rest))
             value = next_value
         track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
         point: dict[str, Any] = {"load": load, "displacement": measures.largest_displacement(sim)}
-        point["live_displacement"] = states[-1][0]
+        point["live_displacement"] = states[-1].displacement
         if analysis.control == "displacement":
             point |= {"controlled": target} if analysis.of is None else {"controlled": target, "of": analysis.of}
         found["turning_points"].append(point)
         turns.append(len(states) - 1)
-        displacements, loads = np.array(states).T
-        made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
+        made = loops(analysis.path, turns, states, measures.live_force(sim) / sim.live_scale)
         found["loops"] = [loop._asdict() for loop in made]
     found["status"] = "ok"
 

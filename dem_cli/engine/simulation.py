@@ -364,7 +364,8 @@ class Simulation:
             motion[:, self.model.rotations],
             self.elastic_energy(),
         )
-        applied = self.loads.dead + 0.5 * (self.load + load) * self.loads.live
+        mean = 0.5 * (self.load + load)
+        applied = self.loads.dead + mean * self.loads.live
         bodies.positions[:] += motion[:, :d]
         bodies.orientations[:] = turned_further(bodies.orientations, spins)
         bodies.velocities[:] = 0.0
@@ -376,6 +377,7 @@ class Simulation:
         self.set_load(load)
         given = float((applied[:, : motion.shape[1]] * motion).sum())
         self.ledger[slot.EXTERNAL] += given
+        self.ledger[slot.LIVE] += mean * float((self.loads.live[:, : motion.shape[1]] * motion).sum())
         self.ledger[slot.FRICTION] += friction
         self.ledger[slot.DAMPING] += given - friction - (self.elastic_energy() - before)
         self.ledger[slot.CONTACT] -= given

@@ -183,35 +183,44 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
     steps = int(min(math.sqrt(4.0 * scale / (relaxation.gentle * slowest)), relaxation.longest_ramp))
     steps = max(steps if steps >= relaxation.shortest_ramp else 0, _steps_of_memory(sim))
     if load != before:
-        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps)
+        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps, _stair(sim))
         budget.spend(steps, doing)
 
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
-    """Dead loads little by little, where joints remember."""
-    steps = _steps_of_memory(sim)
+    """Dead loads little by little, where joints remember or blocks swell or shrink by themselves."""
+    steps, stair = _steps_of_memory(sim), _stair(sim)
+    if len(sim.model.imposed_strains):
+        steps, stair = _steps_by_depth(sim), sim.settings.relaxation.stair_of_strain
     if not steps:
         return
     sim.use_combined_damping()
     sim.set_load(0.0)
     limit_falls(sim)
-    _climb(sim, sim.set_dead_share, steps)
+    _climb(sim, sim.set_dead_share, steps, stair)
     sim.rest()
     budget.spend(steps, "putting on the dead loads")
 
 
 def _steps_of_memory(sim: Simulation) -> int:
     """Length of the ramp of a load on joints that remember; 0 for others."""
-    if not sim.law.n_memory(sim.model.dimension):
-        return 0
+    return _steps_by_depth(sim) if sim.law.n_memory(sim.model.dimension) else 0
+
+
+def _steps_by_depth(sim: Simulation) -> int:
+    """Length of a ramp in which all courses follow."""
     relaxation = sim.settings.relaxation
     return max(relaxation.shortest_ramp, relaxation.ramp_of_memory * sim.depth)
 
 
-def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:
-    """Steps with loads put on by their share, which grows smoothly to 1."""
+def _stair(sim: Simulation) -> int:
+    """Steps between the loads of a ramp."""
     relaxation = sim.settings.relaxation
-    stair = relaxation.stair_of_memory if sim.law.n_memory(sim.model.dimension) else relaxation.stair
+    return relaxation.stair_of_memory if sim.law.n_memory(sim.model.dimension) else relaxation.stair
+
+
+def _climb(sim: Simulation, put: Callable[[float], None], steps: int, stair: int) -> None:
+    """Steps with loads put on by their share, which grows smoothly to 1, each for `stair` of them."""
     stairs = steps // stair
     for number in range(1, stairs + 1):
         share = number / stairs

@@ -182,10 +182,11 @@ class LoadSearch:
         start, ledger = sim.places(), measures.energy_sums(sim)
         sim.use_combined_damping()
         sim.set_load(load)
-        moved, released = 0.0, 0.0
+        moved, released, begun = 0.0, 0.0, sim.steps
         while moved < self.settings.shown * answer.elastic * load or released <= 0.0:
-            sim.advance(relaxation.chunk, slot.HOLD_LOAD)
-            self.budget.spend(relaxation.chunk, f"at load multiplier {load * sim.live_scale:.5g}")
+            steps = relaxation.chunk * (1 + (sim.steps - begun) // (10 * relaxation.chunk))  # a look costs as many
+            sim.advance(steps, slot.HOLD_LOAD)
+            self.budget.spend(steps, f"at load multiplier {load * sim.live_scale:.5g}")
             check_finite(sim)
             moved = float(np.abs(sim.places() - start).max())
             now = measures.energy_sums(sim)
