@@ -30,6 +30,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.uniform_strain import covectors_of, gradients_of
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 
 class Simulation:
@@ -38,6 +39,8 @@ class Simulation:
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
+
+    LASTING = frozenset(("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages"))
 
     def __init__(
         self,
@@ -51,6 +54,7 @@ class Simulation:
     ):
         self.settings, relaxation = settings, settings.relaxation
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
+        self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int]
