@@ -30,7 +30,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import overload as numba_overload
 from numba.extending import register_jitable
 
-from dem_cli.kernels.compilation.callees import CALLEE
+from dem_cli.kernels.compilation.callees import CALLEE, KERNEL
 
 __all__ = [
     "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "literal_unroll",
@@ -203,7 +203,7 @@ class KernelCache(FunctionCache):
 
 def kernel(function: Callable) -> CompiledKernel:
     """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
-    compiled: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+    compiled: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     compiled._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(CompiledKernel, compiled)
 
