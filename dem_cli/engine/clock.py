@@ -25,7 +25,7 @@ class Clock(Observer):
 
     def __init__(self, observer: Observer) -> None:
         self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
-        self.observer = observer
+        self.observer, self.stages = observer, observer.stages
 
     def frame(self, frame: Frame) -> None:
         """Hands on a frame, off the clock."""
@@ -66,6 +66,7 @@ class Clock(Observer):
         compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
         with compilation.heard():
             sim = make()
+            sim.stages = self.stages
             built, made = time.perf_counter(), compilation.seconds
             with at_once():  # a minute, the first time
                 sim.compile()

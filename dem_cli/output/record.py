@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.geometry.rotation import tangents_of, turned_further, turning
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
@@ -227,7 +228,12 @@ def distinct(names: Iterable[str]) -> list[str]:
 
 
 class Observer:
-    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state."""
+    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state.
+
+    stages  keeps the stages of the run for `--resume`
+    """
+
+    stages: Stages = NOTHING_KEPT
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""

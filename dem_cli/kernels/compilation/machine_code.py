@@ -39,6 +39,7 @@ __all__ = [
     "declare_callee",
     "declare_overload",
     "literal_unroll",
+    "types_of",
 ]
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -201,6 +202,11 @@ def compiled(function: Callable) -> Callable:
     found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
+
+
+def types_of(arguments: tuple) -> tuple:
+    """What numba takes these for."""
+    return tuple(map(numba.typeof, arguments))
 
 
 def declare_callee(function: Callable, forced: bool) -> None:
