@@ -295,7 +295,8 @@ class Watch(NamedTuple):
 
 # Slots of the vector `ledger`: sums over steps [J].
 EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7
-N_LEDGER = 8
+LIVE = 8  # what of EXTERNAL live loads gave
+N_LEDGER = 9
 
 # Slots of the vector `control`.
 DEAD_FACTOR = 0  # multiplies dead loads
