@@ -17,6 +17,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.settlement_way import SettlementWay
@@ -89,17 +90,20 @@ class SupportMovement:
         return motion
 
 
+@stage
 def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
     sim, rows = way.sim, way.rows
     every = max(rows // max(frames - 2, 1), 1)
-    way.begin()
-    for number in range(1, rows + 1):
+    if not sim.stages.resumed():
+        way.begin()
+    while way.done < rows:
+        sim.stages.offer()
         way.go_on(budget)
         track.write("settlement")
-        if number % every == 0:
+        if way.done % every == 0:
             track.frame("settlement")
-        share, moved = number / rows, measures.largest_displacement(sim)
+        share, moved = way.done / rows, measures.largest_displacement(sim)
         track.observer.progress("settlement", share, moved, 0.95 * share)
     stands = way.stands(budget)
     track.write("settlement")

@@ -80,7 +80,7 @@ def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
     """The same structure under the same motion; None where it does not stand."""
     same = Variant(job.case, job.model, 0, settings.statistics.largest_draw)
-    rested = RestedStructure(same, motions, ProgressOnly(job.clock), settings)
+    rested = RestedStructure(same, motions, ProgressOnly(job.clock, job.clock.stages), settings)
     return rested.shaken(motions) if rested.stands else None
 
 

@@ -39,6 +39,8 @@ class DynamicSimulation(Simulation):
     damping     what the joints and blocks lose (dynamics/damping.py)
     """
 
+    LASTING = Simulation.LASTING | {"damping"}
+
     def __init__(
         self, model: Model, law: Law, properties: JointProperties, damping: Damping, settings: Settings = DEFAULT
     ):

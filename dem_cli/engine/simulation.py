@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from operator import is_
+from typing import Any
+
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, strained_corners, world_corners
@@ -26,6 +30,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.uniform_strain import covectors_of, gradients_of
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 
 class Simulation:
@@ -34,6 +39,8 @@ class Simulation:
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
+
+    LASTING = frozenset(("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages"))
 
     def __init__(
         self,
@@ -47,7 +54,10 @@ class Simulation:
     ):
         self.settings, relaxation = settings, settings.relaxation
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
+        self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
+        self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
+        self._loop: Callable[..., int]
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -220,15 +230,17 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        model = self.model
-        loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0,
+        scene = (
+            self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
+            self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        done: int = loop(
-            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
-            self.loads, self.control, self.ledger, self.like, self.like_rotation,
-        )  # fmt: skip
+        if not all(map(is_, scene, self._scene)):
+            model, self._scene = self.model, scene
+            self._loop = compiled_advance(
+                self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+                model.n_modes > 0, len(model.mode_shapes) > 0,
+            ).bound(n_steps, mode, 1.0, *scene)  # fmt: skip
+        done: int = self._loop(n_steps, mode, 1.0, *scene)
         return done
 
     @property

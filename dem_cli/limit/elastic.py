@@ -36,6 +36,7 @@ class State(NamedTuple):
     normal: np.ndarray  # N, (n_points,)
     shear: np.ndarray  # T, component by component, ((d − 1)·n_points,)
     slip: np.ndarray  # a of the last increment (limit.slips), (d·n_points,)
+    left: float = 0.0  # mean product N p and c ∘ a of a state on the central path, where no solution was found
 
 
 class Direction(NamedTuple):

@@ -13,8 +13,13 @@ class PathSettings:
     growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
     # Where an increment fails: shares of it, and how many folds of the central path to go round.
     attempts: tuple[tuple[float, int], ...] = (
-        (1.0, 0), (0.4, 0), (0.15, 0), (2.2, 0), (0.05, 0), (0.02, 0), (0.4, 4), (0.05, 4), (1.0, 4), (5.0, 0),
+        (1.0, 0), (0.4, 0), (0.16, 0), (0.064, 0), (2.2, 0), (5.0, 0), (0.4, 4), (1.0, 4),
     )  # fmt: skip
+    regrowth: float = 2.0  # of increments that had to be shorter, one after the other
+    smallest: float = 0.15  # of the longest increment: the next one begins no shorter
+    ahead: float = 1.5  # of the last slips, that the next increment expects at most
+    rough: float = 5e-4  # products that may be left on the way, over the square of the largest normal force
+    span: float = 1.2  # growth of the displacement over which that of the load is looked at
     easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
     most: int = 2500  # factorisations before giving up
@@ -26,7 +31,8 @@ class PathSettings:
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
     finer: float = 1e-5  # the same growth, where the load is known to be higher than a first plateau
-    tau: float = 0.1  # of the first products, over the square of the largest normal force
+    tau: float = 0.01  # of the first products, over the square of the largest normal force
+    end: float = 1e-7  # of the last ones on the way (InteriorPointSettings.end at the highest load)
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
@@ -43,15 +49,24 @@ class InteriorPointSettings:
     end: float = 1e-9  # of τ, over the square of the lightest block
     at_end: float = 3.0  # times it: the mean product of a solution
     friction_used: float = 0.999  # share of the friction that a start uses at most
-    boundary: float = 0.95  # share of the way to the boundary
-    # Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
-    centring: tuple[tuple[float, float], ...] = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
-    stalled: float = 0.8  # fold: the mean product fell by less than this
-    patience: int = 12  # within so many iterations
-    feasible: float = 1e-3  # infeasibility of iterates that may be kept or predicted from
-    centred: float = 4.0  # largest ratio of a product to the mean, of a kept iterate
+    boundary: float = 0.99  # share of the way to the boundary
+    least: float = 1e-3  # share of the mean product aimed at, at least
+    widest: float = 10.0  # curvature counts up to so many times the mean product, and so far apart may products be
+    blind: float = 0.1  # length of a step with curvature, below which one without it is tried ...
+    back: float = 0.3  # ... that aims at this share of the mean product
+    correctors: int = 2  # towards the central path, of one step, ...
+    far: float = 0.95  # ... while it is not as long as that; ...
+    beyond: float = 0.3  # ... each looks so much further, ...
+    gain: float = 0.03  # ... and has to make it so much longer
+    short: float = 0.02  # length of a step that leads nowhere, ...
+    short_steps: int = 3  # ... of which so many in turn end an iteration
+    stalled: float = 0.5  # fold: the mean product fell by less than this
+    patience: int = 6  # within so many iterations
+    feasible: float = 1e-3  # infeasibility from which on that counts, and of iterates that may be predicted from
+    balanced: float = 1e-5  # infeasibility of an iterate that may be kept
+    centred: float = 30.0  # largest ratio of a product to the mean, of a kept iterate
     wide: float = 3.0  # the same of an iterate that may be predicted from
-    reversal: float = 0.6  # τ of one kept iterate over that of the last
+    reversal: float = 0.9  # mean product of one kept iterate over that of the last
     stride: float = 0.9  # relative change of any product's factor in one prediction
     growing: float = 0.3  # what the growth of a product counts, over its fall, in the length of a prediction
     by_tau: float = 3.0  # times as much as the other products, may τ change
@@ -59,7 +74,7 @@ class InteriorPointSettings:
     up: float = 2.0  # and rise
     passed: float = 0.3  # τ over that of the fold, below which it is passed
     on_arc: int = 500  # iterations on one arc
-    slow: int = 150  # iterations without a fold
+    slow: int = 40  # iterations without a fold
     endless: float = 1e12  # relative change by τ at which the path turns on the spot
 
 
