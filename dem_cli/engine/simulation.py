@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from operator import is_
+from typing import Any
+
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, strained_corners, world_corners
@@ -36,7 +40,9 @@ class Simulation:
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
 
-    LASTING = frozenset(("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages"))
+    LASTING = frozenset(
+        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "_scene", "_loop")
+    )
 
     def __init__(
         self,
@@ -52,6 +58,8 @@ class Simulation:
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
+        self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
+        self._loop: Callable[..., int]
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -224,15 +232,17 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        model = self.model
-        loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0,
+        scene = (
+            self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
+            self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        done: int = loop(
-            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
-            self.loads, self.control, self.ledger, self.like, self.like_rotation,
-        )  # fmt: skip
+        if not all(map(is_, scene, self._scene)):
+            model, self._scene = self.model, scene
+            self._loop = compiled_advance(
+                self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+                model.n_modes > 0, len(model.mode_shapes) > 0,
+            ).bound(n_steps, mode, 1.0, *scene)  # fmt: skip
+        done: int = self._loop(n_steps, mode, 1.0, *scene)
         return done
 
     @property

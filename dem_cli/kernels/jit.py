@@ -60,7 +60,7 @@ class CompiledKernel:
 
     def __init__(self, function: Callable) -> None:
         self.py_func = function
-        self._machine_code: Callable | None = None
+        self._machine_code: Any = None
 
     def __call__(self, *arguments: Any) -> Any:
         """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
@@ -69,7 +69,18 @@ class CompiledKernel:
                 return self.py_func(*arguments)
         return (self._machine_code or self._made())(*arguments)
 
-    def _made(self) -> Callable:
+    def bound(self, *arguments: Any) -> Callable:
+        """The compiled code for these very objects: a call of it does not look at their types, which saves 6 µs.
+
+        Numbers may be others of the same type; in the place of an array of another type it would read nonsense.
+        """
+        if _door.uncompiled:
+            return self
+        from dem_cli.kernels.compilation.machine_code import types_of
+
+        return (self._machine_code or self._made()).compile(types_of(arguments))
+
+    def _made(self) -> Any:
         self._machine_code = _door.compiled(self.py_func)
         return self._machine_code
 

@@ -29,6 +29,19 @@ STAGES = (
     "shaking",
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
+MONITOR_UNITS = {  # by what is followed
+    "displacement": "m",
+    "rotation": "rad",
+    "opening": "m",
+    "slip": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "force": "N",
+    "elongation": "m",
+    "reaction": "N",
+    "reaction_moment": "N m",
+}
+MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "still rocking", "still moving"  # ends of time histories
 

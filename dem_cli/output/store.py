@@ -34,9 +34,9 @@ from dem_cli.output.layout import (
     describe,
 )  # fmt: skip
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
+from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
-from dem_cli.output.series import MONITOR_UNITS, SeriesWriter
+from dem_cli.output.series import SeriesWriter
 from dem_cli.output.summary import write_summary
 
 RESULTS_FORMAT = 1

@@ -29,7 +29,7 @@ from numba.core.caching import FunctionCache
 from numba.extending import overload as numba_overload
 from numba.extending import register_jitable
 
-from dem_cli.kernels.compilation.callees import CALLEE
+from dem_cli.kernels.compilation.callees import CALLEE, KERNEL
 
 __all__ = [
     "Compilation",
@@ -39,6 +39,7 @@ __all__ = [
     "declare_callee",
     "declare_overload",
     "literal_unroll",
+    "types_of",
 ]
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -198,9 +199,14 @@ class KernelCache(FunctionCache):
 
 def compiled(function: Callable) -> Callable:
     """The function as machine code, from the disk where it is there. IEEE division, no fast-math."""
-    found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+    found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
+
+
+def types_of(arguments: tuple) -> tuple:
+    """What numba takes these for."""
+    return tuple(map(numba.typeof, arguments))
 
 
 def declare_callee(function: Callable, forced: bool) -> None:
