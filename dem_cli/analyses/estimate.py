@@ -27,10 +27,9 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 Rows = list[tuple[str, str]]
-STEPS = {  # kind of analysis, or "pushover" by what it controls -> fewest and most steps of cases/, a few beside
+STEPS = {  # kind of analysis -> fewest and most steps that cases of cases/ took, a few beside
     "gravity": (500, 50_000),
     "pushover": (50_000, 400_000),
-    "capacity curve": (150_000, 2_000_000),
     "cycle": (100_000, 1_000_000),
     "settlement": (100_000, 300_000),
     "safety": (2_000, 60_000),  # each of its runs
@@ -41,6 +40,7 @@ STATES = (
     15  # of the structure, that an analysis holds at most: highest equilibrium, failure, points of a curve, scratch
 )
 BESIDE = 0.4  # s of every analysis beside its steps: what is imported, loaded, looked at and written
+CURVE = (150_000, 2_000_000)  # of a pushover under displacement control
 GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
@@ -286,7 +286,7 @@ def _steps(case: Case, sim: Simulation) -> tuple[int, int]:
     """Fewest and most steps of such an analysis."""
     if case.analysis.kind == "pushover":
         if case.analysis.control == "displacement":
-            return STEPS["capacity curve"]
+            return CURVE
         return GIVEN if _of_property(sim) else STEPS["pushover"]
     return STEPS[case.analysis.kind]
 
