@@ -1,8 +1,8 @@
-"""Shortcuts through numba: answers that it works out again for every instruction, at a tenth of the time it compiles.
+"""Shortcuts through numba: answers that it works out again for every instruction, half the time that it compiles.
 
-Each gives what numba would. Which implementation an operator has for some types is asked of all that know the operator,
-text and sets among them, at each place where it stands, and twice. Where numba looks for what arrays might be wrapped in, it finds nothing and loads all of
-its extensions once more to look again; options of a function are compared with all others, by value; and whether
+Each gives what numba would. It asks all that know an operator, text and sets among them, what it is for some types, at
+each place where it stands, and twice. Where it looks for what arrays might be wrapped in, it finds nothing and loads
+all of its extensions once more to look again. Options of a function are compared with all others, by value. Whether
 its own functions take a place in the source is asked of their signatures, each time they are called.
 """
 
@@ -56,7 +56,7 @@ def _call_type(function: BaseFunction, context: Any, args: tuple, kws: dict) -> 
 
 def take_shortcuts() -> None:
     """Once, before anything is compiled."""
-    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign]
+    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign,assignment]
     TargetConfig.__eq__ = _equal  # type: ignore[method-assign,assignment]
     TargetConfig.__hash__ = lambda one: _hash_of(type(one))  # type: ignore[method-assign]
     base._has_loc = cache(base._has_loc)
