@@ -229,7 +229,9 @@ def _advance(
 ) -> State | None:
     """The state at a displacement of the live load; without one, under dead loads alone. folds (None: as set)."""
     tau = easier * _first_products(problem, state, target)
-    return Increment(problem, state, target).solve(tau, 0.0, problem.settings.path.folds if folds is None else folds, stop)
+    return Increment(problem, state, target).solve(
+        tau, 0.0, problem.settings.path.folds if folds is None else folds, stop
+    )
 
 
 def _first_products(problem: Elastic, state: State, target: float | None) -> float:

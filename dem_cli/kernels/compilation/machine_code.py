@@ -30,7 +30,7 @@ from numba.core.runtime.nrt import rtsys
 from numba.extending import overload as numba_overload
 from numba.extending import register_jitable
 
-from dem_cli.kernels.compilation.callees import CALLEE
+from dem_cli.kernels.compilation.callees import CALLEE, KERNEL
 
 __all__ = [
     "Compilation",
@@ -212,7 +212,7 @@ class KernelCache(FunctionCache):
 
 def compiled(function: Callable) -> Callable:
     """The function as machine code, from the disk where it is there. IEEE division, no fast-math."""
-    found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+    found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
 
