@@ -68,7 +68,7 @@ class Increment:
         self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0, end: float | None = None
     ):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
-        self.settings = problem.interior_point
+        self.settings = problem.settings.of_increment(problem.dimension)
         self.lightest = min(1.0, float(problem.own.min(initial=1.0))) ** 2
         self.end = (self.settings.end if end is None else end) * self.lightest
         self.last: Iterate | None = None  # of what was solved
@@ -97,9 +97,10 @@ class Increment:
 
         tau    of the first products
         ahead  how far slips go on from the last increment, as a share of that
-        folds  how many folds of the central path to go round
+        folds  how many folds of the central path to go round; where there are any, it is followed closely
         rough  mean product up to which a state on the central path is taken where the iteration got stuck (State.left)
         """
+        self.settings = self.problem.settings.of_increment(self.problem.dimension, folds)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what runs away is given up
             return self._solved(self.start(tau, ahead), tau, folds, stop, rough)
 
@@ -114,7 +115,7 @@ class Increment:
         self, at: Iterate, tau: float | None, folds: int, stop: Callable[[], bool], rough: float
     ) -> State | None:
         """tau: of the first step, which goes straight to the equations; None: they are satisfied."""
-        settings, course = self.settings, Course(self.settings)
+        settings, course, length = self.settings, Course(self.settings), 1.0
         while not stop():
             mean, infeasible = float(self.problem.slips.products(at.x).mean()), self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
@@ -129,11 +130,11 @@ class Increment:
                 turned = self._arc(*course.kept, mean, stop) if course.kept is not None and folds > 0 else None
                 if turned is None:
                     break
-                at, folds, course = turned, folds - 1, Course(settings)
+                at, folds, course, length = turned, folds - 1, Course(settings), 1.0
                 continue
             if not self._factorise(at):
                 break
-            step = self._direction(tau) if tau is not None else self._predicted(at, mean)
+            step = self._direction(tau) if tau is not None else self._towards_end(at, mean, length)
             tau, length = None, self._to_boundary(at, step)
             course.short = course.short + 1 if length < settings.short else 0
             self._move(at, step, length)
@@ -141,6 +142,13 @@ class Increment:
             return None
         mean, at = course.kept
         return self._state(at)._replace(left=mean)
+
+    def _towards_end(self, at: Iterate, mean: float, length: float) -> Direction:
+        """The next step; length: of the last one."""
+        for least, share in self.settings.centring:
+            if length > least or least == 0.0:
+                return self._direction(max(share * mean, self.end))
+        return self._predicted(at, mean)
 
     def _predicted(self, at: Iterate, mean: float) -> Direction:
         """Mehrotra's predictor and corrector, and Gondzio's correctors towards the central path."""
@@ -153,11 +161,15 @@ class Increment:
         products = tau - np.clip(slips.products(slips.moved(at.x, straight.positive)), -most, most)
         step = self._direction(products)
         length = self._to_boundary(at, step, 1.0)
-        if length < settings.blind:  # curvature misled it
-            products = np.full_like(products, max(tau, settings.back * mean))
-            other = self._direction(products)
+        for share in settings.back:
+            if (
+                length > settings.blind
+            ):  # else curvature misled it, or products fell before the equations were satisfied
+                break
+            wanted = np.full_like(products, max(tau, share * mean))
+            other = self._direction(wanted)
             if (longer := self._to_boundary(at, other, 1.0)) > length:
-                step, length = other, longer
+                step, length, products = other, longer, wanted
         for _ in range(settings.correctors):
             if length > settings.far:
                 break

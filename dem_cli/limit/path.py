@@ -105,8 +105,8 @@ def trace(
         return problem.factorisations * problem.n_points > most
 
     at_rest = _at_rest(problem)
-    for easier in settings.path.easier:
-        standing = _advance(problem, at_rest, None, spent, easier=easier)
+    for easier, folds in settings.path.easier:
+        standing = _advance(problem, at_rest, None, spent, folds, easier)
         if standing is not None:
             break
     path.factorisations = problem.factorisations
@@ -134,9 +134,9 @@ class Walk:
         """Whether an increment of some size led to another state: one under the law, or a rough one (State.left)."""
         settings = self.settings
         longest = (settings.growth - 1.0) * self.reached if self.reached else settings.first
-        for share, folds in settings.attempts:
+        for share, easier, folds in settings.attempts:
             stride = share * self.share * longest
-            found = self._advanced(stride, folds)
+            found = self._advanced(stride, easier, folds)
             if found is not None:
                 self._moved(found, stride, share)
                 return True
@@ -144,13 +144,14 @@ class Walk:
                 break
         return False
 
-    def _advanced(self, stride: float, folds: int) -> State | None:
+    def _advanced(self, stride: float, easier: float, folds: int) -> State | None:
         settings, problem, state = self.settings, self.problem, self.state
         target = self.origin + self.elastic * (self.reached + stride)
-        ahead = min(stride / self.last, settings.ahead) if self.last else 0.0
+        ahead = min(stride / self.last, settings.ahead) if self.last and easier == 1.0 else 0.0
         self.increment = Increment(problem, state, target, end=settings.end)
         rough = settings.rough * float(state.normal.max(initial=1.0)) ** 2
-        found = self.increment.solve(_first_products(problem, state, target), ahead, folds, self.stop, rough)
+        tau = easier * _first_products(problem, state, target)
+        found = self.increment.solve(tau, ahead, folds, self.stop, rough)
         if found is not None and not found.left and problem.residual(found, state) >= settings.accepted:
             return None
         return found
@@ -224,14 +225,12 @@ def _advance(
     state: State,
     target: float | None,
     stop: Callable[[], bool],
-    folds: int | None = None,
+    folds: int = 0,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone. folds (None: as set)."""
+    """The state at a displacement of the live load; without one, under dead loads alone."""
     tau = easier * _first_products(problem, state, target)
-    return Increment(problem, state, target).solve(
-        tau, 0.0, problem.settings.path.folds if folds is None else folds, stop
-    )
+    return Increment(problem, state, target).solve(tau, 0.0, folds, stop)
 
 
 def _first_products(problem: Elastic, state: State, target: float | None) -> float:
