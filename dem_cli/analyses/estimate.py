@@ -36,9 +36,8 @@ STEPS = {  # kind of analysis -> fewest and most steps that cases of cases/ took
     "modes": (500, 50_000),
 }
 LIBRARIES = 250e6  # bytes of a run of a few blocks: Python, compiled code, what is imported
-STATES = (
-    15  # of the structure, that an analysis holds at most: highest equilibrium, failure, points of a curve, scratch
-)
+STATES = 15  # of the structure, that an analysis holds: highest equilibrium, failure, points of a curve
+COMPILING = 700e6  # bytes while the loops of time histories in space are compiled, once
 BESIDE = 0.4  # s of every analysis beside its steps: what is imported, loaded, looked at and written
 CURVE = (150_000, 2_000_000)  # of a pushover under displacement control
 GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
@@ -279,7 +278,8 @@ def _memory(sim: Simulation) -> str:
     saved = sim.save()
     state = len(pickle.dumps(saved, 5))
     whole, each = 1e-6 * (LIBRARIES + STATES * state), 1e-6 * state
-    return f"some {whole:,.0f} MB ({1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB)"
+    basis = f"{1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB"
+    return f"some {whole:,.0f} MB ({basis}); up to {1e-6 * COMPILING:.0f} MB where kernels are compiled first"
 
 
 def _steps(case: Case, sim: Simulation) -> tuple[int, int]:
