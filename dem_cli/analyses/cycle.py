@@ -81,16 +81,16 @@ class LoadPath:
             values = values_between(path[self.turn], path[self.turn + 1], step)
             while self.steps < len(values):
                 self.sim.stages.offer()
-                if not self._goes_to(values[self.steps]):
+                if not self._goes_to(values[self.steps], (self.turn + self.steps / len(values)) / (len(path) - 1)):
                     return
                 self.steps += 1
             self._turn(path[self.turn + 1])
         self.found["status"] = "ok"
 
-    def _goes_to(self, value: float) -> bool:
+    def _goes_to(self, value: float, share: float) -> bool:
+        """Another value, behind a share of the path; whether forces balance there."""
         sim, track = self.sim, self.track
-        share, moved = self.turn / len(self.job.case.analysis.path), measures.largest_displacement(sim)
-        track.observer.progress("on the path", sim.load * sim.live_scale, moved, share)
+        track.observer.progress("on the path", sim.load * sim.live_scale, measures.largest_displacement(sim), share)
         if not self.way.go(value):
             self.found |= {"status": FAILS, "failure_load": sim.load * sim.live_scale}
             track.write("collapse")

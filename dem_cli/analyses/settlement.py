@@ -38,7 +38,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     track = job.track(sim)
     found: dict[str, Any] = {}
     try:
-        job.clock.progress("gravity", 0.0, 0.0, 0.0)
+        job.clock.progress("gravity", 0.0, 0.0, None)
         status = "ok" if stand(sim, job.budget).state == "equilibrium" else FALLS
         track.write("gravity")
         track.frame("gravity")
@@ -104,7 +104,8 @@ def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
         if way.done % every == 0:
             track.frame("settlement")
         share, moved = way.done / rows, measures.largest_displacement(sim)
-        track.observer.progress("settlement", share, moved, 0.95 * share)
+        track.observer.progress("settlement", share, moved, share)
+    track.observer.progress("settled", 1.0, measures.largest_displacement(sim), None)
     stands = way.stands(budget)
     track.write("settlement")
     track.frame("settlement")
@@ -115,6 +116,7 @@ def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
     """How far the supports had moved when the structure ceased to stand, and how it falls; the end stays as it is."""
     sim = way.sim
     end = sim.save()
+    job.clock.progress("how far it stands", 1.0, measures.largest_displacement(sim), None)
     try:
         low, high = way.bracket(job.budget)
         sim.restore(way.failing)

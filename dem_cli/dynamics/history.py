@@ -99,7 +99,7 @@ class TimeHistory:
         """Rest under dead loads, then the first motion; False where there is no rest."""
         sim, case = self.sim, self.case
         if case.analysis.settle:
-            self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
+            self.track.observer.progress("gravity", 0.0, 0.0, None)
             if self._stands() != "equilibrium":
                 self.track.write("gravity")
                 self.track.frame("gravity")

@@ -40,7 +40,9 @@ class Simulation:
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
 
-    LASTING = frozenset(("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages"))
+    LASTING = frozenset(
+        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "_scene", "_loop")
+    )
 
     def __init__(
         self,

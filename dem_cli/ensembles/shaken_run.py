@@ -96,10 +96,15 @@ class RestedStructure:
         # a fragility asks how far blocks go before they fall or rest, a time history for the time it names
         self.peaks_of_coda = variant.case.analysis.kind == "fragility"
 
-    def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
+    def shaken(
+        self,
+        motions: Sequence[Motion],
+        cancelled: Callable[[], bool] = lambda: False,
+        told: Callable[[DynamicSimulation, float], None] = lambda sim, share: None,
+    ) -> ShakenRunResult:
         """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
 
-        Raises RunCancelled.
+        told: hears of the share of the motion that is over. Raises RunCancelled.
         """
         begun = time.thread_time()
         sim = deepcopy(self.sim)
@@ -107,7 +112,7 @@ class RestedStructure:
         peaks = LargestValues(len(self.case.monitor))
         collapsed, at, balance, word = None, None, None, ""
         try:
-            end = self._shake(sim, ground, peaks, cancelled)
+            end = self._shake(sim, ground, peaks, cancelled, told)
         except SolverError as error:
             how = str(error)
         else:
@@ -117,7 +122,12 @@ class RestedStructure:
 
     @stage
     def _shake(
-        self, sim: DynamicSimulation, ground: GroundMotion, peaks: LargestValues, cancelled: Callable[[], bool]
+        self,
+        sim: DynamicSimulation,
+        ground: GroundMotion,
+        peaks: LargestValues,
+        cancelled: Callable[[], bool],
+        told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
         """How it ends, through the motion and the time after it."""
         analysis, dt = self.case.analysis, self.step.step
@@ -134,6 +144,7 @@ class RestedStructure:
             n = min(self.stretch, total - motion.done)
             advance(n)
             motion.done, motion.looks = motion.done + n, motion.looks + 1
+            told(sim, motion.done / total)
             check_finite(sim)
             if motion.looks % sim.settings.history.energy_every == 0:
                 check_energy(sim, self.step)

@@ -30,10 +30,12 @@ class Recorder(Observer):
     def __init__(self, writer: ResultWriter, listener: RunListener):
         self.writer, self.listener = writer, listener
         self._noted: KeptStages | None = None
+        self._last: tuple[str, float, float, float | None] | None = None  # of what was said of the progress
 
     def keep(self, stages: KeptStages) -> None:
         """From now on they are told what goes into the files, for a run that goes on from there."""
         self.stages = self._noted = stages
+        stages.goes_on = self.goes_on
 
     def tell(self, kind: str, record: Any) -> None:
         """Into the files: a "frame", "row", "samples", "structure" or "runs"."""
@@ -66,5 +68,11 @@ class Recorder(Observer):
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """To the listener. Raises KeyboardInterrupt where one came."""
-        self.listener.progress(stage, load, displacement, fraction)
+        self._last = stage, load, displacement, fraction
+        self.listener.progress(*self._last)
         look()
+
+    def goes_on(self) -> None:
+        """A stage goes on that has nothing new to say: its time does."""
+        if self._last is not None:
+            self.listener.progress(*self._last)

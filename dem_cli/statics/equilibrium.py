@@ -263,7 +263,7 @@ def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
 
 def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
     """Dead loads; the row is kept in the track, the frame handed over."""
-    track.observer.progress("gravity", 0.0, 0.0, 0.02)
+    track.observer.progress("gravity", 0.0, 0.0, None)
     verdict = stand(sim, budget)
     track.keep("gravity")
     track.frame("gravity")

@@ -113,7 +113,7 @@ class LoadSearch:
     def _raise_to_estimate(self) -> None:
         """The load raised from gravity, in steps that shrink towards an estimate of the failure load."""
         answer, settings, sim = self.answer, self.settings, self.sim
-        self.track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
+        self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
         estimate = self._creep(settings.reach * answer.compliance)
         sim.restore(answer.standing)
         estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False

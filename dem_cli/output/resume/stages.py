@@ -33,6 +33,7 @@ from dem_cli.output.resume.kept_objects import Changing, all_changing, decoded, 
 if TYPE_CHECKING:
     from dem_cli.output.resume.checkpoints import Checkpoints
 
+_SAY_EVERY = 0.2  # s between words that work goes on
 Found = TypeVar("Found")
 Given = ParamSpec("Given")
 _UNDER_WAY, _INSIDE = "+", "-"  # in names: a checkpoint of a stage; a stage inside another one
@@ -117,6 +118,8 @@ class KeptStages(Stages):
 
     def __init__(self, kept: Checkpoints, tell: Callable[[str, Any], None], keeping: Keeping = DEFAULT_KEEPING) -> None:
         self.kept, self.tell, self.keeping = kept, tell, keeping
+        self.goes_on: Callable[[], None] = lambda: None  # who hears that work goes on
+        self._say_next = 0.0
         self._now = time.monotonic
         self._begun = self._now()
         self._places = kept.told()  # of what was told, where it is kept
@@ -190,6 +193,9 @@ class KeptStages(Stages):
     def offer(self, loop: Any = None) -> None:
         """As Stages."""
         under_way, now = self._open[-1], self._now()
+        if now >= self._say_next:
+            self._say_next = now + _SAY_EVERY
+            self.goes_on()
         if now - under_way.kept < self.keeping.every or now - self._begun < self.keeping.first:
             return
         checkpoint = _Checkpoint(under_way.inside, {} if loop is None else dict(vars(loop)))
