@@ -22,6 +22,7 @@ from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
+from dem_cli.kernels.jit import CompiledKernel
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
@@ -59,7 +60,7 @@ class Simulation:
         self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
-        self._loop: Callable[..., int]
+        self._loop: Callable[..., int] | None = None
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -236,14 +237,20 @@ class Simulation:
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        if not all(map(is_, scene, self._scene)):
-            model, self._scene = self.model, scene
-            self._loop = compiled_advance(
-                self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-                model.n_modes > 0, len(model.mode_shapes) > 0,
-            ).bound(n_steps, mode, 1.0, *scene)  # fmt: skip
-        done: int = self._loop(n_steps, mode, 1.0, *scene)
+        if all(map(is_, scene, self._scene)):
+            self._loop = self._loop or self._compiled().bound()
+            done: int = self._loop(n_steps, mode, 1.0, *scene)
+        else:
+            done = self._compiled()(n_steps, mode, 1.0, *scene)
+            self._scene, self._loop = scene, None
         return done
+
+    def _compiled(self) -> CompiledKernel:
+        model = self.model
+        return compiled_advance(
+            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+            model.n_modes > 0, len(model.mode_shapes) > 0,
+        )  # fmt: skip
 
     @property
     def speeds(self) -> np.ndarray:
