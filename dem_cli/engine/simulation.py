@@ -8,6 +8,7 @@ from dem_cli.contact.detect import block_shape, strained_corners, world_corners
 from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
+from dem_cli.engine.crew import called_by_all, threads_wanted
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
@@ -46,6 +47,7 @@ class Simulation:
         settings: Settings = DEFAULT,
     ):
         self.settings, relaxation = settings, settings.relaxation
+        self.threads = threads_wanted()
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.time = 0.0
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
@@ -134,11 +136,21 @@ class Simulation:
         return self.tracking.measured(self.bodies)
 
     def _take_joints(self) -> None:
-        """What follows from other joints: masses, and how long a compiled call may be."""
+        """What follows from other joints: tiles, masses, and how long a compiled call may be."""
         detection = self.settings.detection
+        self.tiled = self._in_tiles()
+        if self.tiled:
+            self.tracking.tile(self.law.n_of_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
+
+    def _in_tiles(self) -> bool:
+        """Whether joints are worked on many at once, by as many threads as there may be."""
+        detection, points = self.settings.detection, len(self.joints.kn)
+        if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
+            return False
+        return points >= detection.tiled_from and (points <= detection.tiled_to or self.threads > 1)
 
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
@@ -223,12 +235,14 @@ class Simulation:
         model = self.model
         loop = compiled_advance(
             self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0,
+            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
         )  # fmt: skip
-        done: int = loop(
+        arguments = (
             n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
             self.loads, self.control, self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
+        members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
+        done: int = called_by_all(loop, arguments, members) if members > 1 else loop(*arguments)
         return done
 
     @property
