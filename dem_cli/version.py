@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import shlex
 from pathlib import Path
 
 __version__ = "0.9.0"
@@ -16,11 +14,14 @@ def install_command(extra: str) -> str:
     checkout = _checkout()
     if checkout is None:
         return f"pip install '.[{extra}]' in the folder of dem"
+    import shlex
+
     return f"pip install {shlex.quote(f'{checkout}[{extra}]')}"
 
 
 def _checkout() -> Path | None:
     """The folder that dem runs in or was installed from; None where it is gone."""
+    import json
     from importlib.metadata import PackageNotFoundError, distribution
     from urllib.parse import urlparse
     from urllib.request import url2pathname

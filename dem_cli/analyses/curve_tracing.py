@@ -150,6 +150,8 @@ class CurveTracing:
 class _Drawing:
     """Rows and frames of a curve as it grows, kept until its peak is known, and how far it is."""
 
+    LASTING = frozenset(("sim", "track", "control"))
+
     def __init__(self, track: Track, doing: str, until: float, wanted: int) -> None:
         self.sim, self.track, self.doing, self.until, self.wanted = track.sim, track, doing, until, wanted
         self.every = until / max(wanted - 2, 1)

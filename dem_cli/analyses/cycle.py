@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,15 +12,15 @@ from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle, settle_or_fail
-from dem_cli.statics.hysteresis import loops
+from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -39,7 +38,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     try:
         if settle(sim, track, job.budget).state == "equilibrium":
             track.flush()
-            _follow(job, sim, track, found)
+            path = LoadPath(job, track)
+            try:
+                path.walk()
+            finally:
+                found |= path.found
     except SolverError as error:
         found["status"] = "not converged"
         job.warnings.append(str(error))
@@ -53,58 +56,95 @@ def values_between(start: float, end: float, step: float) -> np.ndarray:
     return np.linspace(start, end, max(1, math.ceil(abs(end - start) / step - 1e-9)) + 1)[1:]
 
 
-def _follow(job: Job, sim: Simulation, track: Track, found: dict[str, Any]) -> None:
-    """Every value of the path, after each of whose steps all forces balance; what is found goes to `found` at once."""
-    analysis = job.case.analysis
-    go = WAYS[analysis.control](job, track)
-    value, states, turns = 0.0, [(0.0, 0.0)], [0]
-    at_rest = measures.live_travel(sim)
-    for turn, target in enumerate(analysis.path):
-        for next_value in values_between(value, target, analysis.step):
-            share, moved = turn / len(analysis.path), measures.largest_displacement(sim)
-            track.observer.progress("on the path", sim.load * sim.live_scale, moved, share)
-            if not go(next_value):
-                found |= {"status": FAILS, "failure_load": sim.load * sim.live_scale}
-                track.write("collapse")
-                track.frame("collapse")
-                return
-            track.write("loading")
-            states.append((measures.live_travel(sim) - at_rest, sim.load * sim.live_scale))
-            value = next_value
-        track.frame("loading")
+class LoadPath:
+    """The path of a case: every value of it, after each of whose steps all forces balance.
+
+    found: keys of the summary, as far as it has come.
+    """
+
+    LASTING = frozenset(("sim", "job", "track", "way"))
+
+    def __init__(self, job: Job, track: Track) -> None:
+        self.job, self.track, self.sim = job, track, track.sim
+        self.found: dict[str, Any] = {"turning_points": [], "loops": []}
+        self.way = WAYS[job.case.analysis.control](job, track)
+        self.turn, self.steps = 0, 0  # turning points that were reached, steps since the last of them
+        self.at_rest = measures.live_travel(self.sim)
+        self.states, self.turns = [state_of(self.sim, self.at_rest)], [0]
+
+    @stage
+    def walk(self) -> None:
+        """All of it, or up to where it fails."""
+        path, step = (0.0, *self.job.case.analysis.path), self.job.case.analysis.step
+        self.sim.stages.resumed()
+        while self.turn < len(path) - 1:
+            values = values_between(path[self.turn], path[self.turn + 1], step)
+            while self.steps < len(values):
+                self.sim.stages.offer()
+                if not self._goes_to(values[self.steps], (self.turn + self.steps / len(values)) / (len(path) - 1)):
+                    return
+                self.steps += 1
+            self._turn(path[self.turn + 1])
+        self.found["status"] = "ok"
+
+    def _goes_to(self, value: float, share: float) -> bool:
+        """Another value, behind a share of the path; whether forces balance there."""
+        sim, track = self.sim, self.track
+        track.observer.progress("on the path", sim.load * sim.live_scale, measures.largest_displacement(sim), share)
+        if not self.way.go(value):
+            self.found |= {"status": FAILS, "failure_load": sim.load * sim.live_scale}
+            track.write("collapse")
+            track.frame("collapse")
+            return False
+        track.write("loading")
+        self.states.append(state_of(sim, self.at_rest))
+        return True
+
+    def _turn(self, target: float) -> None:
+        """A turning point, and the loops up to there."""
+        analysis, sim = self.job.case.analysis, self.sim
+        self.track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
         point: dict[str, Any] = {"load": load, "displacement": measures.largest_displacement(sim)}
-        point["live_displacement"] = states[-1][0]
+        point["live_displacement"] = self.states[-1].displacement
         if analysis.control == "displacement":
             point |= {"controlled": target} if analysis.of is None else {"controlled": target, "of": analysis.of}
-        found["turning_points"].append(point)
-        turns.append(len(states) - 1)
-        displacements, loads = np.array(states).T
-        made = loops(analysis.path, turns, displacements, loads, measures.live_force(sim) / sim.live_scale)
-        found["loops"] = [loop._asdict() for loop in made]
-    found["status"] = "ok"
+        self.found["turning_points"].append(point)
+        self.turn, self.steps = self.turn + 1, 0
+        self.turns.append(len(self.states) - 1)
+        made = loops(analysis.path, self.turns, self.states, measures.live_force(sim) / sim.live_scale)
+        self.found["loops"] = [loop._asdict() for loop in made]
 
 
-def _by_load(job: Job, track: Track) -> Callable[[float], bool]:
-    """Goes to a multiplier, a proven equilibrium."""
-    sim = track.sim
-    elastic = compliance(sim)[1]
-    step = job.case.analysis.step / sim.live_scale
+class ByLoad:
+    """Goes to multipliers, each a proven equilibrium."""
 
-    def go(load: float) -> bool:
-        scale = elastic * max(abs(load) / sim.live_scale, step)
-        return settle_or_fail(sim, load / sim.live_scale, job.budget, scale).state == "equilibrium"
+    LASTING = frozenset(("sim", "job"))
 
-    return go
+    def __init__(self, job: Job, track: Track) -> None:
+        self.job, self.sim, self.elastic = job, track.sim, compliance(track.sim)[1]
 
-
-def _by_displacement(job: Job, track: Track) -> Callable[[float], bool]:
-    """Goes to a displacement of the live load or of a monitor [m], to rest."""
-    sim, near = track.sim, job.settings.displacement_control.near_target * job.case.analysis.step
-    elastic = compliance(sim)[0]
-    check_moves(sim, elastic)
-    control = DisplacementControl(sim, job.budget, elastic, of=followed(job, track))
-    return lambda displacement: control.go_to(displacement, near)
+    def go(self, load: float) -> bool:
+        """To a multiplier, as users know it."""
+        sim = self.sim
+        scale = self.elastic * max(abs(load) / sim.live_scale, self.job.case.analysis.step / sim.live_scale)
+        return settle_or_fail(sim, load / sim.live_scale, self.job.budget, scale).state == "equilibrium"
 
 
-WAYS = {"load": _by_load, "displacement": _by_displacement}  # of analysis.control
+class ByDisplacement:
+    """Goes to displacements of the live load or of a monitor [m], to rest."""
+
+    LASTING = frozenset(("control",))
+
+    def __init__(self, job: Job, track: Track) -> None:
+        elastic = compliance(track.sim)[0]
+        check_moves(track.sim, elastic)
+        self.near = job.settings.displacement_control.near_target * job.case.analysis.step
+        self.control = DisplacementControl(track.sim, job.budget, elastic, of=followed(job, track))
+
+    def go(self, displacement: float) -> bool:
+        """To a displacement [m]."""
+        return self.control.go_to(displacement, self.near)
+
+
+WAYS: dict[str, type[ByLoad | ByDisplacement]] = {"load": ByLoad, "displacement": ByDisplacement}  # analysis.control

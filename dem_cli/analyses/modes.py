@@ -59,7 +59,7 @@ def _simulation(job: Job) -> Simulation:
 def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
     """Keys of the summary; the shapes go to the observer as frames."""
     wanted, model = job.case.analysis, sim.model
-    job.clock.progress("modes", 0.0, 0.0, 0.9)
+    job.clock.progress("modes", 0.0, 0.0, None)
     springs = {name: _springs(sim, name) for name in ("pressed", "touching")}
     count = max(wanted.count, wanted.mode if wanted.measured is not None else 1)
     found = _modes(sim, springs[wanted.contacts], count)

@@ -96,7 +96,7 @@ class SafetyStudy:
         try:
             case, model = self.variant(value)
             hopeless = self._past(value) >= 0.0
-            run = decide(case, model, ProgressOnly(self.observer), value, hopeless, self.settings)
+            run = decide(case, model, ProgressOnly(self.observer, self.observer.stages), value, hopeless, self.settings)
         except CaseError as error:  # both ends of the range are possible
             self._give_up(value, str(error))
             return

@@ -17,6 +17,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.settlement_way import SettlementWay
@@ -37,7 +38,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     track = job.track(sim)
     found: dict[str, Any] = {}
     try:
-        job.clock.progress("gravity", 0.0, 0.0, 0.0)
+        job.clock.progress("gravity", 0.0, 0.0, None)
         status = "ok" if stand(sim, job.budget).state == "equilibrium" else FALLS
         track.write("gravity")
         track.frame("gravity")
@@ -89,18 +90,22 @@ class SupportMovement:
         return motion
 
 
+@stage
 def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
     """Moves the supports, then waits for equilibrium; returns the status."""
     sim, rows = way.sim, way.rows
     every = max(rows // max(frames - 2, 1), 1)
-    way.begin()
-    for number in range(1, rows + 1):
+    if not sim.stages.resumed():
+        way.begin()
+    while way.done < rows:
+        sim.stages.offer()
         way.go_on(budget)
         track.write("settlement")
-        if number % every == 0:
+        if way.done % every == 0:
             track.frame("settlement")
-        share, moved = number / rows, measures.largest_displacement(sim)
-        track.observer.progress("settlement", share, moved, 0.95 * share)
+        share, moved = way.done / rows, measures.largest_displacement(sim)
+        track.observer.progress("settlement", share, moved, share)
+    track.observer.progress("settled", 1.0, measures.largest_displacement(sim), None)
     stands = way.stands(budget)
     track.write("settlement")
     track.frame("settlement")
@@ -111,6 +116,7 @@ def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
     """How far the supports had moved when the structure ceased to stand, and how it falls; the end stays as it is."""
     sim = way.sim
     end = sim.save()
+    job.clock.progress("how far it stands", 1.0, measures.largest_displacement(sim), None)
     try:
         low, high = way.bracket(job.budget)
         sim.restore(way.failing)

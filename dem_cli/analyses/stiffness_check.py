@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.dynamics.rocking_stiffness import RockingStiffness
+from dem_cli.engine.measures import largest_displacement
 from dem_cli.engine.settings import Settings
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
@@ -19,6 +20,7 @@ from dem_cli.ensembles.variants import Variant
 if TYPE_CHECKING:
     from dem_cli.case.schema import Monitor
     from dem_cli.dynamics.history import TimeHistory
+    from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.engine.job import Job
     from dem_cli.motion.motion import Motion
 
@@ -80,8 +82,12 @@ def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
     """The same structure under the same motion; None where it does not stand."""
     same = Variant(job.case, job.model, 0, settings.statistics.largest_draw)
-    rested = RestedStructure(same, motions, ProgressOnly(job.clock), settings)
-    return rested.shaken(motions) if rested.stands else None
+    rested = RestedStructure(same, motions, ProgressOnly(job.clock, job.clock.stages), settings)
+
+    def told(sim: DynamicSimulation, share: float) -> None:
+        job.clock.progress("again on softer joints", 0.0, largest_displacement(sim), share)
+
+    return rested.shaken(motions, told=told) if rested.stands else None
 
 
 def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> str:

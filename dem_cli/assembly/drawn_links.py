@@ -34,11 +34,10 @@ class DrawnLinks(NamedTuple):
 def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
     """The links of a case by kind, in its blocks as they were drawn. Raises CaseError with all that is wrong."""
     found, problems = [], list[CaseProblem]()
-    for key, link in LINKS.items():
-        tables = getattr(case, key)
-        drawn = [DRAWN[key](case, table, (key, i), model, problems) for i, table in enumerate(tables)]
-        if tables:
-            found.append(DrawnLinks(link, tables, [one for one in drawn if one is not None]))
+    for key in LINKS:
+        if tables := getattr(case, key):
+            drawn = [DRAWN[key](case, table, (key, i), model, problems) for i, table in enumerate(tables)]
+            found.append(DrawnLinks(LINKS[key], tables, [one for one in drawn if one is not None]))
     if problems:
         raise CaseError(problems)
     return found
@@ -47,7 +46,7 @@ def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
 def names_of(case: Case) -> tuple[str, ...]:
     """Names of all links of a case, in the order of their arrays."""
     return tuple(
-        table.id or f"{link.word}-{i + 1}" for key, link in LINKS.items() for i, table in enumerate(getattr(case, key))
+        table.id or f"{LINKS[key].word}-{i + 1}" for key in LINKS for i, table in enumerate(getattr(case, key))
     )
 
 

@@ -13,6 +13,7 @@ from dem_cli.case.plausibility import SHAKES, BlockSizes, size_doubts
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry.convex import distance
+from dem_cli.model.block_measures import median
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import blocks_at, undeformed
@@ -67,7 +68,7 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
         [blocks[i].path for i in free],
         sizes.tolist(),
         model.thickness[free].tolist(),
-        float(np.median(sizes)) if len(free) else 0.0,
+        median(sizes) if len(free) else 0.0,
         float(np.hypot.reduce(np.ptp(corners, axis=0))) if len(free) else 0.0,
         model.dimension,
     )
@@ -232,7 +233,7 @@ def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
         kn = case.joints[name].kn
         having = (by_material == k).any(axis=1)[model.block_material] & ~model.fixed
         if kn != "auto" and having.any():
-            edge = float(np.median(model.shapes.edges[having]))
+            edge = median(model.shapes.edges[having])
             if why := _sinking(model, having, kn, edge, f"{show(kn)} Pa/m", STIFFNESS_UNITS):
                 yield CaseProblem(("joints", name, "kn"), why)
 
@@ -242,7 +243,7 @@ def _soft_blocks(case: Case, model: Model) -> Iterator[CaseProblem]:
     for k, (name, material) in enumerate(case.materials.items()):
         young, having = material.moduli[0], (model.block_material == k) & ~model.fixed
         if math.isfinite(young) and having.any():
-            edge = float(np.median(model.shapes.edges[having]))
+            edge = median(model.shapes.edges[having])
             if why := _sinking(model, having, young / edge, edge, f"{show(young)} Pa", MODULUS_UNITS):
                 yield CaseProblem(("materials", name, "young"), why)
 

@@ -22,6 +22,7 @@ from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import unturned
 from dem_cli.links.matrices import each
 from dem_cli.links.registry import LINKS
+from dem_cli.model.block_measures import median
 from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
@@ -165,7 +166,7 @@ def warnings(model: Model) -> list[str]:
     names = [model.block_ids[i] for i in model.part_blocks[part]]
     block = np.nonzero(free)[0]
     return [
-        *_remote(model, float(np.median(sizes))),
+        *_remote(model, median(sizes)),
         *_slivers(widths / sizes, names),
         *_kinks(model),
         *_spread("size", sizes, names, SIZE_RATIO),
@@ -235,7 +236,7 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     bent = ~shapes.are_convex(model.vertices, model.part_starts, model.topology, model.parts.sizes) & ~flat
     found = []
     for wrong, what in ((flat, NO_SIZE[model.dimension]), (bent, "is not convex")):
-        hit = np.unique(model.part_blocks[wrong])
+        hit = sorted(set(model.part_blocks[wrong].tolist()))
         found += _first_few([(blocks[i].path, f"block '{blocks[i].id}' {what}") for i in hit])
     return found
 
@@ -284,7 +285,7 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
     held = np.zeros(model.n_blocks, bool)
     held[group[model.fixed]] = True
     found = []
-    for g in np.unique(group[~held[group]]):
+    for g in sorted(set(group[~held[group]].tolist())):
         inside = group == g
         i, j, gap = _nearest_pair(model, inside)
         others = int(inside.sum()) - 1

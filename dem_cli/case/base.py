@@ -37,7 +37,7 @@ class KeyProblem(ValueError):
 class CaseModel(BaseModel):
     """A table of the case file. Unknown keys are errors; values are not coerced between types."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
     @model_validator(mode="before")
     @classmethod

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hashlib import blake2b
-from statistics import NormalDist
 from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
@@ -91,6 +90,8 @@ def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
     chance = ((int.from_bytes(digest, "big") >> 12) + 0.5) / 2.0**52  # between 0 and 1, neither of them
     if isinstance(error, tuple):
         return error[0] + chance * (error[1] - error[0])
+    from statistics import NormalDist
+
     return NormalDist(error.mean, error.deviation).inv_cdf(chance)
 
 

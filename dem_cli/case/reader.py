@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from functools import cached_property
@@ -22,6 +22,8 @@ from dem_cli.case.scanner import KeyPositions, impossible_values, parsed
 from dem_cli.case.schema import Case
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
 
+# The class of case files for the tables of one; of None, with all that there is: for what to say of mistakes.
+ModelOf = Callable[[dict[str, Any] | None], type[Case]]
 SYNTAX = {  # how messages of the parser begin -> the same in plain words
     "Illegal character '\\n'": "the line ends within a string or a comment",
     "Cannot overwrite a value": "this key is given twice",
@@ -106,7 +108,7 @@ class LoadedCase(CaseSource):
 
 
 def read_case(
-    path: str | Path, model: type[Case], overrides: Sequence[str | Override] = (), text: str | None = None
+    path: str | Path, model_of: ModelOf, overrides: Sequence[str | Override] = (), text: str | None = None
 ) -> LoadedCase:
     """Read and validate a case file, with overrides (texts are KEY=VALUE). Raises CaseError or UsageError.
 
@@ -118,16 +120,21 @@ def read_case(
     data = parse_toml(path, text)
     resolved, found = [], []
     for change in changes:
-        change, problem = apply(data, change, model.model_fields)
+        change, problem = apply(data, change, Case.model_fields)
         resolved.append(change)
         found += [problem] if problem else []
     source = CaseSource(path, text, resolved)
     if found:
         raise CaseError(found, source.render)
-    return LoadedCase(validate(data, model, source), source)
+    return LoadedCase(validated(data, model_of, source), source)
 
 
 def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Case:
+    """The case in `data`, of this class; as `validated`."""
+    return validated(data, lambda tables: model, source)
+
+
+def validated(data: dict[str, Any], model_of: ModelOf, source: CaseSource) -> Case:
     """The case in `data`, or CaseError with every mistake in the order of the file."""
     found = list(impossible_values(data))
     if found:
@@ -139,14 +146,22 @@ def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Cas
     context = {"folder": source.path.parent, "dimension": dimensions.dimension_of(data)}
     case = None
     try:
-        case = model.model_validate(data, context=context)
+        case = _valid(data, model_of, context)
     except ValidationError as error:
-        found += problems_from(error, model, data)
+        found += problems_from(error, model_of(None), data)
     found += [*cross_references.problems(data), *dimensions.problems(data)]
     if case is None or found:
         found.sort(key=lambda problem: source.locate(problem.path, problem.at_key))
         raise CaseError(found, source.render)
     return case
+
+
+def _valid(data: dict[str, Any], model_of: ModelOf, context: dict[str, Any]) -> Case:
+    """Raises ValidationError of the class that knows everything."""
+    try:
+        return model_of(data).model_validate(data, context=context)
+    except ValidationError:
+        return model_of(None).model_validate(data, context=context)
 
 
 def parse_toml(path: Path, text: str) -> dict[str, Any]:

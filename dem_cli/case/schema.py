@@ -6,7 +6,7 @@ Which structures, joint laws and analyses exist is handed in (`case_model`): thi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import reduce
 from operator import or_
 from types import GenericAlias
@@ -118,6 +118,7 @@ class Settlement(Selection):
         return tuple(math.radians(angle) for angle in degrees)
 
 
+DEFAULT_LAW, DEFAULT_ANALYSIS = "coulomb", "pushover"  # of tables that do not say
 PLACES = ("block", "structure", "point", "between", "tie", "bar")  # where a monitor may be
 OF_LINKS = {"tie": ("force", "elongation"), "bar": ("force", "slip")}
 AT_JOINTS = ("opening", "slip")
@@ -294,6 +295,10 @@ class Case(CaseModel):
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: Sweep | None = Field(default=None, description="the runs of `dem sweep`; other commands ignore it")
 
+    def __eq__(self, other: object) -> bool:
+        """Whether they say the same, whichever kinds their classes know (`case_model`)."""
+        return isinstance(other, Case) and dict(self) == dict(other)
+
     @model_validator(mode="after")
     def _references_know_the_resolution(self) -> Case:
         for one in self.reference:
@@ -339,21 +344,21 @@ def case_model(
     structures: Mapping[str, type[StructureBase]],
     laws: Mapping[str, type[CaseModel]],
     analyses: Mapping[str, type[CaseModel]],
-    calibration: type[CaseModel] | None = None,
-    damping: type[CaseModel] | None = None,
-    initial: type[CaseModel] | None = None,
+    tables: Mapping[str, type[CaseModel]] | None = None,
     motions: Mapping[str, type[CaseModel]] | None = None,
     links: Mapping[str, type[CaseModel]] | None = None,
+    left_out: Collection[str] = (),
 ) -> type[Case]:
     """The class of case files in which these kinds exist: kind -> class of its parameters.
 
-    calibration, damping, initial: classes of the tables of these names; None: there is no such table.
+    tables: classes of [calibration], [damping] and [[initial]] by key; one that is left out does not exist.
     motions: kinds of the [motion] tables; links: tables of links, and those by name that they name, by their key.
+    left_out: keys that the files of this class do not have, so that nobody needs to know what they may say.
     """
-    structure = one_of(structures, "kind")
-    joint = one_of(laws, "law", default="coulomb")
-    analysis = one_of(analyses, "kind", default="pushover")
-    fields = Case.model_fields
+    structure = one_of(structures, "kind") if structures else Any
+    joint = one_of(laws, "law", default=DEFAULT_LAW)
+    analysis = one_of(analyses, "kind", default=DEFAULT_ANALYSIS)
+    fields, one = Case.model_fields, tables or {}
     narrowed: dict[str, Any] = {
         "structure": (sequence_of(structure), Field(default=(), description=fields["structure"].description)),
         "joints": (GenericAlias(dict, (str, joint)), Field(min_length=1, description=fields["joints"].description)),
@@ -362,16 +367,17 @@ def case_model(
             Field(default_factory=dict, validate_default=True, description=fields["analysis"].description),
         ),
         "motion": (one_or_more(one_of(motions, "kind") if motions else Any), fields["motion"]),
-        "calibration": (calibration and calibration | None, fields["calibration"]),
-        "damping": (damping and damping | None, fields["damping"]),
+        "calibration": (one["calibration"] | None if "calibration" in one else None, fields["calibration"]),
+        "damping": (one["damping"] | None if "damping" in one else None, fields["damping"]),
         "initial": (
-            sequence_of(initial) if initial else tuple[()],
+            sequence_of(one["initial"]) if "initial" in one else tuple[()],
             Field(default=(), description=fields["initial"].description),
         ),
     }
     for key, table in (links or {}).items():
         several: Any = sequence_of(table) if fields[key].default == () else GenericAlias(dict, (str, table))
         narrowed[key] = (several, Field(default=fields[key].default, description=fields[key].description))
+    narrowed |= {key: (Any, fields[key]) for key in left_out}
     return cast(type[Case], create_model("Case", __base__=Case, __doc__="A dem case file.", **narrowed))
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from importlib.util import find_spec
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -21,6 +20,9 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
     from dem_cli.post.scene.axonometry import Standpoint
+
+Done = TypeVar("Done")
+FEW_CORNERS = {2: 1500, 3: 128}  # of blocks, by dimension: up to here Python takes less than numba does to load, 0.4 s
 
 
 @click.command("check", short_help="Validate a case and print its model; solve nothing.")
@@ -43,8 +45,9 @@ def command(
     from dem_cli.pipeline.monitor_names import check_quantities, monitor_names
 
     loaded = load(case, overrides)
-    made = api.build_assembly(loaded)
+    made = api.laid(loaded)
     model = made.model
+    at_once(model, lambda: api.examine(loaded, made))
     with loaded.located():
         check_quantities(loaded.case, monitor_names(loaded.case.monitor))
     warn(loaded)
@@ -54,9 +57,10 @@ def command(
 
         plan = planned(loaded)
         found.append(("sweep", f"{len(plan.runs):,} runs of `dem sweep` over {', '.join(plan.keys)}"))
-    if find_spec("dem_cli.analyses.estimate"):
-        with loaded.located():
-            found += import_module("dem_cli.analyses.estimate").describe(loaded.case, model)
+    from dem_cli.analyses.estimate import describe
+
+    with loaded.located():
+        found += at_once(model, lambda: describe(loaded.case, model))
     width = max(len(label) for label, _ in found)
     click.echo(loaded.case.title)
     click.echo("\n".join(f"  {label:<{width}}  {text}" for label, text in found))
@@ -69,6 +73,19 @@ def command(
         click.echo(str(path))
     elif azimuth is not None or elevation is not None:
         raise UsageError("--azimuth and --elevation are for --plot")
+
+
+def at_once(model: Model, work: Callable[[], Done]) -> Done:
+    """What `work` returns: of few blocks without numba, which takes longer to load than Python to be done with them."""
+    from dem_cli.kernels.jit import uncompiled
+
+    if len(model.vertices) <= FEW_CORNERS[model.dimension]:
+        try:
+            with uncompiled():
+                return work()
+        except (ArithmeticError, ValueError):  # which compiled code does not raise
+            pass
+    return work()
 
 
 def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Standpoint) -> None:
@@ -157,20 +174,20 @@ def _drawn(case: Case) -> list[tuple[str, str]]:
 
 def _imports(case: Case) -> list[tuple[str, str]]:
     """How files of other programs and outlines of walls were read."""
-    from dem_cli.structures.imported import Import, imported
-    from dem_cli.structures.wall_outline import Outlined
-
-    files = {table.id: imported(table).notes for table in case.structure if isinstance(table, Import)}
-    outlines = {
-        table.id: table.outline.drawn.notes
-        for table in case.structure
-        if isinstance(table, Outlined) and table.outline is not None
-    }
+    files = {table.id: _notes(table) for table in case.structure if table.kind == "import"}
+    outlines = {table.id: table.outline.drawn.notes for table in case.structure if getattr(table, "outline", None)}
     rows = []
     for label, read in (("import", files), ("outline", outlines)):
         notes = [(f"{name}: " if len(read) > 1 else "") + note for name, own in read.items() for note in own]
         rows += [(label if k == 0 else "", note) for k, note in enumerate(notes)]
     return rows
+
+
+def _notes(table: Any) -> tuple[str, ...]:
+    """How a file of another program was read."""
+    from dem_cli.structures.imported import imported
+
+    return tuple(imported(table).notes)
 
 
 def _imperfections(case: Case) -> str:

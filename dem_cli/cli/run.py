@@ -11,8 +11,9 @@ import click
 
 from dem_cli.cli.options import case_argument, load, overrides_option
 from dem_cli.cli.words import console
+from dem_cli.cli.words.numbers import seconds as duration
 from dem_cli.errors import DemError
-from dem_cli.pipeline.batches import BatchOptions, check
+from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.listener import RunListener
 
 if TYPE_CHECKING:
@@ -49,6 +50,11 @@ class TerminalListener(RunListener):
         self.bar.stop()
         console.note(f"{count:,} runs are kept; go on with --resume", self.quiet)
 
+    def stages_kept(self, seconds: float) -> None:
+        """A line on stderr."""
+        self.bar.stop()
+        console.note(f"the first {duration(seconds)} of work are kept; go on with --resume", self.quiet)
+
 
 @click.command("run")
 @case_argument
@@ -66,7 +72,7 @@ class TerminalListener(RunListener):
     metavar="N",
     help="Runs side by side, of analyses that consist of many; default: all cores.",
 )
-@click.option("--resume", is_flag=True, help="Go on where an interrupted analysis of many runs stopped.")
+@click.option("--resume", is_flag=True, help="Go on where an interrupted or killed run of the same case stopped.")
 @click.option("--plot/--no-plot", default=False, help="Draw the pictures of `dem plot` as well.")
 def command(
     case: str,
@@ -89,7 +95,6 @@ def command(
     loaded = load(case, overrides)
     one_of_many(loaded)
     options = BatchOptions(threads, resume)
-    check(loaded.case, options)
     model = api.build_model(loaded)
     summary, folder = execute(
         loaded,

@@ -15,6 +15,7 @@ from dem_cli.contact.detect import find_joints
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import Faces, JointProperties, Joints
 from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
+from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
 from dem_cli.model.scales import smallest_edge
@@ -54,7 +55,7 @@ def joint_reach(model: Model) -> float:
 def gaps_of_start(model: Model) -> StartGaps:
     """The gaps of the undeformed structure that close, and those that are narrow enough to be named."""
     sizes, corners = model.parts.sizes, undeformed(model)
-    typical = float(np.median(sizes[~model.fixed[model.part_blocks]])) if not model.fixed.all() else 0.0
+    typical = median(sizes[~model.fixed[model.part_blocks]]) if not model.fixed.all() else 0.0
     faces = find_joints(model, corners, max(joint_reach(model), NOTICED_GAP * typical))
     scale = sizes[faces.parts].min(axis=1)
     apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)

@@ -7,7 +7,6 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import Legendre
 
 from dem_cli.geometry import profile
 
@@ -127,11 +126,15 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     """
     if n < 2:
         raise ValueError("the rule has at least two points")
-    last = Legendre.basis(n - 1)
-    inner = np.sort(last.deriv().roots().real) if n > 2 else np.empty(0)
-    inner = 0.5 * (inner - inner[::-1])  # symmetric to the last digit
-    x = np.concatenate([[-1.0], inner, [1.0]])
-    weights = 1.0 / (n * (n - 1) * last(x) ** 2)
+    x, weights = np.array([-1.0, 1.0]), np.ones(2)
+    if n > 2:
+        from numpy.polynomial.legendre import Legendre
+
+        last = Legendre.basis(n - 1)
+        inner = np.sort(last.deriv().roots().real)
+        inner = 0.5 * (inner - inner[::-1])  # symmetric to the last digit
+        x = np.concatenate([[-1.0], inner, [1.0]])
+        weights = 1.0 / (n * (n - 1) * last(x) ** 2)
     places, weights = 0.5 * (x + 1.0), weights / weights.sum()
     places.flags.writeable = weights.flags.writeable = False
     return places, weights

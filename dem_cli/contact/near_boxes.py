@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from dem_cli.kernels.neighbours import enter_cells, pairs_in_cells, pairs_of_large
+from dem_cli.model.block_measures import median
 
 CELL = 1.5  # of the median extent: side of a cell
 LARGE = 4.0  # of the same: larger parts (a base, a beam) are compared with all others
@@ -27,7 +28,7 @@ def near_boxes(
     high = np.maximum.reduceat(corners, part_starts[:-1], axis=0)
     boxes = np.ascontiguousarray(np.stack([low, high], axis=1))
     extents = (high - low).max(axis=1)
-    typical = float(np.median(extents))
+    typical = median(extents)
     is_large = extents > LARGE * typical
     large, small = np.flatnonzero(is_large), np.flatnonzero(~is_large)
     origin, cell = low[small].min(axis=0) - reach, CELL * typical + 2.0 * reach

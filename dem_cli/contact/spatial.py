@@ -28,6 +28,7 @@ from dem_cli.kernels.records import (
 )
 from dem_cli.kernels.separation import separations
 from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR
+from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 
 FLAT = 1e-4  # angle of kinks across which parts may touch on both sides, within round-off [rad]
@@ -201,7 +202,7 @@ def _shares(found: Meetings) -> np.ndarray:
 def median_face(model: Model) -> float:
     """Median area of all faces that can be touched [m²]."""
     areas = model.faces.areas
-    return float(np.median(areas[~model.inner_faces])) if len(areas) else 0.0
+    return median(areas[~model.inner_faces]) if len(areas) else 0.0
 
 
 def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies: Bodies) -> None:

@@ -31,6 +31,7 @@ from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, Spat
 from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import LOCAL, classify
+from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 
 __all__ = [
@@ -104,7 +105,7 @@ def _median_free_face(model: Model) -> float:
     """Median area of the faces of blocks that can move [m²]: those of a large base say nothing of a stone on it."""
     areas = model.faces.areas
     free = ~model.inner_faces & ~model.fixed[model.part_blocks[model.topology.face_parts]]
-    return float(np.median(areas[free])) if free.any() else median_face(model)
+    return median(areas[free]) if free.any() else median_face(model)
 
 
 def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.ndarray) -> np.ndarray:

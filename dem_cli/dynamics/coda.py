@@ -16,6 +16,7 @@ import numpy as np
 
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
 from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
+from dem_cli.output.resume.stages import stage
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
@@ -51,31 +52,47 @@ class Ending(NamedTuple):
         return ""
 
 
+class _Coda:
+    """How far a structure was followed after its motion."""
+
+    def __init__(self, sim: DynamicSimulation) -> None:
+        self.done, self.looks, self.since, self.swings = 0, 0, sim.time, Swings(sim)
+
+
+@stage
 def ending(
     sim: DynamicSimulation, analysis: ShakingAnalysis, step: TimeStep, stretch: int, advance: Callable[[int], None]
 ) -> Ending:
     """How `sim` ends, which has come to the end of its motion; `advance` takes it on by so many steps, `stretch` of
     them or less at a time. Raises SolverError where it blows up.
     """
-    most, done, looks, since = math.ceil(analysis.coda / step.step), 0, 0, sim.time
-    swings, history = Swings(sim), sim.settings.history
+    most, coda, history = math.ceil(analysis.coda / step.step), _Coda(sim), sim.settings.history
+    sim.stages.resumed(coda)
     while True:
-        block = fallen(sim, analysis)
-        if block is not None:
-            return Ending(COLLAPSED, block, sim.time - since)
-        if at_rest(sim):
-            return Ending(STOOD, None, sim.time - since, done == 0 or swings.small())
-        if done >= history.least_coda * most and swings.turned_back():
-            return Ending(STOOD if swings.small() else ROCKS, None, sim.time - since, swings.small())
-        if done >= most:
-            return Ending(MOVES, None, sim.time - since)
-        n = min(stretch, most - done)
+        sim.stages.offer(coda)
+        found = _ended(sim, analysis, coda, most)
+        if found is not None:
+            return found
+        n = min(stretch, most - coda.done)
         advance(n)
-        done, looks = done + n, looks + 1
+        coda.done, coda.looks = coda.done + n, coda.looks + 1
         check_finite(sim)
-        if looks % history.energy_every == 0:
+        if coda.looks % history.energy_every == 0:
             check_energy(sim, step)
-        swings.look()
+        coda.swings.look()
+
+
+def _ended(sim: DynamicSimulation, analysis: ShakingAnalysis, coda: _Coda, most: int) -> Ending | None:
+    """How it ends, where that is known by now, or nobody looks any longer: after so many steps."""
+    swings, followed = coda.swings, sim.time - coda.since
+    block = fallen(sim, analysis)
+    if block is not None:
+        return Ending(COLLAPSED, block, followed)
+    if at_rest(sim):
+        return Ending(STOOD, None, followed, coda.done == 0 or swings.small())
+    if coda.done >= sim.settings.history.least_coda * most and swings.turned_back():
+        return Ending(STOOD if swings.small() else ROCKS, None, followed, swings.small())
+    return Ending(MOVES, None, followed) if coda.done >= most else None
 
 
 def undecided(moving: int, runs: int, coda: float) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from copy import deepcopy
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 from dem_cli.output.record import COLLAPSED, FALLS, MOVES, Energy, Samples
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
 
@@ -41,8 +43,19 @@ WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of t
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
 
 
+@dataclass
+class _Shaking:
+    """How far the motion has come."""
+
+    end: float  # [s]; a collapse brings it nearer
+    done: int = 0  # steps
+    fallen: CollapsedBlock | None = None
+
+
 class TimeHistory:
     """One run: a structure under one motion of the ground."""
+
+    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots"))
 
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
@@ -86,7 +99,7 @@ class TimeHistory:
         """Rest under dead loads, then the first motion; False where there is no rest."""
         sim, case = self.sim, self.case
         if case.analysis.settle:
-            self.track.observer.progress("gravity", 0.0, 0.0, 0.0)
+            self.track.observer.progress("gravity", 0.0, 0.0, None)
             if self._stands() != "equilibrium":
                 self.track.write("gravity")
                 self.track.frame("gravity")
@@ -112,43 +125,52 @@ class TimeHistory:
             ) from error
 
     def _shake(self) -> dict[str, Any]:
-        """Stretches of the motion until its end, or until a collapse was followed long enough."""
-        history = self.job.settings.history
-        sim, output, dt = self.sim, self.case.output, self.step.step
-        every = max(1, round(1.0 / (output.rate * dt)))
-        total = max(1, math.ceil(self.duration / dt))
+        """The motion until its end, or until a collapse was followed long enough, then how it ends."""
+        total = max(1, math.ceil(self.duration / self.step.step))
         if total > self.case.analysis.max_steps:
             raise SolverError(
-                f"{self.duration:g} s are {total:,} steps of {dt:.3g} s, more than analysis.max_steps "
+                f"{self.duration:g} s are {total:,} steps of {self.step.step:.3g} s, more than analysis.max_steps "
                 f"({self.case.analysis.max_steps:,}): {self.step.cause}"
             )
+        return {"status": "ok"} | self._ended(self._through_motion(total))
+
+    @stage
+    def _through_motion(self, total: int) -> CollapsedBlock | None:
+        """Stretches of the motion, of so many steps in all; returns the block that fell first."""
+        history, sim, dt = self.job.settings.history, self.sim, self.step.step
+        every = max(1, round(1.0 / (self.case.output.rate * dt)))
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
-        done, end = 0, self.duration
-        fallen: CollapsedBlock | None = None
-        self.snapshots.begin(end, every)
-        while done < total and sim.time < end - 0.5 * dt:
-            n = min(stretch, total - done, max(1, math.ceil((end - sim.time) / dt - 0.5)))
+        motion = _Shaking(self.duration)
+        if not sim.stages.resumed(motion):
+            self.snapshots.begin(motion.end, every)
+        while motion.done < total and sim.time < motion.end - 0.5 * dt:
+            sim.stages.offer(motion)
+            n = min(stretch, total - motion.done, max(1, math.ceil((motion.end - sim.time) / dt - 0.5)))
             try:
                 values = self._stretch(n, every)
                 self._look()
             except SolverError as error:
-                if fallen is None:
+                if motion.fallen is None:
                     raise
                 self.job.warnings.append(f"the collapse is known, not what follows: {error}")
                 break
-            if fallen is None:
-                np.maximum(self.peaks, np.abs(values).max(axis=0, initial=0.0), out=self.peaks)
-                fallen = fallen_block(sim, self.case.analysis)
-                if fallen is not None:
-                    self.closed = closure(sim)
-                    end = min(end, fallen.time + self.case.analysis.after_collapse)
-                    self.snapshots.collapsed(end)
-            done += n
+            if motion.fallen is None:
+                self._look_for_falls(motion, values)
+            motion.done += n
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
             self.farthest = max(self.farthest, moved)
-            self.track.observer.progress("shaking", sim.load, moved, min(sim.time / end, 1.0))
-        return {"status": "ok"} | self._ended(fallen)
+            self.track.observer.progress("shaking", sim.load, moved, min(sim.time / motion.end, 1.0))
+        return motion.fallen
+
+    def _look_for_falls(self, motion: _Shaking, values: np.ndarray) -> None:
+        """Peaks of the monitors, whose values are those of the last stretch, and whether a block has fallen since."""
+        np.maximum(self.peaks, np.abs(values).max(axis=0, initial=0.0), out=self.peaks)
+        motion.fallen = fallen_block(self.sim, self.case.analysis)
+        if motion.fallen is not None:
+            self.closed = closure(self.sim)
+            motion.end = min(motion.end, motion.fallen.time + self.case.analysis.after_collapse)
+            self.snapshots.collapsed(motion.end)
 
     def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
         """How it ended."""

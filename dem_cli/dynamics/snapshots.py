@@ -52,6 +52,8 @@ class Snapshots:
     wanted: as many at even times as a case asks for; None: as many as the motion needs.
     """
 
+    LASTING = frozenset(("track", "sim", "ground", "settings"))
+
     def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from dem_cli.errors import SolverError
 
@@ -11,6 +12,7 @@ from dem_cli.errors import SolverError
 class Budget:
     """Solver steps that may still be spent. `spend` raises SolverError when there are none left."""
 
+    LASTING: ClassVar[frozenset[str]] = frozenset()
     left: int
 
     def spend(self, steps: int, doing: str) -> None:

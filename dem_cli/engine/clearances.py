@@ -14,6 +14,7 @@ from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.settings import DEFAULT, ClearanceSettings
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.kernels.records import Bodies, Joints
+from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 
 
@@ -37,7 +38,7 @@ def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceS
     if not len(gaps):
         return found
     free = np.flatnonzero(~model.fixed)
-    width = float(np.median(model.shapes.widths[free])) if len(free) else smallest
+    width = median(model.shapes.widths[free]) if len(free) else smallest
     more = gap_play(gaps, width, model.n_blocks, clearance)
     return Play(found.moved + more.moved, found.turned + more.turned)
 

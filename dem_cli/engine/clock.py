@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
 from dem_cli.interrupts import at_once
-from dem_cli.kernels.jit import Compilation
 from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ class Clock(Observer):
 
     def __init__(self, observer: Observer) -> None:
         self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
-        self.observer = observer
+        self.observer, self.stages = observer, observer.stages
 
     def frame(self, frame: Frame) -> None:
         """Hands on a frame, off the clock."""
@@ -62,9 +61,12 @@ class Clock(Observer):
 
     def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
         """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
+        from dem_cli.kernels.compilation.machine_code import Compilation
+
         compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
         with compilation.heard():
             sim = make()
+            sim.stages = self.stages
             built, made = time.perf_counter(), compilation.seconds
             with at_once():  # a minute, the first time
                 sim.compile()

@@ -36,7 +36,10 @@ def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> A
 
     An interrupt, which may strike between any two lines here, leaves none of them waiting.
     """
-    pool, calls = _pool(os.getpid(), members), []  # type: tuple[ThreadPoolExecutor, list[Future]]
+    if members == 1:
+        return loop(*arguments)
+    pool = _pool(os.getpid(), members)
+    calls: list[Future] = []
     try:
         while len(calls) < members:
             calls.append(pool.submit(loop, *arguments))

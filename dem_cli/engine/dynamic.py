@@ -39,6 +39,8 @@ class DynamicSimulation(Simulation):
     damping     what the joints and blocks lose (dynamics/damping.py)
     """
 
+    LASTING = Simulation.LASTING | {"damping"}
+
     def __init__(
         self, model: Model, law: Law, properties: JointProperties, damping: Damping, settings: Settings = DEFAULT
     ):
@@ -73,8 +75,7 @@ class DynamicSimulation(Simulation):
         held = held_motions(model, model.n_modes > 0)
         self.loads.inverse_masses[:] = np.where(held, 0.0, 1.0 / _masses(model))
         self.strained = strain_rates(model, self.damping, dt)
-        if model.n_modes:
-            self.loads.dead[:] = turned_loads(self.strained, self.dead_loads, self.bodies.orientations)
+        self._turn_dead_loads()
         self.loads.speed_limits[:] = np.inf
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = self.damping.local, 0.0
         self.control[slot.MASS_RATE] = self.damping.mass
@@ -88,16 +89,39 @@ class DynamicSimulation(Simulation):
         self.turns_of_means = bodies.turns.copy()
         self.contacts.exchanged[:] = 0.0
 
+    @property
+    def loads_turn(self) -> bool:
+        """Whether blocks that deform have loads at points, which deform them in another way when they have turned."""
+        d, modes = self.model.dimension, self.model.rotations.stop
+        return self.model.n_modes > 0 and bool(
+            self.dead_loads[:, d:modes].any() or self.dead_loads[:, modes + 1 :].any()
+        )
+
+    def _turn_dead_loads(self) -> None:
+        """Loads on modes of blocks as these have turned by now."""
+        if self.model.n_modes:
+            self.loads.dead[:] = turned_loads(self.strained, self.dead_loads, self.bodies.turns)
+
     def start_moving(self) -> None:
-        """Takes the velocities, which are those of time 0, half a step back; energy counts as given."""
+        """Takes the velocities, which are those of time 0, half a step back; energy counts as given.
+
+        The first step begins as long before time 0 as it ends after it: half of its work is none of the run.
+        """
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
         self._run(0, 1, self._still(1), no_watch(self))
         kicked = self.bodies.pulled.reshape(before.shape)
         change, elastic = (kicked - before)[self.free], self.elastic_energy()  # of springs at time 0
         self.restore(saved)
-        self.ledger[slot.EXTERNAL] = elastic + kinetic
         self._new_dampers(STARTS)
         self.bodies.velocities[self.free] -= 0.5 * change
+        saved, self.ledger[:] = self.save(), 0.0
+        self._run(0, 1, self._still(1), no_watch(self))
+        early = 0.5 * self.ledger
+        early[slot.FRICTION] = 0.0  # is that of whole steps
+        self.restore(saved)
+        self._new_dampers(STARTS)
+        self.ledger[slot.EXTERNAL] = elastic + kinetic
+        self.ledger[:] -= early
 
     def set_masses(self) -> None:
         """Fictitious masses, as long as masses are not real."""
@@ -162,6 +186,9 @@ class DynamicSimulation(Simulation):
             if last:
                 before, self.turns_of_means = self.ledger.copy(), self.bodies.turns.copy()
             n = 1 if last else end - 1 - step
+            if self.loads_turn:
+                self._turn_dead_loads()
+                n = min(n, self.settings.relaxation.follow_every)
             if looker is not None:
                 n = min(n, looker.every - (done + step) % looker.every)
             advanced = self._run(step, n, ground, watch)
@@ -203,6 +230,14 @@ class DynamicSimulation(Simulation):
     def kinetic_energy(self) -> float:
         """Of all blocks, with the masses that they have now [J]."""
         return self._energy_of(self.bodies.velocities, self.bodies.turns) if self.real else super().kinetic_energy()
+
+    def elastic_energy(self) -> float:
+        """In springs and blocks at one instant: modes are a step ahead of the forces of the joints [J]."""
+        modes, found = self.bodies.modes, super().elastic_energy()
+        if not (self.real and modes.size):
+            return found
+        rates, stiffness = self.bodies.velocities[:, self.model.rotations.stop :], self.shape.mode_stiffness
+        return found + 0.5 * float((stiffness * ((modes - self.dt * rates) ** 2 - modes**2)).sum())
 
     def centred_kinetic_energy(self) -> float:
         """Of the mean velocities of the last step [J]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from dem_cli.engine import measures
 from dem_cli.engine.audit import unproven
@@ -36,6 +36,7 @@ class Outcome:
 class Job:
     """One run: the case, its model, and what its stages share."""
 
+    LASTING: ClassVar[frozenset[str]] = frozenset(("case", "model", "clock", "monitors", "budget", "settings"))
     case: Case
     model: Model
     clock: Clock

@@ -96,7 +96,7 @@ def _with_deforming_blocks(
     Within a stone that can crack: the joint of its pieces, where these deform in it.
     """
     lumped = [] if compliance is None else model.block_material[compliance.deforms]
-    found = set(by_material[np.union1d(lumped, bending).astype(int)].ravel().tolist())
+    found = set(by_material[np.concatenate([lumped, bending]).astype(int)].ravel().tolist())
     if compliance is None or not len(model.pieces):
         return found
     within = model.pieces[compliance.deforms, 1]

@@ -107,6 +107,7 @@ class RelaxationSettings:
     # it would not by itself.
     ramp_of_memory: int = 100  # steps per course
     stair_of_memory: int = 5
+    stair_of_strain: int = 1  # of blocks that swell or shrink, which else leap off each other: joints slip as they jump
 
     def stretched(self, factor: float) -> RelaxationSettings:
         """Time steps longer by a factor than these, by lighter fictitious masses."""

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from operator import is_
+from typing import Any
+
 import numpy as np
 
 from dem_cli.contact.detect import block_shape, strained_corners, world_corners
@@ -27,6 +31,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
 from dem_cli.model.uniform_strain import covectors_of, gradients_of
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 
 class Simulation:
@@ -35,6 +40,10 @@ class Simulation:
     kinematics  "fixed": geometry of the start, for failure loads; "large": geometry that moves
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
+
+    LASTING = frozenset(
+        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "_scene", "_loop")
+    )
 
     def __init__(
         self,
@@ -49,7 +58,10 @@ class Simulation:
         self.settings, relaxation = settings, settings.relaxation
         self.threads = threads_wanted()
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
+        self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
+        self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
+        self._loop: Callable[..., int]
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -232,17 +244,18 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        model = self.model
-        loop = compiled_advance(
-            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
+        scene = (
+            self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
+            self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        arguments = (
-            n_steps, mode, 1.0, self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links,
-            self.loads, self.control, self.ledger, self.like, self.like_rotation,
-        )  # fmt: skip
+        if not all(map(is_, scene, self._scene)):
+            model, self._scene = self.model, scene
+            self._loop = compiled_advance(
+                self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+                model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
+            ).bound(n_steps, mode, 1.0, *scene)  # fmt: skip
         members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
-        done: int = called_by_all(loop, arguments, members) if members > 1 else loop(*arguments)
+        done: int = called_by_all(self._loop, (n_steps, mode, 1.0, *scene), members)
         return done
 
     @property
@@ -378,7 +391,8 @@ class Simulation:
             motion[:, self.model.rotations],
             self.elastic_energy(),
         )
-        applied = self.loads.dead + 0.5 * (self.load + load) * self.loads.live
+        mean = 0.5 * (self.load + load)
+        applied = self.loads.dead + mean * self.loads.live
         bodies.positions[:] += motion[:, :d]
         bodies.orientations[:] = turned_further(bodies.orientations, spins)
         bodies.velocities[:] = 0.0
@@ -390,6 +404,7 @@ class Simulation:
         self.set_load(load)
         given = float((applied[:, : motion.shape[1]] * motion).sum())
         self.ledger[slot.EXTERNAL] += given
+        self.ledger[slot.LIVE] += mean * float((self.loads.live[:, : motion.shape[1]] * motion).sum())
         self.ledger[slot.FRICTION] += friction
         self.ledger[slot.DAMPING] += given - friction - (self.elastic_energy() - before)
         self.ledger[slot.CONTACT] -= given

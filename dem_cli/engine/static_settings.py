@@ -78,7 +78,7 @@ class WarmStartSettings:
     large: int = 1000  # blocks of one structure, beyond which the path takes too many factorisations
     flat: float = 1.0  # resolutions: growth of the load along the path, over that of displacement, that counts as none
     drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure
-    at_the_end: int = 4  # last increments, among which the highest load is a plateau and not a peak
+    at_the_end: float = 0.4  # of the displacement of a path: beyond it the highest load is a plateau and not a peak
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 class Track:
     """Rows and frames of one simulation."""
 
+    LASTING = frozenset(("sim", "observer", "monitors"))
+
     def __init__(self, sim: Simulation, observer: Observer, monitors: Monitors, frames: int):
         self.sim, self.observer, self.monitors, self.frames = sim, observer, monitors, frames
         self.kept: list[HistoryRow] = []

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dem_cli.geometry.rotation import matrices
 from dem_cli.kernels.records import Joints, StrainRates
 from dem_cli.model.mode_masses import mass_matrices
 from dem_cli.model.model import NO_MODES, Model
+from dem_cli.model.uniform_strain import rotations_of, turned_mode_loads
 from dem_cli.tables.damping import MaxwellElement
 
 
@@ -80,21 +80,25 @@ def strain_rates(model: Model, damping: Damping, dt: float) -> StrainRates:
     lost = 0.5 * dt * (damping.mass * masses + viscosity[:, :, None] * np.eye(m))
     inverse = np.linalg.inv(masses + lost)
     moving = (stiffness > 0.0)[:, :, None]
-    parts = inverse @ (masses - lost), dt * inverse, np.linalg.inv(masses)
+    parts = inverse @ (masses - lost), dt * inverse, inverse  # impulses of dashpots are of the same step
     keep, gain, mobilities = (np.ascontiguousarray(np.where(moving, part, 0.0)) for part in parts)
     bends = model.mode_shapes.reshape(len(model.mode_shapes), 72)
     radii = model.shapes.radii
     return StrainRates(np.ascontiguousarray(turns), masses, viscosity, keep, gain, mobilities, radii, bends)
 
 
-def turned_loads(strained: StrainRates, loads: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-    """Loads on blocks (n_blocks, n_dof) whose velocities are mean spins: −Wᵀ τ more on their modes."""
+def turned_loads(strained: StrainRates, loads: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    """Loads on blocks (n_blocks, n_dof) that have turned by now, where velocities are mean spins.
+
+    Forces and levers stay as they are drawn, which the block sees from elsewhere; −Wᵀ τ more on its modes. turns: as
+    kernels.records.Bodies.
+    """
     if not strained.turns.size:
         return loads
     r, m = strained.turns.shape[1:]
-    torques = loads[:, -m - r : -m]
+    rotations, torques = rotations_of(turns), loads[:, -m - r : -m]
     if r == 3:
-        torques = np.einsum("nji,nj->ni", matrices(orientations), torques)
+        torques = np.einsum("nji,nj->ni", rotations, torques)
     found = loads.copy()
-    found[:, -m:] -= np.einsum("nrm,nr->nm", strained.turns, torques)
+    found[:, -m:] = turned_mode_loads(loads[:, -m:], rotations) - np.einsum("nrm,nr->nm", strained.turns, torques)
     return found

@@ -18,6 +18,7 @@ from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import COLLAPSED, Observer
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages, stage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,14 +46,37 @@ class RunCancelled(Exception):
 
 
 class ProgressOnly(Observer):
-    """An observer of structures that come to rest: nothing of them is kept."""
+    """An observer of structures that come to rest: nothing of them is told to the results.
 
-    def __init__(self, observer: Observer):
-        self.observer = observer
+    stages: what keeps their stages; none where many run side by side.
+    """
+
+    def __init__(self, observer: Observer, stages: Stages = NOTHING_KEPT):
+        self.observer, self.stages = observer, stages
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Hands on where the run stands."""
         self.observer.progress(stage, load, displacement, fraction)
+
+
+class LargestValues:
+    """Largest absolute value of each monitor so far, (n_monitors,)."""
+
+    LASTING = frozenset[str]()
+
+    def __init__(self, count: int) -> None:
+        self.values = np.zeros(count)
+
+    def see(self, values: np.ndarray) -> None:
+        """A stretch of them, (n, n_monitors)."""
+        self.values = np.maximum(self.values, np.abs(values).max(axis=0))
+
+
+class _Stretches:
+    """How far a motion has come."""
+
+    def __init__(self) -> None:
+        self.done = self.looks = 0  # steps, stretches
 
 
 class RestedStructure:
@@ -72,57 +96,69 @@ class RestedStructure:
         # a fragility asks how far blocks go before they fall or rest, a time history for the time it names
         self.peaks_of_coda = variant.case.analysis.kind == "fragility"
 
-    def shaken(self, motions: Sequence[Motion], cancelled: Callable[[], bool] = lambda: False) -> ShakenRunResult:
+    def shaken(
+        self,
+        motions: Sequence[Motion],
+        cancelled: Callable[[], bool] = lambda: False,
+        told: Callable[[DynamicSimulation, float], None] = lambda sim, share: None,
+    ) -> ShakenRunResult:
         """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
 
-        Raises RunCancelled.
+        told: hears of the share of the motion that is over. Raises RunCancelled.
         """
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks = np.zeros(len(self.case.monitor))
+        peaks = LargestValues(len(self.case.monitor))
         collapsed, at, balance, word = None, None, None, ""
         try:
-            end = self._shake(sim, ground, peaks, cancelled)
+            end = self._shake(sim, ground, peaks, cancelled, told)
         except SolverError as error:
             how = str(error)
         else:
             collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
-        return ShakenRunResult(collapsed, at, how, tuple(peaks.tolist()), steps, balance, seconds, word)
+        return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word)
 
+    @stage
     def _shake(
-        self, sim: DynamicSimulation, ground: GroundMotion, peaks: np.ndarray, cancelled: Callable[[], bool]
+        self,
+        sim: DynamicSimulation,
+        ground: GroundMotion,
+        peaks: LargestValues,
+        cancelled: Callable[[], bool],
+        told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
         """How it ends, through the motion and the time after it."""
         analysis, dt = self.case.analysis, self.step.step
-        total = math.ceil((analysis.duration or ground.duration) / dt)
-        done = looks = 0
+        total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 
         def advance(n_steps: int) -> None:
             if cancelled():
                 raise RunCancelled
-            self._stretch(sim, ground, n_steps, peaks if done < total or self.peaks_of_coda else np.zeros(0))
+            self._stretch(sim, ground, n_steps, peaks if motion.done < total or self.peaks_of_coda else None)
 
-        while done < total:
-            n = min(self.stretch, total - done)
+        sim.stages.resumed(motion)
+        while motion.done < total:
+            sim.stages.offer(motion)
+            n = min(self.stretch, total - motion.done)
             advance(n)
-            done, looks = done + n, looks + 1
+            motion.done, motion.looks = motion.done + n, motion.looks + 1
+            told(sim, motion.done / total)
             check_finite(sim)
-            if looks % sim.settings.history.energy_every == 0:
+            if motion.looks % sim.settings.history.energy_every == 0:
                 check_energy(sim, self.step)
             found = fallen(sim, analysis)
             if found is not None:
                 return Ending(COLLAPSED, found)
         return ending(sim, analysis, self.step, self.stretch, advance)
 
-    def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: np.ndarray) -> None:
-        """n_steps of motion, with the peaks of the monitors."""
+    def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: LargestValues | None) -> None:
+        """n_steps of motion, with the peaks of the monitors where they are wanted."""
         start, d = sim.time, sim.model.dimension
         watch = sim.watch(self.monitors.watched, self.every, -(-n_steps // self.every))
         sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, watch)
-        if len(peaks):
+        if peaks is not None and len(peaks.values):
             times = start + self.step.step * self.every * np.arange(len(watch.samples))
             base = ground.of_base(times) if self.absolute else np.zeros((len(times), 3, d))
-            values = self.monitors.series(watch.samples, base, watch.links)
-            np.maximum(peaks, np.abs(values).max(axis=0), out=peaks)
+            peaks.see(self.monitors.series(watch.samples, base, watch.links))

@@ -26,6 +26,7 @@ from dem_cli.kernels.records import (
     FIRE_START,
     FRICTION,
     GUIDED,
+    LIVE,
     LIVE_FACTOR,
     MEAN_LOAD,
     RATE,
@@ -189,7 +190,9 @@ def book(
         for i in range(forces.size):
             if inverse_masses[i] == 0.0:
                 support -= forces[i] * means[i]
-    ledger[EXTERNAL] += dt * dead * by_dead + (dt * live + impulse) * by_live
+    given = (dt * live + impulse) * by_live
+    ledger[EXTERNAL] += dt * dead * by_dead + given
+    ledger[LIVE] += given
     ledger[CONTACT] += dt * (contact + support)  # of the free blocks alone
     ledger[DAMPING] += dt * damping
     ledger[SUPPORT] += dt * support

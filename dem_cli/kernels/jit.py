@@ -1,216 +1,138 @@
 """The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
 
-The cache folder carries the hash of all sources of kernels and laws, because numba looks only at the
-file of the decorated function: a callee edited elsewhere, or a reordered record, would otherwise
-go on running old machine code.
+Numba is loaded when a kernel is first called (kernels/compilation/machine_code.py), half a second: what calls none, or
+calls them `uncompiled`, does without.
 """
 
 from __future__ import annotations
 
-import gc
-import hashlib
-import importlib
-import os
-import platform
-import sys
-import tempfile
-import time
-import uuid
-from collections.abc import Callable
-from contextlib import AbstractContextManager
-from pathlib import Path
-from types import CodeType, FunctionType
-from typing import Any, Protocol, cast
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
 
-import numba
-from numba import literal_unroll
-from numba.core import event
-from numba.core.caching import FunctionCache
-from numba.core.dispatcher import Dispatcher
-from numba.extending import overload as numba_overload
-from numba.extending import register_jitable
+import numpy as np
 
-from dem_cli.kernels.compilation.callees import CALLEE
+__all__ = ["CompiledKernel", "always_inline", "inline", "kernel", "literal_unroll", "named", "overload", "uncompiled"]
 
-__all__ = [
-    "Compilation", "always_inline", "cache_folder", "cache_is_cold", "inline", "kernel", "literal_unroll",
-    "named", "overload",
-]  # fmt: skip
-
-_ROOT = Path(__file__).resolve().parent.parent
+Declaration = tuple[str, Callable, Any]  # name of a function in machine_code.py, and what it is given
 
 
-def _source_hash() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
-    for folder in ("kernels", "laws", "links"):
-        for source in sorted((_ROOT / folder).rglob("*.py")):
-            digest.update(source.name.encode())
-            digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+class _Door:
+    """What was declared before numba was there, and whether kernels are to run without it."""
+
+    def __init__(self) -> None:
+        self.open, self.uncompiled, self.lock = False, 0, threading.RLock()
+        self.waiting: list[Declaration] = []
+
+    def declare(self, *declaration: Any) -> None:
+        """Tells numba of a function, at once or when it comes."""
+        with self.lock:
+            if self.open:
+                self._tell(*declaration)
+            else:
+                self.waiting.append(declaration)
+
+    def compiled(self, function: Callable) -> Callable:
+        """The function as machine code; loads numba."""
+        from dem_cli.kernels.compilation.machine_code import compiled
+
+        with self.lock:
+            self.open = True
+            while self.waiting:
+                self._tell(*self.waiting.pop(0))
+            return compiled(function)
+
+    @staticmethod
+    def _tell(how: str, function: Any, given: Any) -> None:
+        from dem_cli.kernels.compilation import machine_code
+
+        if function.__globals__.get("literal_unroll") is literal_unroll:
+            function.__globals__["literal_unroll"] = machine_code.literal_unroll  # which numba knows by itself
+        getattr(machine_code, how)(function, given)
 
 
-def _writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
+_door = _Door()
 
 
-def cache_folder() -> Path:
-    """Where compiled code is kept: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
-    home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
-    folder = Path(home) / "dem-cli" / _source_hash()
-    if _writable(folder):
-        return folder
-    uid = os.getuid() if hasattr(os, "getuid") else 0
-    return Path(tempfile.gettempdir()) / f"dem-cli-{uid}" / folder.name
+class CompiledKernel:
+    """A compiled function, and the Python function that it is compiled from."""
 
-
-def cache_is_cold() -> bool:
-    """True where nothing was compiled yet for these sources."""
-    return next(Path(CACHE).rglob("*.nbi"), None) is None
-
-
-class _Outermost(event.Listener):
-    """Hears where compilation of a kernel begins and ends, not that of what it calls."""
-
-    _depth = 0
-
-    def on_start(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        if not self._depth:
-            self.begins()
-        self._depth += 1
-
-    def on_end(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        self._depth -= 1
-        if not self._depth:
-            self.ends()
-
-    def begins(self) -> None:
-        """A kernel."""
-        raise NotImplementedError
-
-    def ends(self) -> None:
-        """The same kernel."""
-        raise NotImplementedError
-
-
-class Compilation(_Outermost):
-    """Compilation that really happens, not what comes from the cache: told when it begins, its seconds counted.
-
-    `with Compilation(tell).heard():` listens; `tell` is called once for each kernel, with what it calls.
-    """
-
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self.tell, self.seconds, self._begun = tell, 0.0, 0.0
-
-    def heard(self) -> AbstractContextManager:
-        """Listens inside of it."""
-        return event.install_listener("numba:compile", self)
-
-    def begins(self) -> None:
-        """Its time counts, and that of what it calls within it."""
-        self._begun = time.perf_counter()
-        self.tell()
-
-    def ends(self) -> None:
-        """Adds its time."""
-        self.seconds += time.perf_counter() - self._begun
-
-
-class Uncollected(_Outermost):
-    """Python collects no garbage while it compiles: it would look at a million live objects again and again.
-
-    That was a fifth of the time of compilation.
-    """
-
-    _was_on = False
-
-    def begins(self) -> None:
-        """No more from here on."""
-        self._was_on = gc.isenabled()
-        gc.disable()
-
-    def ends(self) -> None:
-        """As it was before."""
-        if self._was_on:
-            gc.enable()
-
-
-event.register("numba:compile", Uncollected())
-
-
-def _load_numba_without_blas() -> None:
-    """numba imports scipy.linalg when it first meets an array, only to learn whether there is a BLAS: 0.2 s.
-
-    No kernel here multiplies matrices.
-    """
-    if "scipy.linalg" not in sys.modules:
-        sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # makes the import fail
-        try:
-            importlib.import_module("numba.np.arraymath")
-        finally:
-            del sys.modules["scipy.linalg"]
-
-
-CACHE = str(cache_folder())
-# Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on
-# keep compiled code beside the sources, where nothing tells old code from new.
-vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
-_load_numba_without_blas()
-
-
-class CompiledKernel(Protocol):
-    """A compiled function, and the Python function that it was compiled from."""
-
-    py_func: Callable
+    def __init__(self, function: Callable) -> None:
+        self.py_func = function
+        self._machine_code: Any = None
 
     def __call__(self, *arguments: Any) -> Any:
         """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
+        if _door.uncompiled:
+            with np.errstate(all="ignore"):  # as compiled code does
+                return self.py_func(*arguments)
+        return (self._machine_code or self._made())(*arguments)
 
+    def bound(self, *arguments: Any) -> Callable:
+        """The compiled code for these very objects: a call of it does not look at their types, which saves 6 µs.
 
-def _made_of(part: Any) -> object:
-    """What tells a function, its code or a value in a closure from others: the same in every process."""
-    if isinstance(part, FunctionType):
-        held = tuple(_made_of(cell.cell_contents) for cell in part.__closure__ or ())
-        return part.__module__, part.__qualname__, _made_of(part.__code__), held
-    if isinstance(part, CodeType):
-        return part.co_code, part.co_names, tuple(map(_made_of, part.co_consts))
-    return _made_of(part.py_func) if isinstance(part, Dispatcher) else repr(part)
+        Numbers may be others of the same type; in the place of an array of another type it would read nonsense.
+        """
+        if _door.uncompiled:
+            return self
+        from dem_cli.kernels.compilation.machine_code import types_of
 
+        return (self._machine_code or self._made()).compile(types_of(arguments))
 
-class KernelCache(FunctionCache):
-    """Compiled code on disk, found again by what the closure of a kernel was made of.
+    def _made(self) -> Any:
+        self._machine_code = _door.compiled(self.py_func)
+        return self._machine_code
 
-    Numba finds it by the closure as it is pickled, which depends on whether Python had compiled the modules itself or
-    read them from `__pycache__`: the second process of a fresh checkout would compile everything again. And it
-    numbers files, so that two processes that save two kernels at one time may write one file: here no two share a name.
-    """
-
-    def __init__(self, function: Callable) -> None:
-        super().__init__(function)
-        pattern = self._cache_file._data_name_pattern
-        self._cache_file._data_name = lambda number: pattern.format(number=uuid.uuid4().int >> 64)
-
-    def _index_key(self, sig: Any, codegen: Any) -> tuple:
-        made_of = hashlib.sha256(repr(_made_of(self._py_func)).encode()).hexdigest()
-        return sig, codegen.magic_tuple(), made_of
+    def __getattr__(self, name: str) -> Any:
+        """What numba knows of it."""
+        return getattr(self._machine_code or self._made(), name)
 
 
 def kernel(function: Callable) -> CompiledKernel:
     """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
-    compiled: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
-    compiled._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
-    return cast(CompiledKernel, compiled)
+    return CompiledKernel(function)
 
 
-# What kernels call allocates nothing and keeps no array, so that references to arrays need no counting: counted at each
-# call inside a branching loop, they cost several times the work of a law. (`_nrt`: numba's runtime for references.)
-inline = register_jitable(_nrt=False, **CALLEE)
+@contextmanager
+def uncompiled() -> Iterator[None]:
+    """Kernels inside of it run as the Python that they are written in: a hundred times slower, but at once.
+
+    For a few blocks in all that is not worth loading numba. Python does not divide by zero, nor take roots of negative
+    numbers: it raises ArithmeticError or ValueError where compiled code goes on with inf and nan.
+    """
+    _door.uncompiled += 1
+    try:
+        yield
+    finally:
+        _door.uncompiled -= 1
+
+
+def inline(function: Callable) -> Callable:
+    """For what kernels call."""
+    _door.declare("declare_callee", function, False)
+    return function
+
+
+def always_inline(function: Callable) -> Callable:
+    """For what is called for each point of the contact loop."""
+    _door.declare("declare_callee", function, True)
+    return function
+
+
+def overload(function: Callable) -> Callable:
+    """What compiled code takes for a plain function: the decorated one returns it, by the types of its arguments."""
+
+    def declared(implementation: Callable) -> Callable:
+        _door.declare("declare_overload", function, implementation)
+        return implementation
+
+    return declared
+
+
+def literal_unroll(links: tuple) -> tuple:
+    """For loops over tuples of records of several types."""
+    return links
 
 
 def named(function: Callable, *parts: Callable | str) -> Callable:
@@ -222,12 +144,3 @@ def named(function: Callable, *parts: Callable | str) -> Callable:
     words = [part if isinstance(part, str) else part.__qualname__.rpartition(".")[2] for part in parts]
     function.__qualname__ = "_".join([function.__qualname__, *words])
     return function
-
-
-# For what is called for each point of the contact loop.
-always_inline = register_jitable(forceinline=True, _nrt=False, **CALLEE)
-
-
-def overload(function: Callable) -> Callable:
-    """What compiled code takes for a plain function: the decorated one returns it, by the types of its arguments."""
-    return cast(Callable, numba_overload(function, jit_options=cast(Any, CALLEE)))

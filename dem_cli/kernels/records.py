@@ -250,7 +250,7 @@ class StrainRates(NamedTuple):
     viscosity: np.ndarray  # of modes [N s/m], (n_blocks, m)
     keep: np.ndarray  # rates after a step by those before [-], (n_blocks, m, m)
     gain: np.ndarray  # and by forces [s/kg], (n_blocks, m, m)
-    mobilities: np.ndarray  # rates by impulses [1/kg], (n_blocks, m, m)
+    mobilities: np.ndarray  # rates by impulses in a step, in which modes are damped [1/kg], (n_blocks, m, m)
     radii: np.ndarray  # of blocks [m], (n_blocks,)
     bends: np.ndarray  # as BlockShapes.bends
 
@@ -295,7 +295,8 @@ class Watch(NamedTuple):
 
 # Slots of the vector `ledger`: sums over steps [J].
 EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7
-N_LEDGER = 8
+LIVE = 8  # what of EXTERNAL live loads gave
+N_LEDGER = 9
 
 # Slots of the vector `control`.
 DEAD_FACTOR = 0  # multiplies dead loads

@@ -1,16 +1,19 @@
-"""All joint laws by name. A new law is one file and one line here."""
+"""All joint laws by name, each loaded when a case names it. A new law is one file and one line here."""
 
-from dem_cli.laws.barton import BARTON
-from dem_cli.laws.coulomb import COULOMB
-from dem_cli.laws.crushing import CRUSHING
-from dem_cli.laws.degrading import SLIP_DEGRADING
-from dem_cli.laws.elastic import ELASTIC
-from dem_cli.laws.fracture import FRACTURE
+from __future__ import annotations
+
 from dem_cli.laws.law import Law
-from dem_cli.laws.mohr_coulomb import MOHR_COULOMB
-from dem_cli.laws.rate import RATE_DEPENDENT
+from dem_cli.registration import Registered
 
-LAWS: dict[str, Law] = {
-    law.name: law
-    for law in (COULOMB, MOHR_COULOMB, BARTON, SLIP_DEGRADING, RATE_DEPENDENT, CRUSHING, FRACTURE, ELASTIC)
-}
+LAWS: Registered[Law] = Registered(
+    {
+        "coulomb": ("dem_cli.laws.coulomb", "COULOMB"),
+        "mohr-coulomb": ("dem_cli.laws.mohr_coulomb", "MOHR_COULOMB"),
+        "barton": ("dem_cli.laws.barton", "BARTON"),
+        "slip-degrading": ("dem_cli.laws.degrading", "SLIP_DEGRADING"),
+        "rate-dependent": ("dem_cli.laws.rate", "RATE_DEPENDENT"),
+        "crushing": ("dem_cli.laws.crushing", "CRUSHING"),
+        "fracture": ("dem_cli.laws.fracture", "FRACTURE"),
+        "elastic": ("dem_cli.laws.elastic", "ELASTIC"),
+    }
+)

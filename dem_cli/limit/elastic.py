@@ -36,6 +36,7 @@ class State(NamedTuple):
     normal: np.ndarray  # N, (n_points,)
     shear: np.ndarray  # T, component by component, ((d − 1)·n_points,)
     slip: np.ndarray  # a of the last increment (limit.slips), (d·n_points,)
+    left: float = 0.0  # mean product N p and c ∘ a of a state on the central path, where no solution was found
 
 
 class Direction(NamedTuple):
@@ -69,7 +70,7 @@ class Elastic:
         settings: LimitSettings = DEFAULT_LIMIT,
         gaps: np.ndarray | None = None,
     ):
-        self.settings = settings
+        self.settings, self.dimension = settings, structure.model.dimension
         joints, d, n_dof = structure.joints, structure.model.dimension, structure.n_dof
         blocks = len(structure.free) // n_dof
         self.weight = float(structure.scales.reshape(blocks, n_dof)[:, 0].mean())
@@ -84,7 +85,6 @@ class Elastic:
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
         self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
         self.slips: Slips = KINDS[d](len(self.kn))
-        self.interior_point = settings.of_increment(d)
         self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight

@@ -1,19 +1,23 @@
-"""A primal–dual interior point for one increment (limit.elastic), with a way round the folds of its central path.
+"""A primal–dual interior point for one increment (limit.elastic): predictor–corrector, and a way round folds.
 
 All products N p and c ∘ a (limit.slips) equal τ on the central path, which ends in a solution as τ goes to zero.
-Where friction is not associated the problem is not monotone: the path may turn back in τ. There the path is
-followed by its arc length instead (predictor along the tangent, corrector across it) until it comes down.
+Each iteration factorises once: a predictor towards zero says how far τ may fall (Mehrotra, SIAM J. Optim. 2, 1992, 575)
+and how the products curve, correctors make the step longer (Gondzio, Comput. Optim. Appl. 6, 1996, 137).
+Where friction is not associated the problem is not monotone: the central path may turn back in τ. There a state on it
+may be taken as it is, in equilibrium but with products that are left, and the next increment goes on from there; or the
+path is followed by its arc length (predictor along the tangent, corrector across it) until it comes down.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from dem_cli.interrupts import look
 from dem_cli.limit.elastic import Direction, Elastic, State
+from dem_cli.limit.settings import InteriorPointSettings
 from dem_cli.limit.slips import apart
 
 
@@ -31,13 +35,43 @@ class Iterate:
         return Iterate(self.u.copy(), self.load, self.shear.copy(), self.x.copy())
 
 
-class Increment:
-    """One increment from a state to a displacement of the live load, or to a load."""
+@dataclass
+class Course:
+    """How an iteration goes: whether it is stuck, and its best iterate in equilibrium on the central path."""
 
-    def __init__(self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0):
+    settings: InteriorPointSettings
+    means: list[float] = field(default_factory=list)  # products, iteration by iteration
+    short: int = 0  # steps in turn that led nowhere
+    kept: tuple[float, Iterate] | None = None  # mean product, and where it was
+
+    def keep(self, mean: float, at: Iterate) -> None:
+        """The iterate of the smallest products so far."""
+        if self.kept is None or mean < self.settings.reversal * self.kept[0]:
+            self.kept = (mean, at.copy())
+
+    def goes_on(self, feasible: bool) -> bool:
+        """Whether steps still lead anywhere: products fall, or equations are not yet satisfied."""
+        settings, means = self.settings, self.means
+        if len(means) >= settings.slow or self.short >= settings.short_steps:
+            return False
+        return not (feasible and len(means) > settings.patience
+                    and means[-1] > settings.stalled * means[-1 - settings.patience])  # fmt: skip
+
+
+class Increment:
+    """One increment from a state to a displacement of the live load, or to a load.
+
+    end: mean product at which it ends, over the square of the lightest block (None: as set).
+    """
+
+    def __init__(
+        self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0, end: float | None = None
+    ):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
-        self.settings = problem.interior_point
-        self.end = self.settings.end * min(1.0, float(problem.own.min(initial=1.0))) ** 2
+        self.settings = problem.settings.of_increment(problem.dimension)
+        self.lightest = min(1.0, float(problem.own.min(initial=1.0))) ** 2
+        self.end = (self.settings.end if end is None else end) * self.lightest
+        self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
@@ -52,44 +86,102 @@ class Increment:
         return Iterate(before.displacements.copy(), before.load, shear, x)
 
     def solve(
-        self, tau: float, ahead: float = 0.0, folds: int = 0, stop: Callable[[], bool] = lambda: False
+        self,
+        tau: float,
+        ahead: float = 0.0,
+        folds: int = 0,
+        stop: Callable[[], bool] = lambda: False,
+        rough: float = 0.0,
     ) -> State | None:
         """The state after the increment, or None where the iteration got stuck.
 
         tau    of the first products
         ahead  how far slips go on from the last increment, as a share of that
-        folds  how many folds of the central path to go round
+        folds  how many folds of the central path to go round; where there are any, it is followed closely
+        rough  mean product up to which a state on the central path is taken where the iteration got stuck (State.left)
         """
+        self.settings = self.problem.settings.of_increment(self.problem.dimension, folds)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what runs away is given up
-            return self._solved(tau, ahead, folds, stop)
+            return self._solved(self.start(tau, ahead), tau, folds, stop, rough)
 
-    def _solved(self, tau: float, ahead: float, folds: int, stop: Callable[[], bool]) -> State | None:
-        settings, slips = self.settings, self.problem.slips
-        at, length, first = self.start(tau, ahead), 1.0, True
-        kept: tuple[float, Iterate] | None = None
-        means: list[float] = []
-        while len(means) < settings.slow and not stop():
-            mean = float(slips.products(at.x).mean())
-            infeasible = self._residuals(at)
+    def polished(self) -> State | None:
+        """What was solved with smaller products, down to the end that is set; None where that fails."""
+        self.end = self.settings.end * self.lightest
+        assert self.last is not None
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return self._solved(self.last.copy(), None, 0, lambda: False, 0.0)
+
+    def _solved(
+        self, at: Iterate, tau: float | None, folds: int, stop: Callable[[], bool], rough: float
+    ) -> State | None:
+        """tau: of the first step, which goes straight to the equations; None: they are satisfied."""
+        settings, course, length = self.settings, Course(self.settings), 1.0
+        while not stop():
+            mean, infeasible = float(self.problem.slips.products(at.x).mean()), self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
+                self.last = at
                 return self._state(at)
-            if not (np.isfinite(infeasible) and self._factorise(at)):
-                return None
-            means.append(mean)
-            if self.straight < settings.feasible:
-                if self._spread(at, mean) < settings.centred and (kept is None or mean < settings.reversal * kept[0]):
-                    kept = (mean, at.copy())
-                if len(means) > settings.patience and mean > settings.stalled * means[-settings.patience]:
-                    turned = self._arc(*kept, mean, stop) if kept is not None and folds > 0 else None
-                    if turned is None:
-                        return None
-                    at, kept, means, length, folds = turned, None, [], 1.0, folds - 1
-                    continue
-            centring = next(share for least, share in settings.centring if length > least or least == 0.0)
-            step = self._direction(tau if first else max(centring * mean, self.end))
-            length, first = self._to_boundary(at, step), False
+            if not np.isfinite(infeasible):
+                break
+            course.means.append(mean)
+            if self.straight < settings.balanced and self._spread(at, mean) < settings.centred:
+                course.keep(mean, at)
+            if not course.goes_on(self.straight < settings.feasible):
+                turned = self._arc(*course.kept, mean, stop) if course.kept is not None and folds > 0 else None
+                if turned is None:
+                    break
+                at, folds, course, length = turned, folds - 1, Course(settings), 1.0
+                continue
+            if not self._factorise(at):
+                break
+            step = self._direction(tau) if tau is not None else self._towards_end(at, mean, length)
+            tau, length = None, self._to_boundary(at, step)
+            course.short = course.short + 1 if length < settings.short else 0
             self._move(at, step, length)
-        return None
+        if course.kept is None or not course.kept[0] < rough:
+            return None
+        mean, at = course.kept
+        return self._state(at)._replace(left=mean)
+
+    def _towards_end(self, at: Iterate, mean: float, length: float) -> Direction:
+        """The next step; length: of the last one."""
+        for least, share in self.settings.centring:
+            if length > least or least == 0.0:
+                return self._direction(max(share * mean, self.end))
+        return self._predicted(at, mean)
+
+    def _predicted(self, at: Iterate, mean: float) -> Direction:
+        """Mehrotra's predictor and corrector, and Gondzio's correctors towards the central path."""
+        settings, slips = self.settings, self.problem.slips
+        straight = self._direction(0.0)
+        length = self._to_boundary(at, straight, 1.0)
+        left = float(slips.products(slips.moved(at.x, length * straight.positive)).mean()) / mean
+        tau = max(float(np.clip(left**3, settings.least, 1.0)) * mean, self.end)
+        most = settings.widest * mean
+        products = tau - np.clip(slips.products(slips.moved(at.x, straight.positive)), -most, most)
+        step = self._direction(products)
+        length = self._to_boundary(at, step, 1.0)
+        for share in settings.back:
+            if (
+                length > settings.blind
+            ):  # else curvature misled it, or products fell before the equations were satisfied
+                break
+            wanted = np.full_like(products, max(tau, share * mean))
+            other = self._direction(wanted)
+            if (longer := self._to_boundary(at, other, 1.0)) > length:
+                step, length, products = other, longer, wanted
+        for _ in range(settings.correctors):
+            if length > settings.far:
+                break
+            beyond = slips.products(slips.moved(at.x, min(1.0, length + settings.beyond) * step.positive))
+            wanted = np.clip(beyond, tau / settings.widest, tau * settings.widest)
+            products = products + np.maximum(wanted - beyond, -settings.widest * tau)
+            other = self._direction(products)
+            longer = self._to_boundary(at, other, 1.0)
+            if not longer > length + settings.gain:
+                break
+            step, length = other, longer
+        return step
 
     # -- the central path by its arc length -----------------------------------------------------------
 
@@ -164,10 +256,12 @@ class Increment:
         self.by_live = self.lu.solve(problem.live)
         return bool(np.isfinite(self.by_live).all())
 
-    def _direction(self, tau: float) -> Direction:
-        """Towards the linear equations and products of τ."""
-        push = (tau - self.normal * self.opening - self.normal * self.off_gap) / self.soft_n
-        forced = self.joints.towards(tau, self.off_reserve)
+    def _direction(self, tau: float | np.ndarray) -> Direction:
+        """Towards the linear equations and products of τ, one for all or as Slips.products has them."""
+        n = self.problem.n_points
+        products = np.broadcast_to(tau, 3 * n)
+        push = (products[:n] - self.normal * self.opening - self.normal * self.off_gap) / self.soft_n
+        forced = self.joints.towards(products[n:], self.off_reserve)
         return self._solve(push, forced, self.unbalanced, self.off_gap, self.off_slide, self.off_reserve,
                            self.off_target)  # fmt: skip
 
@@ -198,11 +292,14 @@ class Increment:
         d_slip = joints.slipped(forced, d_reserve - off_reserve)
         return Direction(u, float(load), d_shear, np.concatenate([d_normal, d_reserve, d_opening, d_slip]))
 
-    def _to_boundary(self, at: Iterate, step: Direction) -> float:
-        """Length of the step that goes a share of the way to where something is no more positive, at most one."""
+    def _to_boundary(self, at: Iterate, step: Direction, share: float | None = None) -> float:
+        """Length of the step that goes a share (None: as set) of the way to where something is no more positive, at
+        most one.
+        """
         slips = self.problem.slips
         steepest = slips.extremes(slips.relative(at.x, step.positive))[0]
-        return min(1.0, -self.settings.boundary / steepest) if steepest < 0.0 else 1.0
+        share = self.settings.boundary if share is None else share
+        return min(1.0, -share / steepest) if steepest < 0.0 else 1.0
 
     def _move(self, at: Iterate, step: Direction, length: float) -> None:
         at.u = at.u + length * step.displacements

@@ -60,9 +60,9 @@ class Path:
         """Whether the load stopped growing."""
         return self.status == OK
 
-    def flat(self, last: int) -> bool:
-        """Whether the highest load is a plateau, reached in one of the last increments, and not a peak."""
-        return self.finished and self.highest >= len(self.loads) - last
+    def flat(self, share: float) -> bool:
+        """Whether the highest load is a plateau, reached beyond that share of the displacement, and not a peak."""
+        return self.finished and self.reached[self.highest] > share * self.reached[-1]
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
@@ -105,8 +105,8 @@ def trace(
         return problem.factorisations * problem.n_points > most
 
     at_rest = _at_rest(problem)
-    for easier in settings.path.easier:
-        standing = _advance(problem, at_rest, None, spent, easier=easier)
+    for easier, folds in settings.path.easier:
+        standing = _advance(problem, at_rest, None, spent, folds, easier)
         if standing is not None:
             break
     path.factorisations = problem.factorisations
@@ -119,6 +119,52 @@ def trace(
     return path
 
 
+class Walk:
+    """The way from gravity, increment by increment: longer ones where they are easy, shorter ones where they fail."""
+
+    def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
+        self.problem, self.settings, self.stop = problem, problem.settings.path, stop
+        self.state = self.before = standing
+        self.origin, self.elastic = float(problem.live @ standing.displacements), _compliance(problem, standing)
+        self.reached = self.last = 0.0  # displacement, and of it the last increment
+        self.share = 1.0  # of the longest increment, that the next one is tried with
+        self.increment: Increment | None = None  # the last one
+
+    def go_on(self) -> bool:
+        """Whether an increment of some size led to another state: one under the law, or a rough one (State.left)."""
+        settings = self.settings
+        longest = (settings.growth - 1.0) * self.reached if self.reached else settings.first
+        for share, easier, folds in settings.attempts:
+            stride = share * self.share * longest
+            found = self._advanced(stride, easier, folds)
+            if found is not None:
+                self._moved(found, stride, share)
+                return True
+            if self.stop():
+                break
+        return False
+
+    def _advanced(self, stride: float, easier: float, folds: int) -> State | None:
+        settings, problem, state = self.settings, self.problem, self.state
+        target = self.origin + self.elastic * (self.reached + stride)
+        ahead = min(stride / self.last, settings.ahead) if self.last and easier == 1.0 else 0.0
+        self.increment = Increment(problem, state, target, end=settings.end)
+        rough = settings.rough * float(state.normal.max(initial=1.0)) ** 2
+        tau = easier * _first_products(problem, state, target)
+        found = self.increment.solve(tau, ahead, folds, self.stop, rough)
+        if found is not None and not found.left and problem.residual(found, state) >= settings.accepted:
+            return None
+        return found
+
+    def _moved(self, found: State, stride: float, share: float) -> None:
+        self.before, self.state = self.state, found
+        self.reached, self.last = self.reached + stride, stride
+        if share == 1.0:
+            self.share = min(1.0, self.settings.regrowth * self.share)
+        elif share < 1.0:
+            self.share = max(self.settings.smallest, share * self.share)
+
+
 def _follow(
     path: Path,
     structure: Structure,
@@ -129,30 +175,33 @@ def _follow(
     progress: Callable[[float, float], None],
 ) -> None:
     """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
-    settings = problem.settings.path
-    origin, elastic = float(problem.live @ state.displacements), _compliance(problem, state)
-    reached = last = 0.0
+    settings, walk = problem.settings.path, Walk(problem, state, stop)
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
-    while not is_plateau(settings, reached, calm_since, abs(slope) / plateau) and reached < settings.furthest:
-        stride = (settings.growth - 1.0) * reached if reached else settings.first
-        for share, folds in settings.attempts:
-            further = reached + share * stride
-            ahead = (further - reached) / last if last else 0.0
-            found = _advance(problem, state, origin + elastic * further, stop, ahead, folds)
-            if found is not None and problem.residual(found, state) >= settings.accepted:
-                found = None
-            if found is not None or stop():
-                break
-        if found is None:
-            return
-        if reached:
-            slope = (found.load - state.load) / max(abs(found.load), 1e-12) * reached / (further - reached)
-            calm_since = min(calm_since, reached) if abs(slope) < plateau else np.inf
-        _keep(path, structure, problem, found, state, further)
-        state, reached, last = found, further, further - reached
-        progress(path.loads[-1], reached)
-    if is_plateau(settings, reached, calm_since, abs(slope) / plateau):
+    best: tuple[Increment | None, State, float] | None = None
+    while not is_plateau(settings, walk.reached, calm_since, slope / plateau) and walk.reached < settings.furthest:
+        if not walk.go_on():
+            break
+        if walk.state.left:
+            continue
+        slope, since = _slope(path, settings, walk.state.load * problem.live_scale, walk.reached)
+        calm_since = min(calm_since, since) if slope < plateau else np.inf
+        if _keep(path, structure, problem, walk.state, walk.before, walk.reached):
+            best = (walk.increment, walk.before, walk.reached)
+        progress(path.loads[-1], walk.reached)
+    if best is not None:
+        _polish(path, structure, problem, *best)
+    if is_plateau(settings, walk.reached, calm_since, slope / plateau):
         path.status = OK
+
+
+def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> tuple[float, float]:
+    """Relative growth of the load over that of the displacement, and since where: over an increment of full length."""
+    behind = [k for k, before in enumerate(path.reached) if 0.0 < settings.span * before <= reached]
+    if not behind:
+        return np.inf, np.inf
+    last = path.reached[behind[-1]]
+    growth = (load - path.loads[behind[-1]]) / max(abs(load), 1e-12)
+    return abs(growth) * last / (reached - last), last
 
 
 def is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
@@ -176,15 +225,18 @@ def _advance(
     state: State,
     target: float | None,
     stop: Callable[[], bool],
-    ahead: float = 0.0,
-    folds: int | None = None,
+    folds: int = 0,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone. folds (None: as set)."""
-    path = problem.settings.path
+    """The state at a displacement of the live load; without one, under dead loads alone."""
+    tau = easier * _first_products(problem, state, target)
+    return Increment(problem, state, target).solve(tau, 0.0, folds, stop)
+
+
+def _first_products(problem: Elastic, state: State, target: float | None) -> float:
+    """Products N p and c ∘ a to begin an increment with."""
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
-    tau = easier * path.tau * max(largest, 1.0) ** 2
-    return Increment(problem, state, target).solve(tau, ahead, path.folds if folds is None else folds, stop)
+    return problem.settings.path.tau * max(largest, 1.0) ** 2
 
 
 def _compliance(problem: Elastic, state: State) -> float:
@@ -195,15 +247,31 @@ def _compliance(problem: Elastic, state: State) -> float:
     return float(problem.live @ problem.elastic(share).solve(problem.live))
 
 
-def _keep(path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float) -> None:
-    """One more increment; its state in SI units, where the load is the highest so far."""
+def _polish(
+    path: Path, structure: Structure, problem: Elastic, increment: Increment | None, before: State, reached: float
+) -> None:
+    """The increment of the highest load, solved to the end."""
+    found = increment.polished() if increment is not None else None
+    if found is None or problem.residual(found, before) > path.residual:
+        return
+    later = [part[path.highest + 1 :] for part in (path.loads, path.reached, path.live_displacements)]
+    for part in (path.loads, path.reached, path.live_displacements):
+        del part[path.highest :]
+    path.load = None
+    _keep(path, structure, problem, found, before, reached)
+    for part, after in zip((path.loads, path.reached, path.live_displacements), later, strict=True):
+        part += after
+
+
+def _keep(path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float) -> bool:
+    """One more increment; its state in SI units, where the load is the highest so far: whether it is."""
     moved = problem.displacements(state.displacements)
     load = state.load * problem.live_scale
     path.loads.append(load)
     path.reached.append(reached)
     path.live_displacements.append(float(structure.live @ moved))
     if path.load is not None and load < path.load:
-        return  # softer than before: the structure fails where the load was highest
+        return False  # softer than before: the structure fails where the load was highest
     path.load, path.highest = load, len(path.loads) - 1
     path.residual = problem.residual(state, before)
     path.normal = state.normal * problem.weight
@@ -215,3 +283,4 @@ def _keep(path: Path, structure: Structure, problem: Elastic, state: State, befo
     motion = moved - problem.displacements(before.displacements)
     power = float(structure.live @ motion)
     path.mechanism = structure.on_blocks(motion / power) if power > 0.0 else structure.on_blocks(0.0 * motion)
+    return True

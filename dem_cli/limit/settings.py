@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -11,22 +11,30 @@ class PathSettings:
 
     first: float = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
     growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
-    # Where an increment fails: shares of it, and how many folds of the central path to go round.
-    attempts: tuple[tuple[float, int], ...] = (
-        (1.0, 0), (0.4, 0), (0.15, 0), (2.2, 0), (0.05, 0), (0.02, 0), (0.4, 4), (0.05, 4), (1.0, 4), (5.0, 0),
+    # Where an increment fails: shares of it, first products in those that are set, and folds of the central path to go
+    # round.
+    attempts: tuple[tuple[float, float, int], ...] = (
+        (1.0, 1.0, 0), (0.4, 1.0, 0), (0.16, 1.0, 0), (0.064, 1.0, 0), (2.2, 1.0, 0), (5.0, 1.0, 0), (1.0, 100.0, 0),
+        (0.4, 1.0, 4), (1.0, 1.0, 4),
     )  # fmt: skip
-    easier: tuple[float, ...] = (1.0, 1e2, 1e4)  # first products under dead loads alone, tried in turn
+    regrowth: float = 2.0  # of increments that had to be shorter, one after the other
+    smallest: float = 0.15  # of the longest increment: the next one begins no shorter
+    ahead: float = 1.5  # of the last slips, that the next increment expects at most
+    rough: float = 5e-4  # products that may be left on the way, over the square of the largest normal force
+    span: float = 1.2  # growth of the displacement over which that of the load is looked at
+    # Under dead loads alone: first products in those that are set, and folds.
+    easier: tuple[tuple[float, int], ...] = ((1.0, 0), (1e2, 0), (1.0, 4), (1e2, 4), (1e4, 4))
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
     most: int = 2500  # factorisations before giving up
     most_in_space: int = 1200  # the same in 3D: what ends at all ends by then
-    folds: int = 4  # to go round under dead loads
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
     plateau: float = 2e-3  # relative growth of the load over that of the displacement that is none, ...
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
     finer: float = 1e-5  # the same growth, where the load is known to be higher than a first plateau
-    tau: float = 0.1  # of the first products, over the square of the largest normal force
+    tau: float = 0.01  # of the first products, over the square of the largest normal force
+    end: float = 1e-7  # of the last ones on the way (InteriorPointSettings.end at the highest load)
     accepted: float = 1e-2  # unbalanced force under the exact law, in own weights, of a state worth keeping
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
@@ -43,15 +51,26 @@ class InteriorPointSettings:
     end: float = 1e-9  # of τ, over the square of the lightest block
     at_end: float = 3.0  # times it: the mean product of a solution
     friction_used: float = 0.999  # share of the friction that a start uses at most
-    boundary: float = 0.95  # share of the way to the boundary
-    # Share of the mean product aimed at, by the length of the last step: full steps drive τ down fast.
-    centring: tuple[tuple[float, float], ...] = ((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0))
-    stalled: float = 0.8  # fold: the mean product fell by less than this
-    patience: int = 12  # within so many iterations
-    feasible: float = 1e-3  # infeasibility of iterates that may be kept or predicted from
-    centred: float = 4.0  # largest ratio of a product to the mean, of a kept iterate
+    boundary: float = 0.99  # share of the way to the boundary
+    # Share of the mean product aimed at, by the length of the last step; none: by a predictor.
+    centring: tuple[tuple[float, float], ...] = ()
+    least: float = 1e-3  # share of the mean product aimed at, at least
+    widest: float = 10.0  # curvature counts up to so many times the mean product, and so far apart may products be
+    blind: float = 0.1  # length of a step with curvature, below which one without it is tried ...
+    back: tuple[float, ...] = (0.3, 1.0)  # ... that aims at these shares of the mean product
+    correctors: int = 2  # towards the central path, of one step, ...
+    far: float = 0.95  # ... while it is not as long as that; ...
+    beyond: float = 0.3  # ... each looks so much further, ...
+    gain: float = 0.03  # ... and has to make it so much longer
+    short: float = 0.02  # length of a step that leads nowhere, ...
+    short_steps: int = 3  # ... of which so many in turn end an iteration
+    stalled: float = 0.5  # fold: the mean product fell by less than this
+    patience: int = 6  # within so many iterations
+    feasible: float = 1e-3  # infeasibility from which on that counts, and of iterates that may be predicted from
+    balanced: float = 1e-5  # infeasibility of an iterate that may be kept
+    centred: float = 30.0  # largest ratio of a product to the mean, of a kept iterate
     wide: float = 3.0  # the same of an iterate that may be predicted from
-    reversal: float = 0.6  # τ of one kept iterate over that of the last
+    reversal: float = 0.9  # mean product of one kept iterate over that of the last
     stride: float = 0.9  # relative change of any product's factor in one prediction
     growing: float = 0.3  # what the growth of a product counts, over its fall, in the length of a prediction
     by_tau: float = 3.0  # times as much as the other products, may τ change
@@ -59,8 +78,17 @@ class InteriorPointSettings:
     up: float = 2.0  # and rise
     passed: float = 0.3  # τ over that of the fold, below which it is passed
     on_arc: int = 500  # iterations on one arc
-    slow: int = 150  # iterations without a fold
+    slow: int = 40  # iterations without a fold
     endless: float = 1e12  # relative change by τ at which the path turns on the spot
+
+
+# Where the central path may turn back it is followed closely: a predictor leaves it too far for an arc.
+ROUND_FOLDS = InteriorPointSettings(
+    centring=((0.9, 0.05), (0.6, 0.2), (0.3, 0.5), (0.1, 0.9), (0.0, 1.0)), boundary=0.95, stalled=0.8, patience=12,
+    balanced=1e-3, centred=4.0, reversal=0.6, slow=150, short_steps=150,
+)  # fmt: skip
+# In space slips turn as well as grow: arcs are followed in shorter strides, from closer to the path.
+ROUND_FOLDS_IN_SPACE = replace(ROUND_FOLDS, stride=0.2, wide=2.0, on_arc=200)
 
 
 @dataclass(frozen=True)
@@ -114,8 +142,8 @@ class LimitSettings:
 
     path: PathSettings = PathSettings()
     interior_point: InteriorPointSettings = InteriorPointSettings()
-    # In space slips turn as well as grow: arcs are followed in shorter strides, from closer to the path.
-    interior_point_in_space: InteriorPointSettings = InteriorPointSettings(stride=0.2, wide=2.0, on_arc=200)
+    round_folds: InteriorPointSettings = ROUND_FOLDS
+    round_folds_in_space: InteriorPointSettings = ROUND_FOLDS_IN_SPACE
     associated: AssociatedSettings = AssociatedSettings()
     reduced: ReducedSettings = ReducedSettings()
     least: LeastSettings = LeastSettings()
@@ -124,9 +152,9 @@ class LimitSettings:
         """Factorisations of a path in 2D or 3D."""
         return {2: self.path.most, 3: self.path.most_in_space}[dimension]
 
-    def of_increment(self, dimension: int) -> InteriorPointSettings:
-        """The interior point in 2D or 3D."""
-        return {2: self.interior_point, 3: self.interior_point_in_space}[dimension]
+    def of_increment(self, dimension: int, folds: int = 0) -> InteriorPointSettings:
+        """The interior point in 2D or 3D, which may go round so many folds."""
+        return {2: self.round_folds, 3: self.round_folds_in_space}[dimension] if folds else self.interior_point
 
 
 DEFAULT_LIMIT = LimitSettings()

@@ -221,9 +221,9 @@ class ConeStiffness:
             *-self.coupling,
         ]  # fmt: skip
 
-    def towards(self, tau: float, off: np.ndarray) -> np.ndarray:
+    def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
         """(τ − c a) / c of each pair, less what the reserves lack."""
-        forced = _element((tau - self.at.c * self.at.a) / self.at.c, self.d)
+        forced = _element((tau.reshape(2, -1) - self.at.c * self.at.a) / self.at.c, self.d)
         return forced.ravel() - self._yielding(off.reshape(3, -1))
 
     def along(self) -> np.ndarray:

@@ -105,7 +105,7 @@ class PairStiffness:
         """Of the tangent by itself, and by the normal."""
         return [self.stiff_t, -self.coupling]
 
-    def towards(self, tau: float, off: np.ndarray) -> np.ndarray:
+    def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
         """(τ − c a − a · off) / c."""
         return (tau - self.reserve * self.slip - self.slip * off) / self.reserve
 

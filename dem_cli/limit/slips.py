@@ -23,8 +23,11 @@ class SlipStiffness(Protocol):
     def stiffness(self) -> list[np.ndarray]:
         """Its part of the matrix: factors of the products of rows, in the order of Slips.products_of_rows."""
 
-    def towards(self, tau: float, off: np.ndarray) -> np.ndarray:
-        """Change of the slips towards products of τ while forces stay; off: what c lacks, (d·n_points,)."""
+    def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
+        """Change of the slips while forces stay.
+
+        tau: products to reach, (2·n_points,); off: what c lacks, (d·n_points,).
+        """
 
     def along(self) -> np.ndarray:
         """The same for a change of τ by one."""

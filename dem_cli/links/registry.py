@@ -1,9 +1,14 @@
-"""All kinds of links by their table. A new kind is one file and one line here."""
+"""All kinds of links by their table, each loaded when a case has one. A new kind is one file and one line here."""
+
+from __future__ import annotations
 
 from dem_cli.case.base import CaseModel
-from dem_cli.links.bar import BAR, BarProfile
 from dem_cli.links.link import Link
-from dem_cli.links.tie import TIE
+from dem_cli.registration import Registered
 
-LINKS: dict[str, Link] = {link.key: link for link in (TIE, BAR)}
-PROFILES: dict[str, type[CaseModel]] = {"bars": BarProfile}  # tables by name that links name
+LINKS: Registered[Link] = Registered(
+    {"tie": ("dem_cli.links.tie", "TIE"), "reinforcement": ("dem_cli.links.bar", "BAR")}
+)
+PROFILES: Registered[type[CaseModel]] = Registered(  # tables by name that links name
+    {"bars": ("dem_cli.links.bar", "BarProfile")}
+)

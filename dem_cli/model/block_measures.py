@@ -5,6 +5,7 @@ Of parts and of blocks apart: those of parts are what the checks of a case need 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
     start, end = vertices[topology.sides[:, :2]].swapaxes(0, 1)
     lengths, first = np.linalg.norm(end - start, axis=1), topology.face_starts[:-1]
     sides = (end - start)[first] / lengths[first][:, None]
-    typical = np.array([np.median(own) for own in np.split(areas, topology.part_faces[1:-1])])
+    typical = np.array([median(own) for own in np.split(areas, topology.part_faces[1:-1])])
     return FaceMeasures(areas, vectors / areas[:, None], sides, np.minimum.reduceat(lengths, first), typical)
 
 
@@ -85,3 +86,9 @@ def half_extents(
     corners = vertices[order[np.repeat(first[blocks], counts[blocks]) + inside]]
     along = (corners * np.repeat(normals, counts[blocks], axis=0)).sum(axis=1)
     return 0.5 * (np.maximum.reduceat(along, starts) - np.minimum.reduceat(along, starts))
+
+
+def median(values: np.ndarray) -> float:
+    """Median of at least one value; numpy's own loads its masked arrays first, 30 ms."""
+    ordered, half = np.sort(values), (len(values) - 1) / 2
+    return float(ordered[[math.floor(half), math.ceil(half)]].mean())

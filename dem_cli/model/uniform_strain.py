@@ -42,6 +42,17 @@ def mode_loads(arms: np.ndarray, forces: np.ndarray, radii: np.ndarray) -> np.nd
     return np.einsum("ni,mij,nj->nm", forces, BASIS[arms.shape[1]], arms) / radii[:, None]
 
 
+def turned_mode_loads(loads: np.ndarray, rotations: np.ndarray) -> np.ndarray:
+    """Loads on modes [N], (n, m), of blocks that turned since, (n, d, d): forces keep their directions and levers.
+
+    Of quadratic modes, which come behind, all stays as it was.
+    """
+    basis = _basis_of(loads)
+    parts = loads[:, : len(basis)] / (basis**2).sum(axis=(1, 2))
+    turned = np.einsum("nki,nm,mkl,nlj->nij", rotations, parts, basis, rotations)
+    return np.column_stack([np.einsum("nij,mij->nm", turned, basis), loads[:, len(basis) :]])
+
+
 def _basis_of(modes: np.ndarray) -> np.ndarray:
     """B_k of blocks with these amplitudes; in the plane quadratic modes may come behind them."""
     return _SPATIAL if modes.shape[1] == len(_SPATIAL) else _PLANAR
@@ -69,8 +80,7 @@ def components(stresses: np.ndarray) -> np.ndarray:
 def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Deformation gradients R (I + ε), row by row, (n_blocks, d·d); turns: as kernels.records.Bodies."""
     d = _basis_of(modes).shape[1]
-    rotations = turns.reshape(-1, 3, 3) if d == 3 else _planar_rotations(turns)
-    return (rotations @ (np.eye(d) + strains(modes, radii))).reshape(-1, d * d)
+    return (rotations_of(turns) @ (np.eye(d) + strains(modes, radii))).reshape(-1, d * d)
 
 
 def covectors_of(gradients: np.ndarray) -> np.ndarray:
@@ -86,6 +96,9 @@ def rotated_basis(gradients: np.ndarray) -> np.ndarray:
     return np.einsum("nij,mjk,nkl->nmil", rotations, basis, np.linalg.inv(gradients))
 
 
-def _planar_rotations(turns: np.ndarray) -> np.ndarray:
+def rotations_of(turns: np.ndarray) -> np.ndarray:
+    """Rotation matrices of blocks (n, d, d); turns: as kernels.records.Bodies."""
+    if turns.shape[1] == 9:
+        return turns.reshape(-1, 3, 3)
     c, s = turns.T
     return np.stack([np.stack([c, -s], axis=1), np.stack([s, c], axis=1)], axis=1)

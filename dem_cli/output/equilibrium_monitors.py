@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dem_cli.output.record import HistoryRow
-from dem_cli.output.series import MONITOR_UNITS
+from dem_cli.output.record import MONITOR_UNITS, HistoryRow
 
 PARTS = ("value", "load", "unit")  # what is said of a monitor
 AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium

@@ -60,6 +60,7 @@ OWN_NAMES = frozenset(
 OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summary.json of ours has
 INTERRUPTED_SUFFIX = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
 JOURNAL = ".dem-runs"  # suffix of the hidden file that keeps finished runs for --resume
+CHECKPOINTS = ".dem-stages"  # suffix of the hidden folder that keeps the stages of one run for --resume
 _LOCK = ".lock"
 _NEW, _OLD = "dem-new", "dem-old"
 _REASONS = {
@@ -108,7 +109,7 @@ def is_complete(folder: Path) -> bool:
 
 def foreign_names(folder: Path) -> list[str]:
     """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
-    ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|{re.escape(JOURNAL)}$)")
+    ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|({re.escape(JOURNAL)}|{re.escape(CHECKPOINTS)})$)")
     names = sorted(path.name for path in folder.iterdir() if not ours.match(path.name))
     names = [name for name in names if not (name.endswith(INTERRUPTED_SUFFIX) and is_ours(folder / name))]
     return [name for name in names if name not in OWN_NAMES] if is_ours(folder) else names

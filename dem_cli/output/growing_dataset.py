@@ -8,7 +8,8 @@ import h5py
 import numpy as np
 from h5py import h5s
 
-from dem_cli.output.layout import Described, describe
+from dem_cli.output.described_dataset import described_dataset
+from dem_cli.output.layout import Described
 
 _CHUNK_BYTES = 32768
 _FEWEST_ROWS = 64
@@ -17,14 +18,20 @@ _FEWEST_ROWS = 64
 class GrowingDataset:
     """HDF5 dataset that grows row by row."""
 
-    def __init__(self, group: h5py.Group, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int):
-        """n_rows: how many rows space is made for at once, as far as that is little."""
+    def __init__(
+        self,
+        group: h5py.Group,
+        name: str,
+        shape: tuple[int, ...],
+        dtype: np.dtype,
+        n_rows: int,
+        said: Described | None = None,
+    ):
+        """n_rows: how many rows space is made for at once, as far as that is little. said: what it holds."""
         width = tuple(max(1, size) for size in shape)
         row_bytes = dtype.itemsize * int(np.prod(width))
         chunk = max(1, min(n_rows, _CHUNK_BYTES // row_bytes))
-        self.data = data = group.create_dataset(
-            name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *width)
-        )
+        self.data = data = described_dataset(group, name, (0, *shape), dtype, said, (chunk, *width))
         self.id, self.shape, self.dtype, self.length = data.id, shape, dtype, 0
 
     def append(self, rows: np.ndarray) -> int:
@@ -55,10 +62,9 @@ class GrowingGroup:
         rows = np.asarray(rows)
         column = self._columns.get(name)
         if column is None:
-            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, max(self.fewest_rows, len(rows)))
+            n_rows, said = max(self.fewest_rows, len(rows)), self.declared.get(name)
+            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, n_rows, said)
             self._columns[name] = column
-            if name in self.declared:
-                describe(column.data, self.declared[name])
         return column.append(rows)
 
     def append_one(self, name: str, value: float, dtype: type = np.int64) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.geometry.rotation import tangents_of, turned_further, turning
+from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
@@ -28,6 +29,19 @@ STAGES = (
     "shaking",
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
+MONITOR_UNITS = {  # by what is followed
+    "displacement": "m",
+    "rotation": "rad",
+    "opening": "m",
+    "slip": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "force": "N",
+    "elongation": "m",
+    "reaction": "N",
+    "reaction_moment": "N m",
+}
+MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "still rocking", "still moving"  # ends of time histories
 
@@ -214,7 +228,12 @@ def distinct(names: Iterable[str]) -> list[str]:
 
 
 class Observer:
-    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state."""
+    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state.
+
+    stages  keeps the stages of the run for `--resume`
+    """
+
+    stages: Stages = NOTHING_KEPT
 
     def frame(self, frame: Frame) -> None:
         """A snapshot to keep."""

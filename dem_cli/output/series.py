@@ -13,21 +13,8 @@ import numpy as np
 from dem_cli.output.csv_cells import cell
 from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.layout import SERIES, declared
-from dem_cli.output.record import Samples
+from dem_cli.output.record import MONITOR_UNITS, Samples
 
-MONITOR_UNITS = {
-    "displacement": "m",
-    "rotation": "rad",
-    "opening": "m",
-    "slip": "m",
-    "velocity": "m/s",
-    "acceleration": "m/s2",
-    "force": "N",
-    "elongation": "m",
-    "reaction": "N",
-    "reaction_moment": "N m",
-}
-MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
 _TEXT = h5py.string_dtype()

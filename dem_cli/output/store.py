@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from dem_cli.model.model import SPATIAL_MODEL, WHERE_ASKED_FOR, Model
+from dem_cli.output.described_dataset import store_described
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
@@ -33,9 +34,9 @@ from dem_cli.output.layout import (
     describe,
 )  # fmt: skip
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
+from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
-from dem_cli.output.series import MONITOR_UNITS, SeriesWriter
+from dem_cli.output.series import SeriesWriter
 from dem_cli.output.summary import write_summary
 
 RESULTS_FORMAT = 1
@@ -221,7 +222,7 @@ class ResultWriter:
             group = self.dem.create_group("joints")
             said, states = (declared(table, self.model.dimension) for table in (JOINT_PLACES, JOINT_STATES))
             for name, values in joints.places.stored().items():
-                describe(group.create_dataset(name, data=values), said[name])
+                store_described(group, name, values, said[name])
             self._joint_states = GrowingGroup(group, states, _FRAMES_AT_ONCE)
         if links is not None:
             group = self.dem.create_group("links")
@@ -229,7 +230,7 @@ class ResultWriter:
             group.attrs.create("kinds", [kind for _, kind in self._named], dtype=_TEXT)
             said = declared(LINKS, self.model.dimension)
             for name, values in links.places._asdict().items():
-                describe(group.create_dataset(name, data=values), said[name])
+                store_described(group, name, values, said[name])
             self._links = GrowingGroup(group, said, _FRAMES_AT_ONCE)
         self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
@@ -266,7 +267,7 @@ def _store_model(group: h5py.Group, model: Model) -> None:
         elif isinstance(value, tuple):
             describe(group.create_dataset(name, data=list(value), dtype=_TEXT), said[name])
         else:
-            describe(group.create_dataset(name, data=value), said[name])
+            store_described(group, name, value, said[name])
 
 
 def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:

@@ -1,27 +1,31 @@
-"""Analyses that consist of many runs: over how many threads, and what an interrupted one left to resume."""
+"""What a run keeps for `--resume`: stages of one run, or the finished ones of an analysis of many; its threads."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dem_cli.errors import UsageError
+from dem_cli.output.resume.stages import DEFAULT_KEEPING, Keeping
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.ensembles.batch import Batch
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.journal import Journal
+    from dem_cli.output.resume.checkpoints import Checkpoints
+    from dem_cli.output.resume.journal import Journal
     from dem_cli.pipeline.listener import RunListener
+    from dem_cli.pipeline.recorder import Recorder
 
 
 class BatchOptions(NamedTuple):
-    """How many runs are done; not used by an analysis that is one run."""
+    """How runs are done, and what is kept of them meanwhile."""
 
-    threads: int | None = None  # None: all cores
+    threads: int | None = None  # of an analysis that consists of many; None: all cores
     resume: bool = False  # go on where an interrupted one stopped
+    keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: nobody will ask for them
 
 
 def usable_cores() -> int:
@@ -32,12 +36,6 @@ def usable_cores() -> int:
 def many(case: Case) -> bool:
     """Whether the analysis of a case consists of many runs."""
     return case.analysis.kind == "fragility" or getattr(case.analysis, "repeats", 0) > 0
-
-
-def check(case: Case, options: BatchOptions) -> None:
-    """Raises UsageError where there is nothing to resume."""
-    if options.resume and not many(case):
-        raise UsageError(f"--resume: analysis.kind = '{case.analysis.kind}' is one run, which starts anew")
 
 
 @contextmanager
@@ -52,7 +50,7 @@ def batch_of(
         yield None
         return
     from dem_cli.ensembles.batch import Batch
-    from dem_cli.output.journal import Journal
+    from dem_cli.output.resume.journal import Journal
     from dem_cli.sweep.identity import facts
 
     with Journal(folder.path.parent, folder.final.name, facts(case, text), options.resume) as journal:
@@ -63,15 +61,56 @@ def batch_of(
             raise
 
 
+@contextmanager
+def stages_of(
+    case: Case, text: str, folder: OutputFolder, options: BatchOptions, recorder: Recorder
+) -> Iterator[Checkpoints | None]:
+    """Lets the recorder keep the stages of a run; None where nothing is kept. Says what an interrupted one leaves.
+
+    Arguments and errors as `batch_of`.
+    """
+    if options.keeping is None or case.analysis.kind == "fragility":  # all of its runs are in the journal
+        yield None
+        return
+    from dem_cli.output.resume.checkpoints import Checkpoints
+    from dem_cli.output.resume.stages import KeptStages
+    from dem_cli.sweep.identity import facts
+
+    what = cache(lambda: facts(case, text))
+    checkpoints = Checkpoints(folder.path.parent, folder.final.name, what, options.resume)
+    try:
+        recorder.keep(KeptStages(checkpoints, recorder.tell, options.keeping))
+        yield checkpoints
+    except KeyboardInterrupt:
+        stages_left(checkpoints, recorder.listener)
+        raise
+    finally:
+        checkpoints.close()
+
+
 def finish(batch: Batch, summary: dict[str, Any], listener: RunListener) -> None:
     """Once the results are in place: the journal goes, or it is said that it stays."""
-    from dem_cli.output.journal import Journal
+    from dem_cli.output.resume.journal import Journal
 
     assert isinstance(batch.journal, Journal)
     if summary["status"] == "interrupted":
         left(batch.journal, listener)
     else:
         batch.journal.remove()
+
+
+def finish_stages(checkpoints: Checkpoints, summary: dict[str, Any], listener: RunListener) -> None:
+    """Once the results are in place: the checkpoints go, or it is said that they stay."""
+    if summary["status"] == "interrupted":
+        stages_left(checkpoints, listener)
+    else:
+        checkpoints.remove()
+
+
+def stages_left(checkpoints: Checkpoints, listener: RunListener) -> None:
+    """What an interrupted run leaves."""
+    if checkpoints.found:
+        listener.stages_kept(checkpoints.seconds)
 
 
 def left(journal: Journal, listener: RunListener) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from dem_cli.errors import CaseProblem, SolverError
 from dem_cli.interrupts import Interrupts
-from dem_cli.pipeline.batches import BatchOptions, batch_of, finish
+from dem_cli.pipeline.batches import BatchOptions, batch_of, finish, finish_stages, stages_of
 from dem_cli.pipeline.completion import completed, stopped, with_names
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.pipeline.monitor_names import check_quantities, monitor_names, monitor_quantities
@@ -103,12 +103,14 @@ def execute(
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
         writer.follow(joints_of)
+        options, recorder = options or BatchOptions(), Recorder(writer, listener)
         with (
             abandoning(writer),
             loaded.located(),
-            batch_of(case, text, folder, options or BatchOptions(), listener) as batch,
+            batch_of(case, text, folder, options, listener) as batch,
+            stages_of(case, text, folder, options, recorder) as checkpoints,
         ):
-            found = solved(solve or load_solver(batch), case, model, Recorder(writer, listener))
+            found = solved(solve or load_solver(batch), case, model, recorder)
             listener.solved()
             if batch is not None:
                 found = with_names(found, names, quantities)
@@ -119,6 +121,8 @@ def execute(
             place = put_in_place(folder, summary, listener)
             if batch is not None:
                 finish(batch, summary, listener)
+            if checkpoints is not None:
+                finish_stages(checkpoints, summary, listener)
             return summary, place
 
 

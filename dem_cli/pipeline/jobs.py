@@ -38,6 +38,7 @@ def _solved(
     path: str | Path, overrides: Sequence[str | Override], folder: str | Path | None, text: str | None
 ) -> dict[str, Any]:
     from dem_cli import api
+    from dem_cli.output.resume.stages import DEFAULT_KEEPING
     from dem_cli.pipeline.batches import BatchOptions
     from dem_cli.pipeline.execution import Destination, run_case
 
@@ -46,7 +47,8 @@ def _solved(
     kept = folder is not None  # by whoever keeps a folder for this run alone: what is broken in it is written anew
     with nullcontext(folder) if folder is not None else tempfile.TemporaryDirectory() as place:
         output = Path(place) if kept else Path(place) / "results"
-        options = BatchOptions(threads=1, resume=kept)  # what a killed one of many runs left is taken up
+        keeping = DEFAULT_KEEPING if kept else None
+        options = BatchOptions(threads=1, resume=kept, keeping=keeping)  # what a killed one left is taken up
         return run_case(loaded, Destination(output, force=kept, recover=not kept), started, options=options)[0]
 
 

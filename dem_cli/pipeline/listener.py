@@ -24,3 +24,6 @@ class RunListener:
 
     def runs_kept(self, count: int) -> None:
         """An analysis of many runs was interrupted; so many of them are done and kept for `resume`."""
+
+    def stages_kept(self, seconds: float) -> None:
+        """A run was interrupted; so much of its work is kept for `resume`."""

@@ -36,9 +36,10 @@ def check_quantities(case: Case, names: Sequence[str]) -> None:
     """
     from dem_cli.case.wording import unknown_name
     from dem_cli.output.equilibrium_monitors import PARTS
-    from dem_cli.output.series import Peak
 
     if case.analysis.kind == "time-history":
+        from dem_cli.output.series import Peak
+
         known = [f"peaks.{name}.{part}" for name in names for part in (*Peak._fields, "unit")]
     elif case.analysis.kind in STATIC:
         known = [f"monitors.{name}.{part}" for name in names for part in PARTS]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dem_cli.interrupts import look
 from dem_cli.output.record import Observer
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.model.model import Model
     from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
+    from dem_cli.output.resume.stages import KeptStages
     from dem_cli.output.store import ResultWriter
     from dem_cli.pipeline.listener import RunListener
 
@@ -28,28 +29,50 @@ class Recorder(Observer):
 
     def __init__(self, writer: ResultWriter, listener: RunListener):
         self.writer, self.listener = writer, listener
+        self._noted: KeptStages | None = None
+        self._last: tuple[str, float, float, float | None] | None = None  # of what was said of the progress
+
+    def keep(self, stages: KeptStages) -> None:
+        """From now on they are told what goes into the files, for a run that goes on from there."""
+        self.stages = self._noted = stages
+        stages.goes_on = self.goes_on
+
+    def tell(self, kind: str, record: Any) -> None:
+        """Into the files: a "frame", "row", "samples", "structure" or "runs"."""
+        getattr(self.writer, kind)(record)
+
+    def _tell(self, kind: str, record: Any) -> None:
+        self.tell(kind, record)
+        if self._noted is not None:
+            self._noted.note(kind, record)
 
     def frame(self, frame: Frame) -> None:
         """Into the files."""
-        self.writer.frame(frame)
+        self._tell("frame", frame)
 
     def row(self, row: HistoryRow) -> None:
         """Into the files."""
-        self.writer.row(row)
+        self._tell("row", row)
 
     def samples(self, samples: Samples) -> None:
         """Into the files."""
-        self.writer.samples(samples)
+        self._tell("samples", samples)
 
     def structure(self, model: Model) -> None:
         """Into the files."""
-        self.writer.structure(model)
+        self._tell("structure", model)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """Into the files."""
-        self.writer.runs(rows)
+        self._tell("runs", rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """To the listener. Raises KeyboardInterrupt where one came."""
-        self.listener.progress(stage, load, displacement, fraction)
+        self._last = stage, load, displacement, fraction
+        self.listener.progress(*self._last)
         look()
+
+    def goes_on(self) -> None:
+        """A stage goes on that has nothing new to say: its time does."""
+        if self._last is not None:
+            self.listener.progress(*self._last)

@@ -16,7 +16,8 @@ from dem_cli.case.reader import LoadedCase
 from dem_cli.case.writer import text_of_tables
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import Interrupts
-from dem_cli.pipeline.batches import BatchOptions, check
+from dem_cli.output.resume.stages import DEFAULT_KEEPING
+from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.execution import Destination, one_of_many, run_case
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.public.result import Result
@@ -59,7 +60,7 @@ def run(
     case, set   as `load`
     out         folder of the results, which appear in it whole or not at all; None: they are gone with the Result
     threads     runs side by side, of analyses that consist of many; None: all cores
-    resume      go on where an interrupted analysis of many runs stopped in `out`
+    resume      go on where an interrupted or killed run of the same case stopped in `out`
     force       write among files that dem did not write; those stay
     progress    is told now and then: stage, load multiplier, control displacement [m], share of the work done or None
 
@@ -68,14 +69,13 @@ def run(
     "not converged". Ctrl-C raises KeyboardInterrupt; what there is by then is kept in `out`.
     """
     started = time.perf_counter()
-    options = BatchOptions(threads, resume)
+    options = BatchOptions(threads, resume, None if out is None else DEFAULT_KEEPING)
     if threads is not None and (not isinstance(threads, int) or threads < 1):
         raise UsageError(f"threads: {threads!r} is not allowed; must be an integer ≥ 1, or None for all cores")
     if resume and out is None:
         raise UsageError("resume: needs the folder `out` of the run that was interrupted")
     loaded = load(case, set)
     one_of_many(loaded)
-    check(loaded.case, options)
     place = Path(tempfile.mkdtemp(prefix="dem-")) if out is None else None
     output = place / "results" if place is not None else Path(out or "")
     try:

@@ -15,12 +15,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.errors import SolverError
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import check_finite, limit_falls
 
 if TYPE_CHECKING:
@@ -44,6 +46,8 @@ class DisplacementControl:
     first: increment that a ramp of the shortest length belongs to [m] of the live load; watch: called now and then;
     of: what displacements are counted of; None: of the live load itself.
     """
+
+    LASTING = frozenset(("sim", "budget", "settings", "watch", "of"))
 
     def __init__(
         self,
@@ -82,6 +86,7 @@ class DisplacementControl:
             return measures.largest_displacement(self.sim) - self.largest
         return abs(self.displacement)
 
+    @stage
     def go(self, distance: float) -> bool:
         """On by a distance of the live load [m], to rest: in parts where that is not found. Whether all forces balance.
 
@@ -179,6 +184,8 @@ class CapacityCurve:
     stopped says why, where the run ended.
     """
 
+    LASTING = frozenset[str]()
+
     def __init__(self) -> None:
         self.points: list[CurvePoint] = []
         self.peak, self.at_peak, self.at_first, self.whole, self.stopped = 0, None, None, False, None
@@ -218,6 +225,16 @@ class CapacityCurve:
         return next(point for point in self.points if point.load >= least)
 
 
+@dataclass
+class _NextIncrement:
+    """How a curve goes on."""
+
+    distance: float  # of the live load [m]
+    along: float = 1.0  # which way the monitor went first
+    way: float = 0.0  # so far, as DisplacementControl.way [m]
+
+
+@stage
 def trace(
     control: DisplacementControl,
     curve: CapacityCurve,
@@ -233,16 +250,19 @@ def trace(
     Raises SolverError where the budget ends, and where a monitor does not move; the points up to there are kept.
     """
     sim, settings = control.sim, control.settings
-    distance, longest, along, way = coarser * control.first, coarser * longest, 1.0, 0.0
-    curve.add(CurvePoint(0.0, 0.0, control.largest, 0.0), sim)
-    while way < until:
-        if not control.go(distance):
+    longest, ahead = coarser * longest, _NextIncrement(coarser * control.first)
+    if not sim.stages.resumed(ahead):
+        curve.add(CurvePoint(0.0, 0.0, control.largest, 0.0), sim)
+    while ahead.way < until:
+        sim.stages.offer(ahead)
+        if not control.go(ahead.distance):
             return
         if len(curve.points) == 1:
-            along = math.copysign(1.0, control.displacement)
-        point = CurvePoint(along * control.displacement, sim.load, measures.largest_displacement(sim), control.way)
+            ahead.along = math.copysign(1.0, control.displacement)
+        largest = measures.largest_displacement(sim)
+        point = CurvePoint(ahead.along * control.displacement, sim.load, largest, control.way)
         curve.add(point, sim)
         seen(point)
-        steeper = max(abs(point.way - way) / distance, 1e-3)
-        distance, way = min(settings.growth * distance, longest / steeper), point.way
+        steeper = max(abs(point.way - ahead.way) / ahead.distance, 1e-3)
+        ahead.distance, ahead.way = min(settings.growth * ahead.distance, longest / steeper), point.way
     curve.whole = True

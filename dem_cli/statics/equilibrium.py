@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from dem_cli.engine.measures import free_falls
 from dem_cli.engine.rigid_joints import relieved
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.failure_test import FailureTest, displaced
 
 if TYPE_CHECKING:
@@ -49,6 +49,16 @@ class Ahead(NamedTuple):
 NOTHING_KNOWN = Ahead()
 
 
+@dataclass
+class _Settling:
+    """How far a structure has come on its way to rest or failure."""
+
+    done: int = 0  # steps; looks of `relax`
+    calm: int = 0  # looks in a row at which forces balanced
+    look: int = 2  # for failure
+    motion: FailureTest | None = None
+
+
 def check_finite(sim: Simulation) -> None:
     """Raises SolverError that names the block where a number is no number."""
     bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
@@ -57,6 +67,7 @@ def check_finite(sim: Simulation) -> None:
         raise SolverError(f"the motion of block '{name}' is not a number after {sim.steps} steps")
 
 
+@stage
 def relax(
     sim: Simulation,
     load: float,
@@ -75,25 +86,27 @@ def relax(
     """
     relaxation = sim.settings.relaxation
     since = sim.places() if since is None else since
-    sim.use(relaxation.fire_safety, damping=0.0)
-    sim.set_load(load)
-    limit_falls(sim)
-    sim.restart_relaxation()
+    way = _Settling()
+    if not sim.stages.resumed(way):
+        sim.use(relaxation.fire_safety, damping=0.0)
+        sim.set_load(load)
+        limit_falls(sim)
+        sim.restart_relaxation()
     max_steps = relaxation.most_steps if max_steps is None else max_steps
-    calm = 0
-    for _ in range(max(1, max_steps // relaxation.chunk)):
+    while way.done < max(1, max_steps // relaxation.chunk):
+        sim.stages.offer(way)
         sim.advance(relaxation.chunk, slot.FIRE)
         if budget is not None:
             budget.spend(relaxation.chunk, f"at load multiplier {load * sim.live_scale:.5g}")
         check_finite(sim)
-        calm = calm + 1 if sim.unbalanced < tolerance else 0
-        if calm == relaxation.looks_at_rest:
+        way.done, way.calm = way.done + 1, way.calm + 1 if sim.unbalanced < tolerance else 0
+        if way.calm == relaxation.looks_at_rest:
             if _rests(sim, tolerance, slot.FIRE) and (elastic or relieved(sim)):
                 break
-            calm = 0
+            way.calm = 0
     sim.rest()
     sim.use(relaxation.creep_safety)
-    if calm < relaxation.looks_at_rest:
+    if way.calm < relaxation.looks_at_rest:
         return Verdict("unknown", sim.unbalanced)
     return _at_rest(sim, since, scale)
 
@@ -109,6 +122,7 @@ def stand(sim: Simulation, budget: Budget) -> Verdict:
     return settle_or_fail(sim, 0.0, budget, scale, relaxation.gravity_tolerance, start)
 
 
+@stage
 def settle_or_fail(
     sim: Simulation,
     load: float,
@@ -128,32 +142,39 @@ def settle_or_fail(
     relaxation = sim.settings.relaxation
     tolerance = relaxation.tolerance if tolerance is None else tolerance
     since = sim.places() if since is None else since
-    sim.use_combined_damping()
-    limit_falls(sim)
-    doing = f"at load multiplier {load * sim.live_scale:.5g}"
-    motion = FailureTest(sim, scale, ahead.plateau, ahead.reach)
-    _ramp(sim, load, scale if ahead.change is None else ahead.change, budget, doing)
-    done, calm = 0, 0
-    for look in count(2):
-        while done < relaxation.chunk * round(math.sqrt(2.0) ** look):
-            sim.advance(relaxation.chunk, slot.HOLD_LOAD)
-            budget.spend(relaxation.chunk, doing)
-            done += relaxation.chunk
-            calm = calm + 1 if sim.unbalanced < tolerance else 0
-            if calm == relaxation.looks_at_rest and not _rests(sim, tolerance, slot.HOLD_LOAD):
-                calm = 0
-            if calm == relaxation.looks_at_rest:
-                if not relieved(sim):
-                    calm = 0
-                    continue
-                return _at_rest(sim, since, scale)
+    doing, way = f"at load multiplier {load * sim.live_scale:.5g}", _Settling()
+    if not sim.stages.resumed(way):
+        sim.use_combined_damping()
+        limit_falls(sim)
+        way.motion = FailureTest(sim, scale, ahead.plateau, ahead.reach)
+        _ramp(sim, load, scale if ahead.change is None else ahead.change, budget, doing)
+    assert way.motion is not None
+    while True:
+        if _comes_to_rest(sim, way, tolerance, budget, doing):
+            return _at_rest(sim, since, scale)
         check_finite(sim)
-        failing = motion.look()
+        failing = way.motion.look()
         if failing is not None:
             return Verdict("failure", sim.unbalanced, *failing)
-        if done >= most_steps:
+        if way.done >= most_steps:
             return Verdict("unknown", sim.unbalanced)
-    raise AssertionError("a count has no end")
+        way.look += 1
+
+
+def _comes_to_rest(sim: Simulation, way: _Settling, tolerance: float, budget: Budget, doing: str) -> bool:
+    """On under a constant load until the next look for failure; whether it came to rest before."""
+    relaxation = sim.settings.relaxation
+    while way.done < relaxation.chunk * round(math.sqrt(2.0) ** way.look):
+        sim.stages.offer(way)
+        sim.advance(relaxation.chunk, slot.HOLD_LOAD)
+        budget.spend(relaxation.chunk, doing)
+        way.done += relaxation.chunk
+        way.calm = way.calm + 1 if sim.unbalanced < tolerance else 0
+        if way.calm == relaxation.looks_at_rest:
+            if _rests(sim, tolerance, slot.HOLD_LOAD) and relieved(sim):
+                return True
+            way.calm = 0
+    return False
 
 
 def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
@@ -183,38 +204,51 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
     steps = int(min(math.sqrt(4.0 * scale / (relaxation.gentle * slowest)), relaxation.longest_ramp))
     steps = max(steps if steps >= relaxation.shortest_ramp else 0, _steps_of_memory(sim))
     if load != before:
-        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps)
+        _climb(sim, lambda share: sim.set_load(before + (load - before) * share), steps, _stair(sim))
         budget.spend(steps, doing)
 
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
-    """Dead loads little by little, where joints remember."""
-    steps = _steps_of_memory(sim)
+    """Dead loads little by little, where joints remember or blocks swell or shrink by themselves."""
+    steps, stair = _steps_of_memory(sim), _stair(sim)
+    if len(sim.model.imposed_strains):
+        steps, stair = _steps_by_depth(sim), sim.settings.relaxation.stair_of_strain
     if not steps:
         return
     sim.use_combined_damping()
     sim.set_load(0.0)
     limit_falls(sim)
-    _climb(sim, sim.set_dead_share, steps)
+    _climb(sim, sim.set_dead_share, steps, stair)
     sim.rest()
     budget.spend(steps, "putting on the dead loads")
 
 
 def _steps_of_memory(sim: Simulation) -> int:
     """Length of the ramp of a load on joints that remember; 0 for others."""
-    if not sim.law.n_memory(sim.model.dimension):
-        return 0
+    return _steps_by_depth(sim) if sim.law.n_memory(sim.model.dimension) else 0
+
+
+def _steps_by_depth(sim: Simulation) -> int:
+    """Length of a ramp in which all courses follow."""
     relaxation = sim.settings.relaxation
     return max(relaxation.shortest_ramp, relaxation.ramp_of_memory * sim.depth)
 
 
-def _climb(sim: Simulation, put: Callable[[float], None], steps: int) -> None:
-    """Steps with loads put on by their share, which grows smoothly to 1."""
+def _stair(sim: Simulation) -> int:
+    """Steps between the loads of a ramp."""
     relaxation = sim.settings.relaxation
-    stair = relaxation.stair_of_memory if sim.law.n_memory(sim.model.dimension) else relaxation.stair
-    stairs = steps // stair
-    for number in range(1, stairs + 1):
-        share = number / stairs
+    return relaxation.stair_of_memory if sim.law.n_memory(sim.model.dimension) else relaxation.stair
+
+
+@stage
+def _climb(sim: Simulation, put: Callable[[float], None], steps: int, stair: int) -> None:
+    """Steps with loads put on by their share, which grows smoothly to 1, each for `stair` of them."""
+    stairs, way = steps // stair, _Settling()
+    sim.stages.resumed(way)
+    while way.done < stairs:
+        sim.stages.offer(way)
+        way.done += 1
+        share = way.done / stairs
         put(share * share * (3.0 - 2.0 * share))
         sim.advance(stair, slot.HOLD_LOAD)
 
@@ -229,7 +263,7 @@ def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
 
 def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
     """Dead loads; the row is kept in the track, the frame handed over."""
-    track.observer.progress("gravity", 0.0, 0.0, 0.02)
+    track.observer.progress("gravity", 0.0, 0.0, None)
     verdict = stand(sim, budget)
     track.keep("gravity")
     track.frame("gravity")

@@ -26,6 +26,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.model.scales import largest_structure
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
@@ -112,7 +113,7 @@ class LoadSearch:
     def _raise_to_estimate(self) -> None:
         """The load raised from gravity, in steps that shrink towards an estimate of the failure load."""
         answer, settings, sim = self.answer, self.settings, self.sim
-        self.track.observer.progress("estimating the failure load", 0.0, 0.0, 0.05)
+        self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
         estimate = self._creep(settings.reach * answer.compliance)
         sim.restore(answer.standing)
         estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False
@@ -178,19 +179,10 @@ class LoadSearch:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
         the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
         """
-        sim, answer, relaxation = self.sim, self.answer, self.sim.settings.relaxation
-        start, ledger = sim.places(), measures.energy_sums(sim)
+        sim, answer = self.sim, self.answer
         sim.use_combined_damping()
         sim.set_load(load)
-        moved, released = 0.0, 0.0
-        while moved < self.settings.shown * answer.elastic * load or released <= 0.0:
-            sim.advance(relaxation.chunk, slot.HOLD_LOAD)
-            self.budget.spend(relaxation.chunk, f"at load multiplier {load * sim.live_scale:.5g}")
-            check_finite(sim)
-            moved = float(np.abs(sim.places() - start).max())
-            now = measures.energy_sums(sim)
-            given = now.given - ledger.given
-            released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
+        released = _released_in_motion(sim, self.budget, load, self.settings.shown * answer.elastic * load)
         return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:
@@ -204,32 +196,22 @@ class LoadSearch:
         loads: list[float] = []
         for phase in range(settings.phases + 1):
             sim.prescribe_rate(rate * 0.5**phase)
-            for _ in range(settings.looks if phase == 0 else settings.looks // 2):
-                sim.advance(settings.first_phase // settings.looks, sim.creep_mode)
-                loads.append(sim.mean_load)
+            looks = settings.looks if phase == 0 else settings.looks // 2
+            loads += _creep_evenly(sim, settings.first_phase // settings.looks, looks)
             check_finite(sim)
             if sim.kinematics == "large" and loads[-1] < settings.softened * max(loads):
                 break
         else:
-            self._hold_creep()
+            sim.prescribe_rate(0.0)
+            if _creep_to_rest(sim, settings.hold_steps // sim.settings.relaxation.chunk):
+                self.answer.crept = sim.load
+                sim.rest()
+                self.answer.crept_state = sim.save()
         softened = sim.kinematics == "large" and sim.load < settings.softened * max(loads)
         estimate = max(loads) if softened else sim.load
         self.budget.spend(sim.steps - before, "creeping to failure")
         self._passed("creep", before, estimate, "estimate")
         return estimate
-
-    def _hold_creep(self) -> None:
-        """The end of a creep at rate zero; an equilibrium in which it ends is kept."""
-        sim, relaxation, calm = self.sim, self.sim.settings.relaxation, 0
-        sim.prescribe_rate(0.0)
-        for _ in range(self.settings.hold_steps // relaxation.chunk):
-            sim.advance(relaxation.chunk, sim.creep_mode)
-            calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-            if calm == relaxation.looks_at_rest:
-                self.answer.crept = sim.load
-                sim.rest()
-                self.answer.crept_state = sim.save()
-                return
 
     def _raise_load(self, trials: TrialLoads) -> None:
         """Load after load, until the bracket is narrow enough, or as narrow as it can be made."""
@@ -325,3 +307,64 @@ class LoadSearch:
         if answer.onset is None and answer.peak_displacement > answer.settled + elastic:
             answer.onset = answer.low
         self.track.keep("loading")
+
+
+class _Looks:
+    """How often was looked so far, how often in a row forces balanced, and the loads that were seen."""
+
+    def __init__(self) -> None:
+        self.done, self.calm = 0, 0
+        self.loads: list[float] = []
+
+
+class _MovingOn:
+    """How far blocks have moved [m], and the share of the work that was released."""
+
+    def __init__(self) -> None:
+        self.moved = self.released = 0.0
+
+
+@stage
+def _creep_evenly(sim: Simulation, steps: int, looks: int) -> list[float]:
+    """A creep at the rate that is prescribed, of so many steps to each look: mean internal multiplier of each."""
+    way = _Looks()
+    sim.stages.resumed(way)
+    while way.done < looks:
+        sim.stages.offer(way)
+        sim.advance(steps, sim.creep_mode)
+        way.done += 1
+        way.loads.append(sim.mean_load)
+    return way.loads
+
+
+@stage
+def _creep_to_rest(sim: Simulation, looks: int) -> bool:
+    """The end of a creep, at rate zero; whether it ends in an equilibrium."""
+    relaxation, way = sim.settings.relaxation, _Looks()
+    sim.stages.resumed(way)
+    while way.done < looks:
+        sim.stages.offer(way)
+        sim.advance(relaxation.chunk, sim.creep_mode)
+        way.done, way.calm = way.done + 1, way.calm + 1 if sim.unbalanced < relaxation.tolerance else 0
+        if way.calm == relaxation.looks_at_rest:
+            return True
+    return False
+
+
+@stage
+def _released_in_motion(sim: Simulation, budget: Budget, load: float, far: float) -> float:
+    """Share of the work of a constant load that is released, once blocks moved on by so much [m] and any is."""
+    start, ledger, way, begun = sim.places(), measures.energy_sums(sim), _MovingOn(), sim.steps
+    chunk = sim.settings.relaxation.chunk
+    sim.stages.resumed(way)
+    while way.moved < far or way.released <= 0.0:
+        sim.stages.offer(way)
+        steps = chunk * (1 + (sim.steps - begun) // (10 * chunk))  # a look costs as many
+        sim.advance(steps, slot.HOLD_LOAD)
+        budget.spend(steps, f"at load multiplier {load * sim.live_scale:.5g}")
+        check_finite(sim)
+        way.moved = float(np.abs(sim.places() - start).max())
+        now = measures.energy_sums(sim)
+        given = now.given - ledger.given
+        way.released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
+    return way.released

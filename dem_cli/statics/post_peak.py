@@ -8,6 +8,7 @@ behind, as on a tilting table.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.engine import measures
@@ -15,10 +16,12 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
 from dem_cli.kernels import records as slot
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import check_finite, relax, settle_or_fail
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.static_settings import PostPeakSettings
 
 
 class CurvePeak(NamedTuple):
@@ -47,6 +50,36 @@ def softness(
     return min(max(ratio / softer, post_peak.softest), post_peak.stiffest)
 
 
+@dataclass
+class _Following:
+    """How far a collapse was followed."""
+
+    start: int  # steps before
+    ceiling: float  # internal multiplier above which it is inertia
+    chunk: int  # steps to the next look
+    stage: str = "loading"
+    next_frame: float = 0.0  # [m]
+    highest: float = 0.0  # internal multiplier
+    slowed: bool = False
+    curve: list[tuple[float, float]] = field(default_factory=list)  # internal multipliers and displacements [m]
+
+    def enter(self, load: float, failure: float, settings: PostPeakSettings) -> None:
+        """The mean internal multiplier of another look; a collapse begins where the load is that of failure."""
+        if load > self.ceiling:
+            self.ceiling = math.inf  # however slowly: it carries more, now that it has moved
+        self.highest = max(self.highest, load)
+        falls = self.highest > settings.falls_from * failure and load < settings.near_peak * self.highest
+        if falls or load >= settings.near_peak * failure:
+            self.stage = "collapse"
+
+    def peak(self, failure: float, at_peak: float) -> CurvePeak:
+        """The peak of the curve, at its end."""
+        close, end = at_peak * min(self.highest, failure), self.curve[-1][1]
+        reached = next((moved for load, moved in self.curve if load >= close), end)
+        return CurvePeak(self.highest, reached, end, self.ceiling == math.inf)
+
+
+@stage
 def follow(
     sim: Simulation, track: Track, rate: float, failure: float, until: float, frames: int, budget: Budget
 ) -> CurvePeak:
@@ -55,44 +88,38 @@ def follow(
     failure: internal multiplier of failure; rows and frames go to the track as they come. Where inertia lifts the
     load above it, the way goes on more slowly; after very many steps it ends where it is.
     """
-    relaxation, post_peak = sim.settings.relaxation, sim.settings.post_peak
-    relax(sim, 0.0, relaxation.gravity_tolerance)
-    track.write("gravity")
-    sim.use_combined_damping()
-    soften_falls(sim, until)
-    sim.prescribe_rate(rate / post_peak.growth**post_peak.start_up)
-    stage, next_frame, chunk = "loading", 0.0, post_peak.first_look
-    curve: list[tuple[float, float]] = []
-    start, highest, slowed, ceiling = sim.steps, 0.0, False, post_peak.ceiling * failure
+    post_peak = sim.settings.post_peak
+    way = _Following(sim.steps, post_peak.ceiling * failure, post_peak.first_look)
+    if not sim.stages.resumed(way):
+        relax(sim, 0.0, sim.settings.relaxation.gravity_tolerance)
+        track.write("gravity")
+        sim.use_combined_damping()
+        soften_falls(sim, until)
+        sim.prescribe_rate(rate / post_peak.growth**post_peak.start_up)
+        way.start = sim.steps
     while True:
+        sim.stages.offer(way)
         before = measures.largest_displacement(sim)
-        slowed = _creep(sim, chunk, ceiling, budget) or (slowed and sim.rate < rate)
+        way.slowed = _creep(sim, way.chunk, way.ceiling, budget) or (way.slowed and sim.rate < rate)
         moved = measures.largest_displacement(sim)
         load = sim.mean_load / sim.dead_share
-        if load > ceiling:
-            ceiling = math.inf  # however slowly: it carries more, now that it has moved
-        done = moved >= until or sim.steps > start + post_peak.patience
-        highest = max(highest, load)
-        falls = highest > post_peak.falls_from * failure and load < post_peak.near_peak * highest
-        if falls or load >= post_peak.near_peak * failure:
-            stage = "collapse"
-        shown = load if slowed or sim.load > ceiling else sim.load  # that of an instant may be inertia
-        track.write(stage, shown)
-        curve.append((shown, moved))
-        if done or (stage == "collapse" and moved >= next_frame):
+        way.enter(load, failure, post_peak)
+        done = moved >= until or sim.steps > way.start + post_peak.patience
+        shown = load if way.slowed or sim.load > way.ceiling else sim.load  # that of an instant may be inertia
+        track.write(way.stage, shown)
+        way.curve.append((shown, moved))
+        if done or (way.stage == "collapse" and moved >= way.next_frame):
             track.frame("collapse")
-            next_frame = moved + until / max(frames - 3, 1)
+            way.next_frame = moved + until / max(frames - 3, 1)
         track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
         if done:
-            close = post_peak.at_peak * min(highest, failure)
-            reached = next((moved for load, moved in curve if load >= close), moved)
-            return CurvePeak(highest, reached, moved, ceiling == math.inf)
-        sim.prescribe_rate(min((post_peak.growth_again if slowed else post_peak.growth) * sim.rate, rate))
-        pace = abs(moved - before) / chunk
-        wanted = until / post_peak.rows / pace if pace > 0.0 else 2 * chunk
-        longest = post_peak.longest_look_before_peak if stage == "loading" else post_peak.longest_look
-        longest = min(longest, post_peak.longest_look_slowed) if slowed else longest
-        chunk = int(min(max(wanted, post_peak.shortest_look), 2 * chunk, longest))
+            return way.peak(failure, post_peak.at_peak)
+        sim.prescribe_rate(min((post_peak.growth_again if way.slowed else post_peak.growth) * sim.rate, rate))
+        pace = abs(moved - before) / way.chunk
+        wanted = until / post_peak.rows / pace if pace > 0.0 else 2 * way.chunk
+        longest = post_peak.longest_look_before_peak if way.stage == "loading" else post_peak.longest_look
+        longest = min(longest, post_peak.longest_look_slowed) if way.slowed else longest
+        way.chunk = int(min(max(wanted, post_peak.shortest_look), 2 * way.chunk, longest))
 
 
 def _creep(sim: Simulation, steps: int, ceiling: float, budget: Budget) -> bool:
@@ -135,6 +162,17 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
     fall_under(sim, track, failure, until, frames, budget, post_peak.harder)
 
 
+@dataclass
+class _Falling:
+    """How far a collapse under a constant load has come."""
+
+    load: float  # internal multiplier
+    calm: int = 0  # looks in a row at which forces balanced
+    next_row: float = 0.0  # [m]
+    next_frame: float = 0.0  # [m]
+
+
+@stage
 def fall_under(
     sim: Simulation, track: Track, load: float, until: float, frames: int, budget: Budget, harder: float | None = None
 ) -> bool:
@@ -142,28 +180,30 @@ def fall_under(
 
     load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
     """
-    relaxation = sim.settings.relaxation
-    sim.use_combined_damping()
-    calm, next_row, next_frame = 0, 0.0, 0.0
-    sim.set_load(load)
+    relaxation, way = sim.settings.relaxation, _Falling(load)
+    if not sim.stages.resumed(way):
+        sim.use_combined_damping()
+        sim.set_load(load)
     while measures.largest_displacement(sim) < until:
+        sim.stages.offer(way)
         sim.advance(relaxation.chunk, slot.HOLD_LOAD)
         budget.spend(relaxation.chunk, "following the collapse")
         check_finite(sim)
-        calm = calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-        if calm == relaxation.looks_at_rest:
+        way.calm = way.calm + 1 if sim.unbalanced < relaxation.tolerance else 0
+        if way.calm == relaxation.looks_at_rest:
             if harder is None:
                 return False
-            load, calm = harder * load, 0
-            sim.set_load(load)
+            way.load, way.calm = harder * way.load, 0
+            sim.set_load(way.load)
         moved = measures.largest_displacement(sim)
-        if moved >= next_row:
+        if moved >= way.next_row:
             track.write("collapse")
-            next_row = moved + until / sim.settings.post_peak.rows
-        if moved >= next_frame:
+            way.next_row = moved + until / sim.settings.post_peak.rows
+        if moved >= way.next_frame:
             track.frame("collapse")
-            next_frame = moved + until / max(frames - 3, 1)
-        track.observer.progress("following the collapse", load * sim.live_scale, moved, min(moved / until, 1.0))
+            way.next_frame = moved + until / max(frames - 3, 1)
+        share = min(moved / until, 1.0)
+        track.observer.progress("following the collapse", way.load * sim.live_scale, moved, share)
     track.write("collapse")
     track.frame("collapse")
     return True

@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.contact.joints import only_points
 from dem_cli.errors import UsageError
+from dem_cli.output.resume.stages import stage
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -65,29 +66,29 @@ class RigidLimits:
         """The associated limit load; None where limit analysis does not apply."""
         if self._matrices is None:
             return None
+        self.job.clock.progress("limit analysis", 0.0, 0.0, None)
+        begun = time.perf_counter()
+        found = self._limit_load(*self._matrices)
+        self.seconds["associated"] = time.perf_counter() - begun
+        return found
+
+    @stage
+    def _limit_load(self, structure: Structure, friction: np.ndarray) -> LimitLoad:
         from dem_cli.laws.envelope import frictional
         from dem_cli.limit.associated import limit_load
 
-        structure, friction = self._matrices
-        self.job.clock.progress("limit analysis", 0.0, 0.0, None)
-        begun = time.perf_counter()
-        found = limit_load(structure, frictional(friction), self.job.settings.limit.associated)
-        self.seconds["associated"] = time.perf_counter() - begun
-        return found
+        return limit_load(structure, frictional(friction), self.job.settings.limit.associated)
 
     @cached_property
     def without_head_friction(self) -> LimitLoad | None:
         """The associated limit load without friction in head joints; None where limit analysis does not apply."""
         if self._matrices is None:
             return None
-        from dem_cli.laws.envelope import frictional
-        from dem_cli.limit.associated import limit_load
         from dem_cli.limit.cone import friction_of
 
         begun = time.perf_counter()
         structure = self._matrices[0]
-        friction = friction_of(structure.joints, self.sim.law, heads_frictionless=True)
-        found = limit_load(structure, frictional(friction), self.job.settings.limit.associated)
+        found = self._limit_load(structure, friction_of(structure.joints, self.sim.law, heads_frictionless=True))
         self.seconds["safe"] = time.perf_counter() - begun
         return found
 
@@ -111,18 +112,22 @@ class RigidLimits:
         """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
         if self._matrices is None or self.sim.links:  # which the path does not know
             return None
+        begun = time.perf_counter()
+        found = self._traced(*self._matrices)
+        self.seconds["path"] = time.perf_counter() - begun
+        return found
+
+    @stage
+    def _traced(self, structure: Structure, friction: np.ndarray) -> Path:
         from dem_cli.limit.path import trace
 
         settings, clock = self.job.settings, self.job.clock
         plateau = min(settings.warm_start.flat * self.job.case.analysis.resolution, settings.limit.path.plateau)
-        begun = time.perf_counter()
-        found = trace(
-            *self._matrices, plateau,
+        return trace(
+            structure, friction, plateau,
             progress=lambda load, _: clock.progress("following the path to failure", load, 0.0, None),
             settings=settings.limit,
         )  # fmt: skip
-        self.seconds["path"] = time.perf_counter() - begun
-        return found
 
     def on_points(self, values: np.ndarray, otherwise: np.ndarray | float = 0.0) -> np.ndarray:
         """Values of the points that touch at the start among all points, (n_points, ...); otherwise: of the others."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,8 +12,17 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
 from dem_cli.kernels import records as slot
+from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import check_finite, settle_or_fail
 from dem_cli.statics.post_peak import soften_falls
+
+
+@dataclass
+class _Ends:
+    """Looks between which it falls."""
+
+    low: int  # it stands
+    high: int  # it falls
 
 
 class SettlementWay:
@@ -23,6 +33,8 @@ class SettlementWay:
     done      looks so far, of `rows`
     standing, failing   where it was last seen to come to rest, and to fail, with the supports held
     """
+
+    LASTING = frozenset(("sim", "path"))
 
     def __init__(self, sim: Simulation, motion: np.ndarray, path: Callable[[float], np.ndarray] | None = None):
         self.sim, self.path, settlement = sim, path, sim.settings.settlement
@@ -68,6 +80,7 @@ class SettlementWay:
             self.failing = self.sim.save()
         return found
 
+    @stage
     def go_to(self, number: int, budget: Budget) -> None:
         """To a look of before, on the same way."""
         self.done = max(station for station in self.stations if station <= number)
@@ -76,11 +89,17 @@ class SettlementWay:
         while self.done < number:
             self.go_on(budget)
 
+    @stage
     def bracket(self, budget: Budget) -> tuple[int, int]:
         """The last look at which it stands, and the first at which it falls: it does in the end."""
-        low, high = 0, self.rows
-        while high - low > 1:
-            middle = (low + high) // 2
+        ends = _Ends(0, self.rows)
+        self.sim.stages.resumed(ends)
+        while ends.high - ends.low > 1:
+            self.sim.stages.offer(ends)
+            middle = (ends.low + ends.high) // 2
             self.go_to(middle, budget)
-            low, high = (middle, high) if self.stands(budget) else (low, middle)
-        return low, high
+            if self.stands(budget):
+                ends.low = middle
+            else:
+                ends.high = middle
+        return ends.low, ends.high

@@ -1,54 +1,61 @@
-"""The generators of [[structure]] by `kind`. A new one: a file with parameters and `build`, a line here."""
+"""The generators of [[structure]] by `kind`, each loaded when it is used. A new one: a file and a line here."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from dem_cli.case.base import StructureBase
 from dem_cli.model.blocks import Block
-from dem_cli.structures import arch, bridge, column, drums, imported, temple_front, wall, wall_blocks
-from dem_cli.structures.building import build as building
-from dem_cli.structures.building.table import Building
-from dem_cli.structures.patterns import coursed_wall, herringbone_wall, voronoi_wall, wall_section
-from dem_cli.structures.vaults import shapes as vaults
-from dem_cli.structures.vaults.table import Vault
 
 
 class Generator(NamedTuple):
-    """Generator of one kind of structure."""
+    """Generator of one kind of structure: a module with its table, `build` and what else it knows to say."""
 
     kind: str  # as in the case file
-    parameters: type[StructureBase]  # keys, units, ranges; its docstring says where its origin lies
-    build: Callable[[Any], list[Block]]  # -> blocks with local places and ids; ValueError if impossible
-    figures: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # what was drawn at random, for `dem check`
-    loose_ends: Callable[[Any], str] = lambda table: ""  # key path that lets stones slide out; "": none does
-    unsaid: Callable[[Any], list[tuple[str, str]]] = lambda table: []  # keys not given that matter, what was taken
+    table: str  # the class of its parameters
+    place: str  # the module
+
+    @property
+    def module(self) -> ModuleType:
+        """The module, imported now."""
+        return import_module(self.place)
+
+    @property
+    def parameters(self) -> type[StructureBase]:
+        """Keys, units, ranges; its docstring says where its origin lies."""
+        found: type[StructureBase] = getattr(self.module, self.table)
+        return found
+
+    def build(self, table: Any) -> list[Block]:
+        """Blocks with local places and ids; ValueError if impossible."""
+        found: list[Block] = self.module.build(table)
+        return found
+
+    def said(self, what: str, table: Any, otherwise: Any) -> Any:
+        """What a function of the module says of a table; `otherwise` where it has none of that name."""
+        function: Callable[[Any], Any] | None = getattr(self.module, what, None)
+        return otherwise if function is None else function(table)
 
 
 GENERATORS: dict[str, Generator] = {
     generator.kind: generator
     for generator in (
-        Generator("wall", wall.Wall, wall_blocks.build),
-        Generator("column", column.Column, column.build),
-        Generator("arch", arch.Arch, arch.build),
-        Generator("bridge", bridge.Bridge, bridge.build),
-        Generator("drums", drums.DrumColumn, drums.build),
-        Generator("temple-front", temple_front.TempleFront, temple_front.build),
-        Generator("vault", Vault, vaults.build),
-        Generator(
-            "voronoi-wall", voronoi_wall.VoronoiWall, voronoi_wall.build, voronoi_wall.figures, voronoi_wall.loose_ends
-        ),
-        Generator("coursed-wall", coursed_wall.CoursedWall, coursed_wall.build, coursed_wall.figures),
-        Generator(
-            "herringbone-wall",
-            herringbone_wall.HerringboneWall,
-            herringbone_wall.build,
-            loose_ends=herringbone_wall.loose_ends,
-        ),
-        Generator("wall-section", wall_section.WallSection, wall_section.build, wall_section.figures),
-        Generator("building", Building, building.build, building.figures, building.loose_ends),
-        Generator("import", imported.Import, imported.build, unsaid=imported.unsaid),
+        Generator("wall", "Wall", "dem_cli.structures.wall_blocks"),
+        Generator("column", "Column", "dem_cli.structures.column"),
+        Generator("arch", "Arch", "dem_cli.structures.arch"),
+        Generator("bridge", "Bridge", "dem_cli.structures.bridge"),
+        Generator("drums", "DrumColumn", "dem_cli.structures.drums"),
+        Generator("temple-front", "TempleFront", "dem_cli.structures.temple_front"),
+        Generator("vault", "Vault", "dem_cli.structures.vaults.shapes"),
+        Generator("voronoi-wall", "VoronoiWall", "dem_cli.structures.patterns.voronoi_wall"),
+        Generator("coursed-wall", "CoursedWall", "dem_cli.structures.patterns.coursed_wall"),
+        Generator("herringbone-wall", "HerringboneWall", "dem_cli.structures.patterns.herringbone_wall"),
+        Generator("wall-section", "WallSection", "dem_cli.structures.patterns.wall_section"),
+        Generator("building", "Building", "dem_cli.structures.building.build"),
+        Generator("import", "Import", "dem_cli.structures.imported"),
     )
 }
 
@@ -60,14 +67,16 @@ def generated_blocks(table: Any, seed: int) -> list[Block]:
 
 def generated_figures(table: Any, seed: int) -> list[tuple[str, str]]:
     """What a structure drew at random: label and text of each line; seed: of the case."""
-    return GENERATORS[table.kind].figures(table.drawn_from(seed))
+    found: list[tuple[str, str]] = GENERATORS[table.kind].said("figures", table.drawn_from(seed), [])
+    return found
 
 
 def loose_ends(table: Any) -> str:
     """The key by which stones of a structure may slide out at its free ends; "": none does."""
-    return GENERATORS[table.kind].loose_ends(table)
+    return str(GENERATORS[table.kind].said("loose_ends", table, ""))
 
 
 def unsaid(table: Any) -> list[tuple[str, str]]:
     """Keys that a structure does not give although they matter here, and what was taken instead."""
-    return GENERATORS[table.kind].unsaid(table)
+    found: list[tuple[str, str]] = GENERATORS[table.kind].said("unsaid", table, [])
+    return found

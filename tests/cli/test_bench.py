@@ -15,7 +15,7 @@ from dem_cli.bench.spatial.cases import wall_out_of_plane
 from dem_cli.cli import main as cli
 from dem_cli.cli.bench import command
 from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.kernels import jit
+from dem_cli.kernels.compilation import machine_code
 
 
 def bench(*words: str):
@@ -64,7 +64,7 @@ def test_joint_models_are_valid(name):
 
 def test_compiled_code_stays_in_its_folder(quick):
     """Elsewhere it would not be told apart from that of older sources."""
-    assert str(jit.cache_folder()) == numba.config.CACHE_DIR
+    assert str(machine_code.cache_folder()) == numba.config.CACHE_DIR
 
 
 def test_quick_answers_are_right(quick):

@@ -195,12 +195,6 @@ def test_a_changed_case_is_not_resumed(case, tmp_path):
     assert whole_lines(folder) == kept
 
 
-def test_nothing_to_resume(case):
-    done = dem("run", case, "--resume", "--set", "analysis={kind='gravity'}")
-    assert done.exit_code == 2
-    assert "is one run" in done.output
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [

@@ -33,7 +33,7 @@ def fake_python(project: Path, name: str, *, new_enough: bool) -> None:
         "#!/usr/bin/env bash\n"
         'case "$*" in\n'
         f"  *version_info*) exit {answer} ;;\n"
-        "  *ensurepip*) exit 1 ;;\n"
+        "  *pip*) exit 1 ;;\n"
         '  --version) echo "Python 3.9.2" ;;\n'
         "esac\n"
     )

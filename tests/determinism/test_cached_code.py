@@ -8,8 +8,8 @@ import subprocess
 import sys
 from itertools import product
 
+from dem_cli.kernels.compilation.machine_code import cache_folder
 from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.jit import cache_folder
 from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.laws.mixed import mixed

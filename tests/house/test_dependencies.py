@@ -15,8 +15,8 @@ IMPORT_NAMES = {  # distribution: how it is imported
 }  # fmt: skip
 TOOLS = {"mypy", "pytest-timeout", "pytest-xdist", "ruff", "furo", "myst-parser", "sphinx"}  # run, not imported
 EXTRA_OF = {  # may be absent
-    "matplotlib": "plot", "pillow": "plot", "pymunk": "bench", "box2d": "bench", "mujoco-core": "bench",
-    "compas_cra": "bench", "pyvista": "viz", "ezdxf": "import", "svgelements": "import",
+    "pymunk": "bench", "box2d": "bench", "mujoco-core": "bench",
+    "compas_cra": "bench", "ezdxf": "import", "svgelements": "import",
     "imageio-ffmpeg": "movie", "dask": "cluster",
 }  # fmt: skip
 

@@ -50,7 +50,8 @@ class Wall(CaseModel):
 def load(path: Path, text: str = CASE) -> LoadedCase:
     """A case with one monitor and a reference, written to `path` first."""
     path.write_text(text, encoding="utf-8")
-    return read_case(path, case_model({"wall": Wall}, {"coulomb": Joint}, {"pushover": Pushover}))
+    model = case_model({"wall": Wall}, {"coulomb": Joint}, {"pushover": Pushover})
+    return read_case(path, lambda tables: model)
 
 
 def solver(n_frames: int = 6, pause: float = 0.0, fail_at: int = -1, copies: int = 1):

@@ -13,9 +13,18 @@ import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
-from numba.core.typed_passes import NoPythonSupportedFeatureValidation
+from numba.core.typed_passes import (
+    AnnotateTypes,
+    DumpParforDiagnostics,
+    NopythonRewrites,
+    NoPythonSupportedFeatureValidation,
+)
+from numba.core.untyped_passes import InlineClosureLikes, WithLifting
 
-__all__ = ["CALLEE"]
+from dem_cli.kernels.compilation.references import pass_records_by_reference
+from dem_cli.kernels.compilation.shortcuts import take_shortcuts
+
+__all__ = ["CALLEE", "KERNEL"]
 
 
 class _NoProcess:
@@ -56,29 +65,67 @@ class CalleePass(FunctionPass):
     """Gives a function a library that makes no machine code."""
 
     _name = "callee_library"
+    library: type[JITCodeLibrary] = CalleeLibrary
 
     def __init__(self) -> None:
         FunctionPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
         """Lowering takes the library that it finds."""
-        state.library = CalleeLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return True
 
 
+class KernelLibrary(JITCodeLibrary):
+    """Code of a kernel, optimised with all that it calls: not function by function before."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class KernelPass(CalleePass):
+    """Gives a kernel its library."""
+
+    _name = "kernel_library"
+    library = KernelLibrary
+
+
+UNUSED = (  # kernels have no `with`, no functions inside of functions, no expressions of whole arrays, no annotations
+    WithLifting,
+    InlineClosureLikes,
+    NopythonRewrites,
+    AnnotateTypes,
+    DumpParforDiagnostics,
+)
+
+
 class CalleeCompiler(Compiler):
-    """Numba's own passes, with a library for callees."""
+    """Numba's own passes but those that nothing here needs, with a library for callees."""
+
+    library: type[FunctionPass] = CalleePass
 
     def define_pipelines(self) -> list[PassManager]:
         """One of them, as numba has it."""
         (passes,) = super().define_pipelines()
-        passes.add_pass_after(CalleePass, NoPythonSupportedFeatureValidation)
+        passes.passes = [(step, word) for step, word in passes.passes if step not in UNUSED]
+        passes.add_pass_after(self.library, NoPythonSupportedFeatureValidation)
         passes.finalize()
         return [passes]
 
 
+class KernelCompiler(CalleeCompiler):
+    """The same for kernels."""
+
+    library = KernelPass
+
+
 TRIED = "0.68."  # numba
 CALLEE: dict[str, Any] = {}  # options of numba's `jit`
+KERNEL: dict[str, Any] = {}
 if numba.__version__.startswith(TRIED):
     CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}
+    KERNEL = {"pipeline_class": KernelCompiler, "no_cfunc_wrapper": True}
+    take_shortcuts()
+    pass_records_by_reference()

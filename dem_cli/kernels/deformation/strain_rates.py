@@ -136,22 +136,27 @@ def kick_modes(bodies, shape, strained):
 
 @inline
 def book_modes(bodies, shape, strained, rate, dt, ledger):
-    """What damping of the modes and dashpots took in this step: forces at the mean of the rates before and after the
-    kick, and impulses after it, by the mean rates. means: rates before; pulled: after the kick."""
+    """What damping of the modes took in this step, by the mean rates over it, and dashpots by their impulses.
+
+    Impulses J change rates with the damping of the modes: J = (M + ½ dt (rate M + C)) Δv. means: rates before; pulled:
+    after the kick."""
     velocities, old, pulled = bodies.velocities, bodies.means, bodies.pulled
     masses, viscosity = strained.masses, strained.viscosity
-    n_dof, m = velocities.shape[1], masses.shape[1]
+    n_dof, m, heavier = velocities.shape[1], masses.shape[1], 1.0 + 0.5 * rate * dt
     drained = viscous = given = 0.0
     for number in range(masses.shape[0]):
         i, first = np.uint64(number), number * n_dof + n_dof - m
         if shape.mode_stiffness[i, 0] == 0.0:
             continue
         for k in range(m):
-            mean = 0.5 * (old[first + k] + velocities[i, n_dof - m + k])
-            viscous += viscosity[i, k] * 0.5 * (old[first + k] + pulled[first + k]) * mean
+            after = velocities[i, n_dof - m + k]
+            mean = 0.5 * (old[first + k] + after)
+            viscous += viscosity[i, k] * mean * mean
+            given += 0.5 * dt * viscosity[i, k] * mean * (after - pulled[first + k])
             for j in range(m):
-                drained += masses[i, k, j] * mean * 0.5 * (old[first + j] + pulled[first + j])
-                given += masses[i, k, j] * mean * (velocities[i, n_dof - m + j] - pulled[first + j])
+                other = velocities[i, n_dof - m + j]
+                drained += masses[i, k, j] * mean * 0.5 * (old[first + j] + other)
+                given += heavier * masses[i, k, j] * mean * (other - pulled[first + j])
     ledger[MASS] += rate * dt * drained
     ledger[DASHPOT] += dt * viscous - given
 

@@ -12,17 +12,17 @@ from pathlib import Path
 from types import FunctionType
 
 import pytest
-from numba.core.dispatcher import Dispatcher
 from numba.core.registry import cpu_target
 
 import dem_cli
 from dem_cli.engine.loops import compiled_advance, compiled_shake
-from dem_cli.kernels.jit import KernelCache, kernel
+from dem_cli.kernels.compilation.machine_code import KernelCache
+from dem_cli.kernels.jit import CompiledKernel, kernel
 from dem_cli.laws.registry import LAWS
 
 PROGRAM = """
 import os
-from dem_cli.kernels.jit import cache_folder
+from dem_cli.kernels.compilation.machine_code import cache_folder
 from dem_cli.kernels.planar_geometry import measure  # any kernel
 import numba
 os.environ["NUMBA_NUM_THREADS"] = "1"  # as `dem bench` does
@@ -57,7 +57,7 @@ def test_loops_come_from_the_cache(dimension):
         compiled_advance("large", law, False, dimension),
         compiled_shake(law, False, True, dimension),
     ):
-        assert not [found for found in named_by(loop.py_func, set()) if isinstance(found, Dispatcher)]
+        assert not [found for found in named_by(loop.py_func, set()) if isinstance(found, CompiledKernel)]
 
 
 KEYS = """
@@ -86,7 +86,7 @@ def test_modules_that_were_compiled_before_make_no_difference(tmp_path):
     assert first == second
 
 
-def key(kernel: Dispatcher) -> str:
+def key(kernel: CompiledKernel) -> str:
     return kernel._cache._index_key((), cpu_target.target_context.codegen())[-1]
 
 
@@ -99,7 +99,7 @@ def test_each_loop_is_found_as_itself():
 
 
 def test_what_a_closure_holds_tells_kernels_apart():
-    def made(held: float, constant: int) -> Dispatcher:
+    def made(held: float, constant: int) -> CompiledKernel:
         names: dict = {"__name__": __name__}
         exec(f"def inner(held):\n    def add(x):\n        return held + x + {constant}\n    return add\n", names)
         add = names["inner"](held)

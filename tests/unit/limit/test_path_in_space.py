@@ -181,7 +181,7 @@ def test_a_small_step_leaves_an_error_of_second_order(share):
     c = reserves(slips, x)
     smallest = slips.products(x)[n:].reshape(2, -1).min(axis=0) / slips.slip(x).reshape(3, -1)[0]
     change = share * rng.uniform(-1.0, 1.0, (3, n)) * np.minimum(smallest, c[0])
-    d_slip = stiffness.slipped(stiffness.towards(tau, np.zeros(3 * n)), change.ravel())
+    d_slip = stiffness.slipped(stiffness.towards(np.full(2 * n, tau), np.zeros(3 * n)), change.ravel())
     moved = slips.moved(x, np.concatenate([np.zeros(n), change.ravel(), np.zeros(n), d_slip]))
     assert slips.products(moved) == pytest.approx(tau, rel=20.0 * share**2)
     assert np.abs(reserves(slips, moved) - c - change).max() < 20.0 * share**2 * smallest.max()

@@ -15,6 +15,7 @@ from typing import Any
 
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import JOURNAL, locked, write_error
+from dem_cli.output.resume.leftovers import fits, in_use
 
 JOURNAL_FORMAT = 1
 Key = tuple[Any, ...]
@@ -40,7 +41,7 @@ class Journal:
             raise write_error(error, self.path) from None
         if not locked(self._file):
             os.close(self._file)
-            raise UsageError(f"{self.path.parent / name}: another run is writing its results there")
+            raise in_use(self.path.parent / name)
         try:
             self._start(resume)
         except BaseException:
@@ -57,22 +58,10 @@ class Journal:
                 raise UsageError(f"{self.path}: is damaged; delete it to start anew")
             self._begin()
             return
-        changed = [word for word in self.what if header.get("what", {}).get(word) != self.what[word]]
-        if header.get("format") != JOURNAL_FORMAT or changed:
-            if resume:
-                words = " and ".join(changed) or "the format of the journal"
-                raise UsageError(
-                    f"cannot resume: {words} changed since the interrupted run, whose {len(whole) - 1:,} runs are in "
-                    f"{self.path}; leave out --resume to throw them away and start anew"
-                )
+        rows = [row for row in map(_parsed, whole[1:]) if row is not None]
+        if not fits(header, JOURNAL_FORMAT, self.what, resume, f"{len(rows):,} runs" if rows else None, self.path):
             self._begin()
             return
-        rows = [row for row in map(_parsed, whole[1:]) if row is not None]
-        if rows and not resume:
-            raise UsageError(
-                f"an interrupted run of this case left {len(rows):,} runs in {self.path}: "
-                "go on with --resume, or delete that file to start anew"
-            )
         self._ours = not rows
         self._known = {tuple(row[0]): _tuples(row[1]) for row in rows}
         os.ftruncate(self._file, sum(len(line) + 1 for line in whole))

@@ -1,0 +1,46 @@
+"""Shortcuts through numba: answers that it works out again for every instruction, at a tenth of the time it compiles.
+
+Each gives what numba would. Where numba looks for what arrays might be wrapped in, it finds nothing and loads all of
+its extensions once more to look again; options of a function are compared with all others, by value; and whether
+its own functions take a place in the source is asked of their signatures, each time they are called.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from numba.core import base, types
+from numba.core.targetconfig import TargetConfig
+from numba.extending import lower_builtin
+
+__all__ = ["take_shortcuts"]
+
+_compared_by_value = TargetConfig.__eq__
+
+
+def _equal(one: TargetConfig, other: object) -> bool:
+    """What neither has set is alike."""
+    if type(one) is not type(other):
+        return _compared_by_value(one, other)
+    ours, theirs = one._values, other._values
+    return ours == theirs or all(getattr(one, name) == getattr(other, name) for name in {**ours, **theirs})
+
+
+@cache
+def _hash_of(kind: type[TargetConfig]) -> int:
+    """Numba hashes the names of all options, not what they are set to."""
+    return hash(tuple(sorted(kind.options)))
+
+
+def _itself(context: Any, builder: Any, signature: Any, arguments: tuple) -> Any:
+    """What an array is wrapped in."""
+    return arguments[0]
+
+
+def take_shortcuts() -> None:
+    """Once, before anything is compiled."""
+    TargetConfig.__eq__ = _equal  # type: ignore[method-assign,assignment]
+    TargetConfig.__hash__ = lambda one: _hash_of(type(one))  # type: ignore[method-assign]
+    base._has_loc = cache(base._has_loc)
+    lower_builtin("__array__", types.Array)(_itself)

@@ -1,0 +1,248 @@
+"""Stages of a run: pieces of work whose outcome is kept for `--resume`, and loops that may go on from the middle.
+
+A run is deterministic: begun again it goes the same way. So what is kept is small: of each finished stage what it
+returned and what it left of the objects that it changes, of the one under way a checkpoint now and then. A resumed run
+goes its way from the start, takes finished stages from what was kept, and works on where nothing was.
+
+    @stage
+    def settle(sim, budget): ...            # sim.stages keeps it; sim and budget are put back as it left them
+
+        looks = Looks()                     # an object with the few numbers of a loop
+        if not sim.stages.resumed(looks):
+            begin()                         # what comes before the loop
+        while not done(looks):
+            sim.stages.offer(looks)         # here the run may go on, from `sim`, `budget` and `looks`
+            work(looks)
+
+All that a stage changes are its arguments, or lasts in one of them (output/resume/kept_objects.py); what it tells the
+results is told again. A stage may have others inside: these are kept until it is finished, or offers to go on behind
+them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
+
+from dem_cli.errors import SolverError
+from dem_cli.interrupts import asked
+from dem_cli.output.resume.kept_objects import Changing, all_changing, decoded, encoded, put_back
+
+if TYPE_CHECKING:
+    from dem_cli.output.resume.checkpoints import Checkpoints
+
+_SAY_EVERY = 0.2  # s between words that work goes on
+Found = TypeVar("Found")
+Given = ParamSpec("Given")
+_UNDER_WAY, _INSIDE = "+", "-"  # in names: a checkpoint of a stage; a stage inside another one
+
+
+class Keeping(NamedTuple):
+    """What is kept of a run."""
+
+    first: float = 20.0  # s of a run of which nothing is kept: it is done again
+    every: float = 60.0  # s of work that a kill may cost
+    worth: float = 50.0  # times as long as keeping it takes, a stage must have taken
+
+
+DEFAULT_KEEPING = Keeping()
+
+
+class Stages:
+    """Stages of a run of which nothing is kept; all of them are done."""
+
+    def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
+        """What a stage gives: by work, or as it was kept."""
+        return work()
+
+    def resumed(self, loop: Any = None) -> bool:
+        """Whether the stage under way goes on from a checkpoint: then all it changes and its loop are as they were."""
+        return False
+
+    def offer(self, loop: Any = None) -> None:
+        """The stage under way may go on from here; loop: an object with all that it needs besides what it changes."""
+
+    def __deepcopy__(self, known: dict[int, Any]) -> Stages:
+        return self
+
+
+NOTHING_KEPT = Stages()
+
+
+def stage(work: Callable[Given, Found]) -> Callable[Given, Found]:
+    """A function as a stage of the run of its first argument: a simulation, or what has one as `sim`."""
+
+    @wraps(work)
+    def kept(*arguments: Given.args, **named: Given.kwargs) -> Found:
+        first: Any = arguments[0]
+        stages: Stages = getattr(first, "sim", first).stages
+        return stages.done(work.__qualname__, (*arguments, *named.values()), partial(work, *arguments, **named))
+
+    return kept
+
+
+class _UnderWay:
+    """A stage under way, and those inside of it so far."""
+
+    def __init__(self, name: str, key: str, changing: list[Changing], now: float):
+        self.name, self.key, self.changing, self.begun, self.kept = name, key, changing, now, now
+        self.inside = 0
+
+    def next(self) -> str:
+        """Key of the next stage inside."""
+        self.inside += 1
+        return self.key + f"{_INSIDE}{self.inside}" * bool(self.key) or str(self.inside)
+
+
+class _Outcome(NamedTuple):
+    """Of a finished stage."""
+
+    found: Any
+    gave_up: str | None = None  # with a SolverError
+
+
+class _Checkpoint(NamedTuple):
+    """Of a stage under way."""
+
+    inside: int  # stages inside so far, which nobody asks for again
+    loop: dict[str, Any]
+
+
+class KeptStages(Stages):
+    """Stages of a run, kept in a folder.
+
+    tell: hands what was told before on to the results.
+    """
+
+    def __init__(self, kept: Checkpoints, tell: Callable[[str, Any], None], keeping: Keeping = DEFAULT_KEEPING) -> None:
+        self.kept, self.tell, self.keeping = kept, tell, keeping
+        self.goes_on: Callable[[], None] = lambda: None  # who hears that work goes on
+        self._say_next = 0.0
+        self._now = time.monotonic
+        self._begun = self._now()
+        self._places = kept.told()  # of what was told, where it is kept
+        self._names = set(kept.names())
+        self._told = 0  # so far, by this run
+        self._waiting: list[tuple[str, Any]] = []  # told, and not kept yet
+        self._cost = 0.01  # s of keeping a stage
+        self._before = kept.seconds  # of work, before this run
+        self._open = [_UnderWay("", "", [], self._begun)]
+
+    # -- what is told ------------------------------------------------------------------------------
+
+    def note(self, kind: str, record: Any) -> None:
+        """Something was told to the results."""
+        self._told += 1
+        if self._told > len(self._places) + len(self._waiting):
+            self._waiting.append((kind, record))
+
+    def _tell_again(self, until: int) -> None:
+        """What a stage told that is not done again."""
+        for data in self.kept.told_at(self._places[self._told : until]):
+            self.tell(*decoded(data, []))
+        self._told = until
+
+    # -- stages ------------------------------------------------------------------------------------
+
+    def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
+        """As Stages. Raises SolverError where the work did."""
+        key, changing = self._open[-1].next(), all_changing(arguments)
+        under_way = _UnderWay(_in_full(name, arguments, changing), key, changing, self._now())
+        known = self._read(key, under_way, _Outcome)
+        if known is None:
+            return self._worked(under_way, work)
+        if known.gave_up is not None:
+            raise SolverError(known.gave_up)
+        return known.found  # type: ignore[no-any-return]
+
+    def _worked(self, under_way: _UnderWay, work: Callable[[], Found]) -> Found:
+        depth = len(self._open)
+        self._open.append(under_way)
+        try:
+            found = work()
+        except SolverError as error:
+            del self._open[depth:]
+            self._finished(under_way, _Outcome(None, str(error)))
+            raise
+        finally:
+            del self._open[depth:]
+        self._finished(under_way, _Outcome(found))
+        return found
+
+    def _finished(self, under_way: _UnderWay, outcome: _Outcome) -> None:
+        key, keeping, now = under_way.key, self.keeping, self._now()
+        inside = [name for name in self._names if name.startswith((key + _INSIDE, key + _UNDER_WAY))]
+        if not inside and (now - self._begun < keeping.first or now - under_way.begun < keeping.worth * self._cost):
+            return
+        if self._write(key, under_way, outcome):
+            self._drop(inside)
+
+    def resumed(self, loop: Any = None) -> bool:
+        """As Stages."""
+        under_way = self._open[-1]
+        known = self._read(under_way.key + _UNDER_WAY, under_way, _Checkpoint)
+        if known is None:
+            return False
+        under_way.inside = known.inside
+        if loop is not None:
+            put_back(loop, known.loop)
+        return True
+
+    def offer(self, loop: Any = None) -> None:
+        """As Stages."""
+        under_way, now = self._open[-1], self._now()
+        if now >= self._say_next:
+            self._say_next = now + _SAY_EVERY
+            self.goes_on()
+        if now - under_way.kept < self.keeping.every or now - self._begun < self.keeping.first:
+            return
+        checkpoint = _Checkpoint(under_way.inside, {} if loop is None else dict(vars(loop)))
+        if self._write(under_way.key + _UNDER_WAY, under_way, checkpoint):
+            under_way.kept = self._now()
+            inside = under_way.key + _INSIDE
+            self._drop([name for name in self._names if name.startswith(inside)])
+
+    # -- what is kept ------------------------------------------------------------------------------
+
+    def _write(self, name: str, under_way: _UnderWay, what: _Outcome | _Checkpoint) -> bool:
+        """Keeps a stage or a checkpoint, with all that was told; not after an interrupt, of which it may be the end."""
+        if asked():
+            return False
+        begun = self._now()
+        self._places += self.kept.tell([encoded([], entry) for entry in self._waiting])
+        self._waiting.clear()
+        state = encoded(under_way.changing, what)
+        seconds = self._before + begun - self._begun
+        self.kept.write(name, encoded([], (under_way.name, self._told, state)), seconds)
+        self._names.add(name)
+        self._cost = self._now() - begun
+        return True
+
+    def _read(self, name: str, under_way: _UnderWay, kind: type[Any]) -> Any:
+        """A kept stage or checkpoint, put back; None where there is none."""
+        data = self.kept.read(name) if name in self._names else None
+        if data is None:
+            return None
+        of, told, state = decoded(data, [])
+        if of != under_way.name or told > len(self._places):  # another way, or lost: nothing is of this run
+            self._drop(list(self._names))
+            self._places = self.kept.only(self._places[: self._told])
+            return None
+        found = decoded(state, under_way.changing)
+        assert isinstance(found, kind)
+        self._tell_again(told)
+        return found
+
+    def _drop(self, names: list[str]) -> None:
+        for name in names:
+            self.kept.drop(name)
+        self._names.difference_update(names)
+
+
+def _in_full(name: str, arguments: tuple[Any, ...], changing: list[Changing]) -> str:
+    """The name of a stage with its numbers, and with how many steps were done before: another way has others."""
+    numbers = [repr(each) for each in arguments if isinstance(each, (int, float, str))]
+    steps = [str(one.steps) for one in changing if hasattr(one, "steps")]
+    return f"{name}({', '.join(numbers)}) after {', '.join(steps)} steps"

@@ -1,0 +1,90 @@
+"""`dem check` of few blocks loads neither numba nor tables of other kinds, and says what it says otherwise."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from dem_cli import api
+from dem_cli.case.reader import CaseSource, parse_toml, validate
+from dem_cli.cli import check
+from dem_cli.cli.main import main
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+WALL = CASES / "verification" / "wall_21.toml"
+LOADED = """
+import sys
+from dem_cli.cli.main import main
+try:
+    main(sys.argv[1:])
+finally:
+    kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.column", "dem_cli.laws.barton"}
+    print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", "dem_cli.motion.table", *kinds} & set(sys.modules)))
+"""
+
+
+def test_a_small_wall_is_checked_without_what_it_does_not_need():
+    words = [sys.executable, "-c", LOADED, "check", str(WALL)]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert "49, 98 contact points" in done.stdout
+    assert done.stdout.splitlines()[-1] == "LOADED []"
+
+
+@pytest.mark.parametrize("name", ["wall_21", "rocking_rectangle", "windows_mu050", "groove", "space/wedge_in_groove"])
+def test_it_says_the_same_with_compiled_kernels(name, monkeypatch):
+    words = ["check", str(CASES / "verification" / f"{name}.toml")]
+    at_once = CliRunner().invoke(main, words)
+    monkeypatch.setattr(check, "FEW_CORNERS", {2: 0, 3: 0})
+    compiled = CliRunner().invoke(main, words)
+    assert at_once.exit_code == compiled.exit_code == 0
+    assert at_once.output == compiled.output
+
+
+def test_what_only_compiled_code_does_is_left_to_it():
+    """Python raises where compiled code divides by zero."""
+    model = api.build_model(api.load_case(WALL))
+    done = []
+
+    def work() -> int:
+        done.append(1)
+        return 1 // (len(done) - 1)
+
+    assert check.at_once(model, work) == 1
+    assert len(done) == 2
+
+
+@pytest.mark.parametrize("path", sorted((CASES / "gallery").glob("*.toml")), ids=lambda path: path.stem)
+def test_a_case_says_the_same_of_the_tables_that_it_names_alone(path, monkeypatch):
+    whole, text = api.make_case_model(), path.read_text(encoding="utf-8")
+    small = []
+
+    def of_tables(tables):
+        small.append(api._case_model(*api._named(tables)))
+        return small[-1]
+
+    monkeypatch.setattr(api, "case_model_of", of_tables)
+    source = CaseSource(path, text)
+    assert api.load_case(path).case == validate(parse_toml(path, text), whole, source)
+    assert small[0].model_fields.keys() == whole.model_fields.keys()
+
+
+@pytest.mark.parametrize(
+    ("tables", "why"),
+    [
+        ({}, "no joints"),
+        ({"joints": {"dry": {"law": "glue"}}}, "a law that does not exist"),
+        ({"joints": {"dry": {}}, "structure": [{"kind": "heap"}]}, "a kind of structure that does not exist"),
+        ({"joints": {"dry": {}}, "structure": [{}]}, "a structure without a kind"),
+        ({"joints": {"dry": {}}, "structure": {"kind": "wall"}}, "no list"),
+        ({"joints": {"dry": {}}, "analysis": {"kind": ["pushover"]}}, "no name"),
+        ({"joints": {"dry": {}}, "materails": {}}, "a key that does not exist"),
+        ({"joints": "dry"}, "no table"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_mistakes_are_left_to_the_class_that_knows_all_kinds(tables, why):
+    assert api._named(tables) is None

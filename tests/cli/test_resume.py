@@ -1,0 +1,120 @@
+"""`dem run --resume` of a run that was killed: the results of a run that nobody stopped, byte by byte."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import pytest
+from click.testing import CliRunner
+
+from dem_cli import api
+from dem_cli.cli.main import main
+from dem_cli.output.resume.checkpoints import Checkpoints
+from dem_cli.output.resume.stages import Keeping
+from dem_cli.pipeline.batches import BatchOptions
+from dem_cli.pipeline.execution import Destination, run_case
+
+CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
+ALL = Keeping(first=0.0, every=0.02, worth=0.0)
+SCRIPT = """
+import sys, time
+from pathlib import Path
+from dem_cli import api
+from dem_cli.output.resume.stages import Keeping
+from dem_cli.pipeline.batches import BatchOptions
+from dem_cli.pipeline.execution import Destination, run_case
+options = BatchOptions(1, sys.argv[3] == "resume", Keeping(0.0, 0.02, 0.0))
+run_case(api.load_case(sys.argv[1]), Destination(Path(sys.argv[2])), time.perf_counter(), options=options)
+"""
+
+
+def run(case, folder, keeping=None, resume=False):
+    options = BatchOptions(1, resume, keeping)
+    return run_case(api.load_case(case), Destination(folder), time.perf_counter(), options=options)
+
+
+def untimed(value):
+    """A summary without seconds of a clock."""
+    if isinstance(value, dict):
+        return {key: untimed(each) for key, each in value.items() if not key.endswith("seconds")}
+    return [untimed(each) for each in value] if isinstance(value, list) else value
+
+
+def results(folder):
+    """Everything in the results, but for times."""
+    found = {"summary": untimed(json.loads((folder / "summary.json").read_text(encoding="utf-8")))}
+    with h5py.File(folder / "results.h5") as file:
+
+        def see(name, there):
+            found[name, "attributes"] = {key: repr(value) for key, value in there.attrs.items()}
+            if isinstance(there, h5py.Dataset):
+                values = there[()]
+                found[name] = repr(values) if there.dtype.kind == "O" else (there.dtype, there.shape, values.tobytes())
+
+        file.visititems(see)
+    return found
+
+
+class Killed(BaseException):
+    """As a kill, which no one answers."""
+
+
+@pytest.mark.parametrize("name", ["wall_21", "sliding_n2", "settlement_two_blocks", "follower_load"])
+def test_killed_at_several_instants(name, tmp_path, monkeypatch):
+    """A pushover with its collapse, a capacity curve, a settlement, a load path."""
+    case, left = CASES / f"{name}.toml", [2, 5, 9]  # checkpoints until the next kill
+    run(case, tmp_path / "straight")
+    whole = Checkpoints.write
+
+    def killing(self, *words):
+        whole(self, *words)
+        left[0] -= 1
+        if left[0] == 0:
+            del left[0]
+            raise Killed
+
+    monkeypatch.setattr(Checkpoints, "write", killing)
+    for number in range(2):
+        with pytest.raises(Killed):
+            run(case, tmp_path / "out", ALL, resume=number > 0)
+        assert not (tmp_path / "out").exists()
+    left[:] = [-1]
+    run(case, tmp_path / "out", ALL, resume=True)
+    assert results(tmp_path / "out") == results(tmp_path / "straight")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "straight"]
+
+
+def test_sigkill_of_a_time_history(tmp_path):
+    case, folder = CASES / "push_stop.toml", tmp_path / "out"
+    told = tmp_path / ".out.dem-stages" / "told"
+    run(case, tmp_path / "straight")
+    size = 0
+    for words in ("anew", "resume"):
+        process = subprocess.Popen([sys.executable, "-c", SCRIPT, str(case), str(folder), words])
+        until = time.monotonic() + 300.0
+        while process.poll() is None and not (told.exists() and told.stat().st_size > size):
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        assert not folder.exists(), "it was done before it could be killed"
+        size = told.stat().st_size + 5_000
+    refused = CliRunner().invoke(main, ["run", str(case), "-o", str(folder), "-q"])
+    assert refused.exit_code == 2
+    assert "of work in" in refused.output
+    assert "go on with --resume" in refused.output
+    changed = CliRunner().invoke(
+        main, ["run", str(case), "-o", str(folder), "-q", "--resume", "--set", "output.rate=50"]
+    )
+    assert changed.exit_code == 2
+    assert "cannot resume: the case changed" in changed.output
+    done = CliRunner().invoke(main, ["run", str(case), "-o", str(folder), "-q", "--resume"])
+    assert done.exit_code == 0, done.output
+    assert results(folder) == results(tmp_path / "straight")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "straight"]
