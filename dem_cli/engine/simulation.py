@@ -158,11 +158,10 @@ class Simulation:
         self.set_masses()
 
     def _in_tiles(self) -> bool:
-        """Whether joints are worked on many at once, by as many threads as there may be."""
-        detection, points = self.settings.detection, len(self.joints.kn)
+        """Whether joints are worked on many at once; few are not worth another kernel."""
         if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
             return False
-        return points >= detection.tiled_from and (points <= detection.tiled_to or self.threads > 1)
+        return len(self.joints.kn) >= self.settings.detection.tiled_from
 
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""

@@ -34,11 +34,12 @@ class JointTiles(NamedTuple):
     begins: np.ndarray  # (n_chunks,)
     ready: np.ndarray  # (n_chunks,)
     waves: np.ndarray  # (n_chunks,)
+    ring: np.ndarray  # one thread that works in waves needs the pushes of that many tiles, a power of two, less one, (1,)
     ends: np.ndarray  # room, two rows a tile: blocks a and b, int32
     constants: np.ndarray  # room, rows of a tile: axes, both arms, numbers of the law
     springs: np.ndarray  # room, rows of a slot: place, kn, ks
     state: np.ndarray  # room, rows of a slot: gap, shear, slip path
-    pushes: np.ndarray  # room, rows of a tile: force on b (against a), moments of it about a and about b
+    pushes: np.ndarray  # room, 4 rows of a tile, 16 in space: force on b (against a), moments of it about a and about b
     moves: np.ndarray  # room of each thread, rows of TILES_AHEAD tiles: motion of b against a, spins of a and of b
     work: np.ndarray  # room of each thread, rows of one tile: opening, slide and spin of its joints; push, rub and twist
     marks: np.ndarray  # room of each thread, rows of each slot of one tile: shear before, normal force where it lost work
@@ -50,13 +51,13 @@ class JointTiles(NamedTuple):
 
 
 def rows_of(d: int, n_numbers: int) -> tuple[int, int, int]:
-    """Rows of `constants` and of `pushes` (and `moves`) of a tile, of `springs` (and `state`) of a slot."""
+    """Rows of `constants` and of `moves` of a tile, of `springs` (and `state`) of a slot."""
     r = d * (d - 1) // 2
     return (2 if d == 2 else 9) + 2 * d + n_numbers, d + 2 * r, d + 1
 
 
 NO_TILES = JointTiles(
-    *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.uint32), *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.int32), *(np.zeros(0),) * 7,
+    *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.uint32), *(np.zeros(0, np.int64),) * 3, np.zeros(1, np.uint64), np.zeros(0, np.int32), *(np.zeros(0),) * 7,
     np.zeros(1), np.zeros(1), np.zeros((1, 0)), np.zeros((1, 0)), new_team(),
 )  # fmt: skip
 
@@ -76,22 +77,24 @@ def tiled(blocks: np.ndarray, starts: np.ndarray, n_blocks: int, d: int, n_numbe
     of_lanes[:n] = counts[order]
     heights = of_lanes.reshape(n_tiles, LANES).max(axis=1, initial=0)
     slots = np.concatenate([[0], np.cumsum(heights)]).astype(np.int64)
-    of_tile, of_push, of_slot = rows_of(d, n_numbers)
+    of_tile, of_moves, of_slot = rows_of(d, n_numbers)
     lane_of = np.empty(n, dtype=np.int64)
     lane_of[order] = np.arange(n)
-    place = lane_of // LANES * (of_push * LANES) + lane_of % LANES
     n_chunks, chunks = -(-n_blocks // BLOCKS_OF_CHUNK), np.asarray(blocks) // BLOCKS_OF_CHUNK
     begins, ready = np.full(n_chunks, n_tiles), np.zeros(n_chunks, dtype=np.int64)
     np.minimum.at(begins, chunks, lane_of[:, None] // LANES)
     np.maximum.at(ready, chunks, lane_of[:, None] // LANES + 1)
+    stride = (4 if d == 2 else 16) * LANES
+    ring = 1 << int(max((ready - begins).max(initial=0) - 1, 0)).bit_length()
+    place = lane_of // LANES * stride + lane_of % LANES
     side = 2 * np.concatenate([blocks[:, 1], blocks[:, 0]]) + np.repeat([0, 1], n)
     return JointTiles(
         joints, slots, np.concatenate([[0], np.cumsum(np.bincount(side, minlength=2 * n_blocks))]),
         np.tile(place, 2)[np.argsort(side, kind="stable")].astype(np.uint32), begins, ready,
-        np.argsort(ready, kind="stable"), np.zeros(n_tiles * 2 * LANES, np.int32),
+        np.argsort(ready, kind="stable"), np.array([ring - 1], np.uint64), np.zeros(n_tiles * 2 * LANES, np.int32),
         np.zeros(n_tiles * of_tile * LANES), np.zeros(slots[-1] * of_slot * LANES),
-        np.zeros(slots[-1] * of_slot * LANES), np.zeros(n_tiles * of_push * LANES),
-        np.zeros(threads * TILES_AHEAD * of_push * LANES), np.zeros(threads * 2 * (of_push - r) * LANES),
+        np.zeros(slots[-1] * of_slot * LANES), np.zeros(n_tiles * stride),
+        np.zeros(threads * TILES_AHEAD * of_moves * LANES), np.zeros(threads * 2 * (of_moves - r) * LANES),
         np.zeros(threads * heights.max(initial=0) * d * LANES),
         np.zeros(n_parts), np.zeros(n_parts),
         np.zeros((n_chunks, N_SUMS)), np.zeros((threads, N_SUMS)), new_team(threads),

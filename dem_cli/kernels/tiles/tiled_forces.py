@@ -31,25 +31,36 @@ class TiledForces(NamedTuple):
 
 
 @inline
-def gather(tiles, forces, first, last, like, like_rotation):
-    """Forces of the blocks from first to last: the sums of what their joints push with."""
+def stride_of(like):
+    """Numbers from the pushes of one tile to those of the next, a power of two."""
+    return (np.uint64(4) if len(like) == 2 else np.uint64(16)) * ROW
+
+
+@inline
+def gather(tiles, forces, ring, first, last, back, like, like_rotation):
+    """Forces of the blocks from first to last: the sums of what their joints push with.
+
+    ring: of so many tiles, less one, the pushes are kept; back: rows of `forces` that stand so much before the block.
+    """
     starts, sides, pushes = tiles.side_starts, tiles.sides, tiles.pushes
     d, r = len(like), len(like_rotation)
     D, R = np.uint64(d) * ROW, np.uint64(r) * ROW
+    mask = (ring + ONE) * stride_of(like) - ONE
     for number in range(last - first):
         block = np.uint64(first) + np.uint64(number)
+        row = np.uint64(first - back) + np.uint64(number)
         low, middle, high = starts[TWO * block], starts[TWO * block + ONE], starts[TWO * block + TWO]
         force, torque = scale(0.0, like), scale(0.0, like_rotation)
         for k in range(low, middle):
-            place = np.uint64(sides[np.uint64(k)])
+            place = np.uint64(sides[np.uint64(k)]) & mask
             force = axpy(1.0, force, take(pushes, place, like))
             torque = axpy(1.0, torque, take(pushes, place + D + R, like_rotation))
         for k in range(middle, high):
-            place = np.uint64(sides[np.uint64(k)])
+            place = np.uint64(sides[np.uint64(k)]) & mask
             force = axpy(-1.0, take(pushes, place, like), force)
             torque = axpy(-1.0, take(pushes, place + D, like_rotation), torque)
-        store(forces, block, 0, force)
-        store(forces, block, d, torque)
+        store(forces, row, 0, force)
+        store(forces, row, d, torque)
 
 
 @inline
@@ -127,7 +138,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                     contacts.slip[point] = state[at + np.uint64(d) * ROW]
 
     @inline
-    def press_tile(tiles, tile, motion, begin, befores, lost, dt, like, like_rotation):
+    def press_tile(tiles, tile, ring, motion, begin, befores, lost, dt, like, like_rotation):
         """Forces of one tile, left in `pushes`; adds its friction work to `lost` [J].
 
         motion, begin, befores: where its room begins in `moves`, `work` and `marks`.
@@ -138,7 +149,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         constants, springs, state, pushes = tiles.constants, tiles.springs, tiles.state, tiles.pushes
         moves, work, marks = tiles.moves, tiles.work, tiles.marks
         row = np.uint64(tile) * (A + TWO * D + np.uint64(n_numbers) * ROW)
-        push = np.uint64(tile) * (D + TWO * R)
+        push = (np.uint64(tile) & ring) * stride_of(like)
         # Rows of work: opening, slide and spin of the joints, then their sums.
         turns, opening = motion + D, begin
         slides, spins = opening + ROW, opening + D
@@ -207,7 +218,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         return lost
 
     @inline
-    def press(tiles, velocities, member, members, first, last, dt, like, like_rotation):
+    def press(tiles, velocities, ring, member, members, first, last, dt, like, like_rotation):
         """Forces of the tiles from first to last, by one thread of some; adds their friction work to `lost` [J]."""
         D, R = np.uint64(len(like)) * ROW, np.uint64(len(like_rotation)) * ROW
         begin, befores = np.uint64(member * (tiles.work.size // members)), member * (tiles.marks.size // members)
@@ -219,8 +230,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
             for t in range(count):
                 part = (some + t) // TILES_OF_CHUNK
                 lost[part] = press_tile(
-                    tiles, some + t, motions + np.uint64(t) * (D + TWO * R), begin, np.uint64(befores), lost[part], dt,
-                    like, like_rotation,
+                    tiles, some + t, ring, motions + np.uint64(t) * (D + TWO * R), begin, np.uint64(befores), lost[part],
+                    dt, like, like_rotation,
                 )  # fmt: skip
 
     return TiledForces(*(named(part, law) for part in (take_up, press, give_back)))

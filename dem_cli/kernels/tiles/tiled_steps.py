@@ -35,7 +35,9 @@ from dem_cli.kernels.tiles.tiled_forces import TiledForces, gather
 from dem_cli.kernels.vec import axpy, load, store
 
 # Columns of `books` behind those of the ledger.
-ALONG, POWER, SPEED, FORCE, FLOW = 8, 9, 10, 11, 12
+ALONG, POWER, SPEED, FORCE, FLOW = N_LEDGER, N_LEDGER + 1, N_LEDGER + 2, N_LEDGER + 3, N_LEDGER + 4
+
+ALL_TILES = np.uint64(2**40 - 1)
 
 
 @inline
@@ -84,18 +86,26 @@ def _drift(bodies, first, last, dt, like, like_rotation):
 
 @inline
 def _settle(
-    bodies, flat, means, drags, books, control, first, last, keep, steer, impulse, dt, carried, like, like_rotation
+    bodies, flat, means, drags, books, control, first, last, keep, steer, impulse, dt, carried, back, free,
+    like, like_rotation,
 ):  # fmt: skip
-    """Velocities, books and places of the blocks from first to last; flat: arrays by degrees of freedom."""
+    """Velocities, books and places of the blocks from first to last.
+
+    flat: arrays by degrees of freedom; back: their forces stand so many rows before them; free: all speed limits are the
+    same, so that one chunk has those of another.
+    """
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits = flat
-    i, j = first * bodies.velocities.shape[1], last * bodies.velocities.shape[1]
+    n_dof = bodies.velocities.shape[1]
+    i, j, f = first * n_dof, last * n_dof, (first - back) * n_dof
+    limits = speed_limits[: j - i] if free else speed_limits[i:j]
+    pushed = forces[f : f + j - i]
     dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
     kick(
-        velocities[i:j], forces[i:j], previous[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j],
-        speed_limits[i:j], means, drags, dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
+        velocities[i:j], pushed, previous[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j],
+        limits, means, drags, dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
     )  # fmt: skip
     book(
-        forces[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j], means, drags, dead, live, impulse, dt,
+        pushed, dead_loads[i:j], live_loads[i:j], inverse_masses[i:j], means, drags, dead, live, impulse, dt,
         carried, books,
     )  # fmt: skip
     _drift(bodies, first, last, dt, like, like_rotation)
@@ -130,8 +140,9 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         if creeps:
             for i in range(live_loads.size):
                 stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
-        carried = False
+        carried, free = False, True
         for i in range(velocities.size):
+            free = free and flat[6][i] == np.inf
             carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
         member, members = join(tiles.team)
         met = 0
@@ -141,8 +152,8 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         part_low, part_high = _share(tiles.lost.size, member, members)
         low, high = part_low * TILES_OF_CHUNK, min(part_high * TILES_OF_CHUNK, n_tiles)
         # Mean velocities and damping forces of one chunk at a time, each thread where nobody else writes.
-        own = min(member * BLOCKS_OF_CHUNK, n_blocks) * n_dof
-        means, drags, steps_work = bodies.means[own:], bodies.drags[own:], tiles.lost_before
+        own = min(member * BLOCKS_OF_CHUNK, n_blocks)
+        means, drags, steps_work = bodies.means[own * n_dof :], bodies.drags[own * n_dof :], tiles.lost_before
         for part in range(part_low, part_high):
             steps_work[part] = ledger[FRICTION] if part == 0 else 0.0
         if member == 0:
@@ -154,8 +165,9 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         mean_load = 0.0
         # Without sums over all blocks a chunk moves on as soon as its joints have pressed, while it is in the cache.
         at_once = not (creeps or linked or mode == FIRE)
+        ring = tiles.ring[0] if members == 1 else ALL_TILES
         met = _together(tiles, members, met)
-        for _ in range(n_steps):
+        for step in range(n_steps):
             for part in range(part_low, part_high):
                 tiles.lost[part] = 0.0
             keep, steer, impulse = 1.0, 0.0, 0.0
@@ -169,19 +181,21 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                         continue
                     if alone and pressed < tiles.ready[chunk]:
                         press(
-                            tiles, bodies.velocities, member, members, pressed, tiles.ready[chunk], dt, like,
+                            tiles, bodies.velocities, ring, member, members, pressed, tiles.ready[chunk], dt, like,
                             like_rotation,
                         )  # fmt: skip
                         pressed = tiles.ready[chunk]
                     first, last = chunk * BLOCKS_OF_CHUNK, min((chunk + 1) * BLOCKS_OF_CHUNK, n_blocks)
-                    gather(tiles, bodies.forces, first, last, like, like_rotation)
+                    # Forces of each chunk have the same room, but in the last step, so that less goes to memory.
+                    back = first - own if at_once and step < n_steps - 1 else 0
+                    gather(tiles, bodies.forces, ring, first, last, back, like, like_rotation)
                     if at_once:
                         _settle(
                             bodies, flat, means, drags, books[chunk], control, first, last, keep, steer, impulse, dt,
-                            carried, like, like_rotation,
+                            carried, back, free, like, like_rotation,
                         )  # fmt: skip
                 if alone:
-                    press(tiles, bodies.velocities, member, members, pressed, high, dt, like, like_rotation)
+                    press(tiles, bodies.velocities, ring, member, members, pressed, high, dt, like, like_rotation)
                     met = _together(tiles, members, met)
             for part in range(part_low, part_high):
                 steps_work[part] += tiles.lost[part]
@@ -232,7 +246,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                 if _owner(tiles, chunk, members)[0] == member:
                     _settle(
                         bodies, flat, means, drags, books[chunk], control, chunk * BLOCKS_OF_CHUNK,
-                        min((chunk + 1) * BLOCKS_OF_CHUNK, n_blocks), keep, steer, impulse, dt, carried, like,
+                        min((chunk + 1) * BLOCKS_OF_CHUNK, n_blocks), keep, steer, impulse, dt, carried, 0, free, like,
                         like_rotation,
                     )  # fmt: skip
             mean_load += live
