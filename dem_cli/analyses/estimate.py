@@ -5,6 +5,7 @@ Only the kernels of detection run here; the stepping loop is not compiled.
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -26,14 +27,21 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 Rows = list[tuple[str, str]]
-STEPS = {  # kind of analysis -> fewest and most steps seen in the cases of cases/verification
-    "gravity": (500, 10_000),
-    "pushover": (10_000, 200_000),
-    "cycle": (10_000, 200_000),
-    "settlement": (20_000, 100_000),
+STEPS = {  # kind of analysis, or "pushover" by what it controls -> fewest and most steps of cases/, a few beside
+    "gravity": (500, 50_000),
+    "pushover": (50_000, 400_000),
+    "capacity curve": (150_000, 2_000_000),
+    "cycle": (100_000, 1_000_000),
+    "settlement": (100_000, 300_000),
     "safety": (2_000, 60_000),  # each of its runs
-    "modes": (200, 10_000),
+    "modes": (500, 50_000),
 }
+LIBRARIES = 250e6  # bytes of a run of a few blocks: Python, compiled code, what is imported
+STATES = (
+    15  # of the structure, that an analysis holds at most: highest equilibrium, failure, points of a curve, scratch
+)
+BESIDE = 0.4  # s of every analysis beside its steps: what is imported, loaded, looked at and written
+GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
@@ -72,6 +80,7 @@ def describe(case: Case, model: Model) -> Rows:
         ("time step", _time_step(sim)),
         *_runs(case),
         ("cost", _cost(case, sim)),
+        ("memory", _memory(sim)),
         ("load", _load(case, model)),
         *_links(model),
         ("monitors", _monitors(case)),
@@ -97,7 +106,8 @@ def _shaking(case: Case, model: Model) -> Rows:
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        *describe_shaking(case, sim),
+        *describe_shaking(case, sim, BESIDE),
+        ("memory", _memory(sim)),
         *_links(model),
         ("monitors", _monitors(case)),
     ]
@@ -246,22 +256,44 @@ def _runs(case: Case) -> Rows:
 
 def _cost(case: Case, sim: Simulation) -> str:
     """Seconds of one core, from the steps that such an analysis took elsewhere."""
-    kind, points = case.analysis.kind, sim.first_points
-    few, many = STEPS[kind]
-    few, many = (min(steps, case.analysis.max_steps) for steps in (few, many))
-    if kind == "safety":
+    points, costs = sim.first_points, NANOSECONDS[sim.model.dimension]
+    few, many = (min(steps, case.analysis.max_steps) for steps in _steps(case, sim))
+    if case.analysis.kind == "safety":
         from dem_cli.ensembles.static_values import expected
 
         few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
-    costs = NANOSECONDS[sim.model.dimension]
-    nanoseconds = costs[sim.kinematics]
-    seconds = [1e-9 * steps * points * nanoseconds for steps in (few, many)]
-    basis = f"{few:,} to {many:,} steps × {points:,} points × {nanoseconds} ns"
-    if getattr(case.analysis, "follow", 0.0) > 0.0:
+    moves = sim.kinematics != "fixed" or (_of_property(sim) and case.analysis.kinematics == "auto")
+    nanoseconds = costs[sim.kinematics], costs["large" if moves else "fixed"]
+    seconds = [BESIDE + 1e-9 * steps * points * each for steps, each in zip((few, many), nanoseconds)]
+    each = f"{nanoseconds[0]}" if nanoseconds[0] == nanoseconds[1] else f"{nanoseconds[0]} to {nanoseconds[1]}"
+    basis = f"{few:,} to {many:,} steps × {points:,} points × {each} ns"
+    if getattr(case.analysis, "follow", 0.0) > 0.0 and getattr(case.analysis, "control", "load") == "load":
         fewest, most = FOLLOW_STEPS
         seconds = [s + 1e-9 * n * points * costs["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
         basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
     return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis})"
+
+
+def _memory(sim: Simulation) -> str:
+    """Largest memory of a run: the libraries, and as many states of the structure as an analysis holds at a time."""
+    saved = sim.save()
+    state = len(pickle.dumps(saved, 5))
+    whole, each = 1e-6 * (LIBRARIES + STATES * state), 1e-6 * state
+    return f"some {whole:,.0f} MB ({1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB)"
+
+
+def _steps(case: Case, sim: Simulation) -> tuple[int, int]:
+    """Fewest and most steps of such an analysis."""
+    if case.analysis.kind == "pushover":
+        if case.analysis.control == "displacement":
+            return STEPS["capacity curve"]
+        return GIVEN if _of_property(sim) else STEPS["pushover"]
+    return STEPS[case.analysis.kind]
+
+
+def _of_property(sim: Simulation) -> bool:
+    """Whether joints have a stiffness, or a profile, of which geometry that moves takes notice."""
+    return sim.properties.given or sim.properties.rough
 
 
 def _load(case: Case, model: Model) -> str:

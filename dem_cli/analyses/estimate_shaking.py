@@ -35,8 +35,11 @@ def settings_of(case: Case, model: Model) -> Settings:
     return rocking_stiffness(case, model, DEFAULT).applied(DEFAULT)
 
 
-def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]]:
-    """Lines of `dem check`. Raises CaseError where analysis.time_step is not stable."""
+def describe_shaking(case: Case, sim: DynamicSimulation, beside: float) -> list[tuple[str, str]]:
+    """Lines of `dem check`; beside: what a run takes beside its steps [s].
+
+    Raises CaseError where analysis.time_step is not stable.
+    """
     analysis = case.analysis
     step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
     return [
@@ -44,7 +47,7 @@ def describe_shaking(case: Case, sim: DynamicSimulation) -> list[tuple[str, str]
         ("highest frequency", step.cause),
         ("time step", _step(step)),
         ("first frequency", _first(sim)),
-        *_cost(case, sim, step),
+        *_cost(case, sim, step, beside),
     ]
 
 
@@ -61,7 +64,7 @@ def _first(sim: DynamicSimulation) -> str:
     return f'{found.frequencies[0]:.4g} Hz, all joints that touch closed; kind = "modes" has those under gravity'
 
 
-def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str, str]]:
+def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, beside: float) -> list[tuple[str, str]]:
     analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
     length, points = analysis.duration or ground.duration, sim.first_points
     if length <= 0.0:
@@ -74,7 +77,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep) -> list[tuple[str,
     steps = math.ceil(length / step.step)
     more = math.ceil(analysis.coda / step.step)
     each_point = NANOSECONDS[sim.model.dimension][sim.damping.in_joints]
-    seconds = (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
+    seconds = beside + (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
     work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
     each = f"{runs:,} runs × " if runs > 1 else ""
     return [

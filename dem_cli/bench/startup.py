@@ -34,11 +34,12 @@ def cpu_of_children() -> float:
 
 
 def measure(options: BenchOptions) -> GroupResult:
-    """`dem --help`, the first run with an empty cache of compiled code, later runs."""
+    """`dem --help`, `dem check`, the first run with an empty cache of compiled code, later runs."""
     found, times = GroupResult(), {}
     with tempfile.TemporaryDirectory() as folder:
-        run = ["run", str(FOLDER / "wall.toml"), "--quiet", "-o", str(Path(folder) / "results")]
-        commands = {"`dem --help`": ["--help"], "later runs of T21": run}
+        case = str(FOLDER / "wall.toml")
+        run = ["run", case, "--quiet", "-o", str(Path(folder) / "results")]
+        commands = {"`dem --help`": ["--help"], "`dem check` of T21": ["check", case], "later runs of T21": run}
         if find_spec("matplotlib") is not None:
             commands["later runs of T21 with `--plot`"] = [*run, "--plot"]
         if options.quick:

@@ -26,6 +26,7 @@ import numba
 from numba import literal_unroll
 from numba.core import event
 from numba.core.caching import FunctionCache
+from numba.core.runtime.nrt import rtsys
 from numba.extending import overload as numba_overload
 from numba.extending import register_jitable
 
@@ -166,7 +167,6 @@ CACHE = str(cache_folder())
 # Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on
 # keep compiled code beside the sources, where nothing tells old code from new.
 vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
-_load_numba_without_blas()
 
 
 def _made_of(part: Any) -> object:
@@ -195,6 +195,19 @@ class KernelCache(FunctionCache):
     def _index_key(self, sig: Any, codegen: Any) -> tuple:
         made_of = hashlib.sha256(repr(_made_of(self._py_func)).encode()).hexdigest()
         return sig, codegen.magic_tuple(), made_of
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """As numba's own, which first gets ready to compile all that it knows: that takes as long as to load numba.
+
+        Kernels call nothing outside of themselves but numba's runtime and functions of C, which are there from the
+        start: it would make symbols of others, hashes of strings and threads of its own, known as well.
+        """
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            if (found := self._load_overload(sig, target_context)) is not None:
+                return found
+        _load_numba_without_blas()
+        return None
 
 
 def compiled(function: Callable) -> Callable:
