@@ -70,7 +70,7 @@ def compiled_advance(
     links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows; bends: in
     quadratic modes as well; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the start asks for.
     """
-    if tiled:
+    if tiled and law.of_lanes is not None:
         return make_tiled_advance(make_tiled_forces(law.of_lanes, law.n_of_lanes), _pull(links, False))
     if strains:
         return _strained_advance(kinematics, law, profiled, dimension, bends)

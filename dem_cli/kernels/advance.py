@@ -254,9 +254,7 @@ def make_advance(
                 carry(along, stiffness, mode in (TILT_CREEP, TILT_GUIDED), control)
             dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if guided or mode == FIRE:
-                power, speed2, force2 = powers(
-                    velocities, forces, dead_loads, live_loads, inverse_masses, dead, live
-                )
+                power, speed2, force2 = powers(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live)
                 keep, steer = steering(power, speed2, force2, control)
             if guided:
                 impulse = (control[RATE] - keep * steered_flow(velocities, live_loads)) / stiffness
@@ -270,9 +268,7 @@ def make_advance(
                 velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
             )  # fmt: skip
-            book(
-                forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
-            )
+            book(forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger)
             mean_load += live
             moved = drift(bodies, shape, dt, like)
             done += 1

@@ -1,11 +1,10 @@
-"""Atomic addition and reading of array entries that several threads share, and giving a core away, for compiled code."""
+"""Atomic addition and reading of what several threads share, and giving a core away, for compiled code."""
 
 from __future__ import annotations
 
 import os
 from typing import Any
 
-from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -47,7 +46,9 @@ def give_core_away(typing_context: Any) -> Any:
     """The operating system may run somebody else here."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(ir.IntType(32), []), _YIELD)
+        function = cgutils.get_or_insert_function(
+            builder.module, cgutils.ir.FunctionType(cgutils.ir.IntType(32), []), _YIELD
+        )
         builder.call(function, [])
         return context.get_dummy_value()
 

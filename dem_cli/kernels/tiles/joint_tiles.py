@@ -15,7 +15,7 @@ from dem_cli.kernels.tiles.team import new_team
 
 TILES_AHEAD = 8  # whose motion is collected before their forces are: what was just written number by number cannot be
 # read as a row for some time
-BLOCKS_OF_CHUNK = 512  # blocks that are worked on together while they are in the cache, and whose sums are by themselves
+BLOCKS_OF_CHUNK = 512  # that are worked on together, while they are in the cache; their sums are by themselves
 N_SUMS = 16  # the ledger and some more; the control vector
 TILES_OF_CHUNK = 256  # whose friction work is summed by itself, whoever works on them
 
@@ -25,24 +25,24 @@ class JointTiles(NamedTuple):
 
     joints: np.ndarray  # of each lane, −1: none, (n_tiles·LANES,)
     slots: np.ndarray  # a tile has the slots slots[t]:slots[t + 1], each a point of every lane, (n_tiles + 1,)
-    # Where the pushes on each block stand in `pushes`, in the order of the joints: of block i where it is block b of its
-    # joint sides[side_starts[2 i]:side_starts[2 i + 1]], then where it is block a.
+    # Where the pushes on each block stand in `pushes`, in the order of the joints: of block i where it is block b of
+    # its joint sides[side_starts[2 i]:side_starts[2 i + 1]], then where it is block a.
     side_starts: np.ndarray  # (2 n_blocks + 1,)
     sides: np.ndarray  # (2 n_joints,) uint32
-    # Chunk c, of BLOCKS_OF_CHUNK blocks, has joints in tiles from begins[c] on and none any more from ready[c] on; waves are
-    # the chunks in the order in which they are ready.
+    # Chunk c, of BLOCKS_OF_CHUNK blocks, has joints in tiles from begins[c] on and none any more from ready[c] on;
+    # waves are the chunks in the order in which they are ready.
     begins: np.ndarray  # (n_chunks,)
     ready: np.ndarray  # (n_chunks,)
     waves: np.ndarray  # (n_chunks,)
-    ring: np.ndarray  # one thread that works in waves needs the pushes of that many tiles, a power of two, less one, (1,)
+    ring: np.ndarray  # one thread, in waves, needs the pushes of so many tiles: a power of two, less one, (1,)
     ends: np.ndarray  # room, two rows a tile: blocks a and b, int32
     constants: np.ndarray  # room, rows of a tile: axes, both arms, numbers of the law
     springs: np.ndarray  # room, rows of a slot: place, kn, ks
     state: np.ndarray  # room, rows of a slot: gap, shear, slip path
     pushes: np.ndarray  # room, 4 rows of a tile, 16 in space: force on b (against a), moments of it about a and about b
     moves: np.ndarray  # room of each thread, rows of TILES_AHEAD tiles: motion of b against a, spins of a and of b
-    work: np.ndarray  # room of each thread, rows of one tile: opening, slide and spin of its joints; push, rub and twist
-    marks: np.ndarray  # room of each thread, rows of each slot of one tile: shear before, normal force where it lost work
+    work: np.ndarray  # room of each thread, rows of one tile: opening, slide, spin of joints; push, rub, twist
+    marks: np.ndarray  # room of each thread, rows of each slot of a tile: shear before, normal force where work is lost
     lost: np.ndarray  # friction work of each TILES_OF_CHUNK tiles in a step, at least one [J]
     lost_before: np.ndarray  # and in the steps before it
     books: np.ndarray  # sums of each BLOCKS_OF_CHUNK blocks (tiled_steps.py), (n_chunks, N_SUMS)
@@ -57,12 +57,15 @@ def rows_of(d: int, n_numbers: int) -> tuple[int, int, int]:
 
 
 NO_TILES = JointTiles(
-    *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.uint32), *(np.zeros(0, np.int64),) * 3, np.zeros(1, np.uint64), np.zeros(0, np.int32), *(np.zeros(0),) * 7,
-    np.zeros(1), np.zeros(1), np.zeros((1, 0)), np.zeros((1, 0)), new_team(),
+    *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.uint32), *(np.zeros(0, np.int64),) * 3, np.zeros(1, np.uint64),
+    np.zeros(0, np.int32), *(np.zeros(0),) * 7, np.zeros(1), np.zeros(1), np.zeros((1, 0)), np.zeros((1, 0)),
+    new_team(),
 )  # fmt: skip
 
 
-def tiled(blocks: np.ndarray, starts: np.ndarray, n_blocks: int, d: int, n_numbers: int, threads: int = 1) -> JointTiles:
+def tiled(
+    blocks: np.ndarray, starts: np.ndarray, n_blocks: int, d: int, n_numbers: int, threads: int = 1
+) -> JointTiles:
     """Tiles of joints with these blocks, (n_joints, 2), and points, as FixedJoints has them.
 
     n_numbers: numbers of a joint that the law reads; threads: that may work on them.

@@ -1,7 +1,7 @@
 """Rows of sixteen joints side by side (lanes): vectors of one lane as tuples, in 2D and 3D, loaded and stored.
 
-A row holds one number of each of LANES joints; a vector takes as many rows, one after the other. Number i of lane l in the
-row that begins at s is array[s + i·LANES + l]. Distances that are known when a kernel is compiled are what lets the
+A row holds one number of each of LANES joints; a vector takes as many rows, one after the other. Number i of lane l in
+the row that begins at s is array[s + i·LANES + l]. Distances that are known when a kernel is compiled are what lets the
 compiler work on all lanes at once.
 """
 

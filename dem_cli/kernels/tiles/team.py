@@ -1,7 +1,7 @@
 """Threads that step together: each calls the same compiled loop, takes a number, and waits for the others (barrier).
 
-A wait lasts a microsecond or less, so that threads spin; who waits for long gives its core away again and again, as there
-may be fewer cores than threads.
+A wait lasts a microsecond or less, so that threads spin; who waits for long gives its core away again and again, as
+there may be fewer cores than threads.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
 from dem_cli.kernels.tiles.joint_tiles import TILES_AHEAD, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.lanes import LANES, ROW, put, take, take_frame
-from dem_cli.kernels.vec import axpy, components, compose, dot, load, norm, scale, store
+from dem_cli.kernels.vec import axpy, components, compose, load, norm, scale, store
 
 ONE, TWO = np.uint64(1), np.uint64(2)
 
@@ -68,8 +68,8 @@ def _move(tiles, velocities, tile, motion, like, like_rotation):
     """How the blocks of the joints of one tile move: b against a, then both spins."""
     ends, moves, d = tiles.ends, tiles.moves, len(like)
     end, turns, R = np.uint64(tile) * TWO * ROW, motion + np.uint64(d) * ROW, np.uint64(len(like_rotation)) * ROW
-    for l in range(LANES):
-        lane = np.uint64(l)
+    for i in range(LANES):
+        lane = np.uint64(i)
         a, b = np.uint64(ends[end + lane]), np.uint64(ends[end + ROW + lane])
         put(moves, motion + lane, axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like)))
         put(moves, turns + lane, load(velocities, a, d, like_rotation))
@@ -87,8 +87,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         of_tile, of_slot = np.uint64(n_axes + 2 * d + n_numbers) * ROW, np.uint64(d + 1) * ROW
         ends, constants, springs, state = tiles.ends, tiles.constants, tiles.springs, tiles.state
         for t in range(first, last):
-            for l in range(LANES):
-                lane = np.uint64(l)
+            for i in range(LANES):
+                lane = np.uint64(i)
                 joint = tiles.joints[np.uint64(t) * ROW + lane]
                 end, row = np.uint64(t) * TWO * ROW + lane, np.uint64(t) * of_tile + lane
                 start = count = 0
@@ -123,8 +123,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         tiles, state, d = joints.tiles, joints.tiles.state, len(like)
         of_slot = np.uint64(d + 1) * ROW
         for t in range(first, last):
-            for l in range(LANES):
-                lane = np.uint64(l)
+            for i in range(LANES):
+                lane = np.uint64(i)
                 joint = tiles.joints[np.uint64(t) * ROW + lane]
                 if joint < 0:
                     continue
@@ -155,8 +155,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         slides, spins = opening + ROW, opening + D
         sums = spins + R
         rubs, twists = sums + ROW, sums + D
-        for l in range(LANES):
-            lane = np.uint64(l)
+        for i in range(LANES):
+            lane = np.uint64(i)
             frame = take_frame(constants, row + lane, like)
             arm_a, arm_b = take(constants, row + A + lane, like), take(constants, row + A + D + lane, like)
             spin_a, spin_b = take(moves, turns + lane, like_rotation), take(moves, turns + R + lane, like_rotation)
@@ -171,8 +171,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         lossy = 0
         for p in range(count):
             at, before = (first + np.uint64(p)) * (D + ROW), befores + np.uint64(p) * D
-            for l in range(LANES):
-                lane = np.uint64(l)
+            for i in range(LANES):
+                lane = np.uint64(i)
                 place = take(springs, at + lane, like[1:])
                 kn, ks = springs[at + T + lane], springs[at + D + lane]
                 spin, old = take(work, spins + lane, like_rotation), take(state, at + ROW + lane, like[1:])
@@ -187,8 +187,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 work[sums + lane] += normal
                 put(work, rubs + lane, axpy(1.0, shear, take(work, rubs + lane, like[1:])))
                 put(work, twists + lane, add_moment_at(place, normal, shear, take(work, twists + lane, like_rotation)))
-        for l in range(LANES):
-            lane = np.uint64(l)
+        for i in range(LANES):
+            lane = np.uint64(i)
             frame = take_frame(constants, row + lane, like)
             arm_a, arm_b = take(constants, row + A + lane, like), take(constants, row + A + D + lane, like)
             rub, twist = take(work, rubs + lane, like[1:]), take(work, twists + lane, like_rotation)
@@ -198,8 +198,8 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
             put(pushes, push + D + lane, axpy(1.0, moment(arm_a, force), couple))
             put(pushes, push + D + R + lane, axpy(1.0, moment(arm_b, force), couple))
         if lossy:
-            for l in range(LANES):
-                lane = np.uint64(l)
+            for i in range(LANES):
+                lane = np.uint64(i)
                 for p in range(count):
                     before = befores + np.uint64(p) * D + lane
                     normal = marks[before + T]
@@ -229,9 +229,9 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 _move(tiles, velocities, some + t, motions + np.uint64(t) * (D + TWO * R), like, like_rotation)
             for t in range(count):
                 part = (some + t) // TILES_OF_CHUNK
+                motion = motions + np.uint64(t) * (D + TWO * R)
                 lost[part] = press_tile(
-                    tiles, some + t, ring, motions + np.uint64(t) * (D + TWO * R), begin, np.uint64(befores), lost[part],
-                    dt, like, like_rotation,
-                )  # fmt: skip
+                    tiles, some + t, ring, motion, begin, np.uint64(befores), lost[part], dt, like, like_rotation
+                )
 
     return TiledForces(*(named(part, law) for part in (take_up, press, give_back)))

@@ -1,7 +1,7 @@
 """n steps in one compiled call as kernels/advance.py does them, with joints in tiles and threads that share the work.
 
-For many blocks whose geometry does not move. Each thread has tiles and chunks of blocks of its own. Sums over all blocks
-are those of the chunks in their order, so that any number of threads finds the same bits.
+For many blocks whose geometry does not move. Each thread has tiles and chunks of blocks of its own. Sums over all
+blocks are those of the chunks in their order, so that any number of threads finds the same bits.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ def _settle(
 ):  # fmt: skip
     """Velocities, books and places of the blocks from first to last.
 
-    flat: arrays by degrees of freedom; back: their forces stand so many rows before them; free: all speed limits are the
-    same, so that one chunk has those of another.
+    flat: arrays by degrees of freedom; back: their forces stand so many rows before them; free: all speed limits are
+    the same, so that one chunk has those of another.
     """
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits = flat
     n_dof = bodies.velocities.shape[1]
@@ -237,9 +237,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                         )  # fmt: skip
                 met = _together(tiles, members, met)
                 if guided or mode == FIRE:
-                    keep, steer = steering(
-                        _total(books, POWER), _total(books, SPEED), _total(books, FORCE), control
-                    )
+                    keep, steer = steering(_total(books, POWER), _total(books, SPEED), _total(books, FORCE), control)
                 if creeps:
                     impulse = (control[RATE] - keep * _total(books, FLOW)) / stiffness
             for chunk in range(n_chunks):
