@@ -27,20 +27,19 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 Rows = list[tuple[str, str]]
-STEPS = {  # kind of analysis, or "pushover" by what it controls -> fewest and most steps of cases/, a few beside
+STEPS = {  # kind of analysis -> fewest and most steps that cases of cases/ took, a few beside
     "gravity": (500, 50_000),
     "pushover": (50_000, 400_000),
-    "capacity curve": (150_000, 2_000_000),
     "cycle": (100_000, 1_000_000),
     "settlement": (100_000, 300_000),
     "safety": (2_000, 60_000),  # each of its runs
     "modes": (500, 50_000),
 }
 LIBRARIES = 250e6  # bytes of a run of a few blocks: Python, compiled code, what is imported
-STATES = (
-    15  # of the structure, that an analysis holds at most: highest equilibrium, failure, points of a curve, scratch
-)
+STATES = 15  # of the structure, that an analysis holds: highest equilibrium, failure, points of a curve
+COMPILING = 700e6  # bytes while the loops of time histories in space are compiled, once
 BESIDE = 0.4  # s of every analysis beside its steps: what is imported, loaded, looked at and written
+CURVE = (150_000, 2_000_000)  # of a pushover under displacement control
 GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
@@ -279,14 +278,15 @@ def _memory(sim: Simulation) -> str:
     saved = sim.save()
     state = len(pickle.dumps(saved, 5))
     whole, each = 1e-6 * (LIBRARIES + STATES * state), 1e-6 * state
-    return f"some {whole:,.0f} MB ({1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB)"
+    basis = f"{1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB"
+    return f"some {whole:,.0f} MB ({basis}); up to {1e-6 * COMPILING:.0f} MB where kernels are compiled first"
 
 
 def _steps(case: Case, sim: Simulation) -> tuple[int, int]:
     """Fewest and most steps of such an analysis."""
     if case.analysis.kind == "pushover":
         if case.analysis.control == "displacement":
-            return STEPS["capacity curve"]
+            return CURVE
         return GIVEN if _of_property(sim) else STEPS["pushover"]
     return STEPS[case.analysis.kind]
 

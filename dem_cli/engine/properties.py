@@ -65,8 +65,9 @@ def joint_properties(
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
     bending = [table.bends for table in case.materials.values()]
     deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
+    bent = set(by_material[np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    layouts = tuple(_layout(table, case, k in deforming, lands) for k, table in enumerate(tables))
+    layouts = tuple(_layout(table, case, k in deforming, lands and k not in bent) for k, table in enumerate(tables))
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
     own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
     law = mixed(tuple(laws))

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from dem_cli.kernels.jit import always_inline, kernel
+from dem_cli.kernels.jit import always_inline, inline, kernel
 from dem_cli.kernels.vec import load
 
 BLEND = 0.02  # share of the shorter edge over which the normal turns
@@ -118,11 +118,21 @@ def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
     return min(behind_a, 0.0) ** 2 + min(behind_b, 0.0) ** 2 >= other
 
 
+@inline
+def _write_end(joints, point, end):
+    """Into the arrays of the joints."""
+    frame, levers_a, levers_b, place = end
+    frames, levers, points = joints.frames, joints.levers, joints.points
+    frames[point, 0], frames[point, 1] = frame[0]
+    points[point, 0], points[point, 1] = place
+    levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
+    levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
+
+
 @kernel
 def measure(joints, geometry, contacts, bodies):
     """Frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
-    edges, scales, frames = geometry.edges, geometry.scales, joints.frames
-    levers, points = joints.levers, joints.points
+    edges, scales = geometry.edges, geometry.scales
     gaps, normals, stale = contacts.gaps, contacts.normal, contacts.stale
     for number in range(joints.blocks.shape[0]):
         joint = np.uint64(number)
@@ -146,9 +156,5 @@ def measure(joints, geometry, contacts, bodies):
             gap_high = max(gap_high, 0.0)
         gaps[first] = gap_low
         gaps[second] = gap_high
-        for point, share, gap, ca, cb in ((first, share_low, gap_low, a0, b1), (second, share_high, gap_high, a1, b0)):
-            frame, levers_a, levers_b, place = place_end(xa, xb, share, gap, ta, tb, ca, cb)
-            frames[point, 0], frames[point, 1] = frame[0]
-            points[point, 0], points[point, 1] = place
-            levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
-            levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
+        _write_end(joints, first, place_end(xa, xb, share_low, gap_low, ta, tb, a0, b1))
+        _write_end(joints, second, place_end(xa, xb, share_high, gap_high, ta, tb, a1, b0))

@@ -127,5 +127,5 @@ KERNEL: dict[str, Any] = {}
 if numba.__version__.startswith(TRIED):
     CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}
     KERNEL = {"pipeline_class": KernelCompiler, "no_cfunc_wrapper": True}
-    take_shortcuts()
+    take_shortcuts(CalleeCompiler)
     pass_records_by_reference()

@@ -233,4 +233,4 @@ def declare_callee(function: Callable, forced: bool) -> None:
 
 def declare_overload(function: Callable, implementation: Callable) -> None:
     """Kernels may call this function, and get what `implementation` returns for the types of its arguments."""
-    numba_overload(function, jit_options=cast(Any, CALLEE))(implementation)
+    numba_overload(function, jit_options=cast(Any, {"_nrt": False, **CALLEE}))(implementation)

@@ -12,14 +12,17 @@ from functools import cache
 from typing import Any
 
 from numba.core import base, types
-from numba.core.targetconfig import TargetConfig
+from numba.core.base import BaseContext
+from numba.core.targetconfig import ConfigStack, TargetConfig
 from numba.core.types.functions import BaseFunction
+from numba.core.typing.templates import _OverloadFunctionTemplate
 from numba.extending import lower_builtin
 
 __all__ = ["take_shortcuts"]
 
 _compared_by_value = TargetConfig.__eq__
 _asked_of_all = BaseFunction.get_call_type
+_asked_of_llvm, _sizes = BaseContext.get_abi_sizeof, dict[str, int]()
 _call_types: dict[int, tuple[BaseFunction, dict]] = {}  # by the function's id, which it keeps as long as it is here
 
 
@@ -49,13 +52,36 @@ def _call_type(function: BaseFunction, context: Any, args: tuple, kws: dict) -> 
     if not kws and place in known:
         return known[place]
     found = _asked_of_all(function, context, args, kws)
-    if not kws and function.get_impl_key(found) is function.typing_key:
+    if found is not None and not kws and function.get_impl_key(found) is function.typing_key:
         known[place] = found
     return found
 
 
-def take_shortcuts() -> None:
-    """Once, before anything is compiled."""
+def _size_of(context: BaseContext, kind: Any) -> int:
+    """Of a type [bytes]; LLVM reads a module to say it."""
+    word = str(kind)
+    if word not in _sizes:
+        _sizes[word] = _asked_of_llvm(context, kind)
+    return _sizes[word]
+
+
+def take_shortcuts(compiler: type) -> None:
+    """Once, before anything is compiled; compiler: of callees.
+
+    Numba compiles what is called anew for callers of other options. Callees have options of their own, but for the
+    one that puts all into the place of a call.
+    """
+    anew = _OverloadFunctionTemplate._get_impl
+
+    def implementation(template: Any, args: Any, kws: Any) -> Any:
+        if template._jit_options.get("pipeline_class") is not compiler:
+            return anew(template, args, kws)
+        caller = ConfigStack.top_or_none()
+        key = template.context, tuple(args), tuple(kws.items()), caller is not None and caller.forceinline
+        return template._impl_cache.get(key) or template._build_impl(key, args, kws)
+
+    _OverloadFunctionTemplate._get_impl = implementation  # type: ignore[method-assign]
+    BaseContext.get_abi_sizeof = _size_of  # type: ignore[method-assign]
     BaseFunction.get_call_type = _call_type  # type: ignore[method-assign,assignment]
     TargetConfig.__eq__ = _equal  # type: ignore[method-assign,assignment]
     TargetConfig.__hash__ = lambda one: _hash_of(type(one))  # type: ignore[method-assign]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment
 from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
+from dem_cli.limit.settings import DEFAULT_LIMIT
 from dem_cli.limit.slips import apart
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
@@ -126,6 +128,51 @@ def test_folds_of_the_central_path_are_gone_round():
     assert problem.residual(around, standing) < 1e-2
     if direct is not None:  # where this machine's round-off meets no fold, both arrive at the same place
         assert direct.load == pytest.approx(around.load, rel=1e-2)
+
+
+def test_rough_states_are_in_equilibrium_and_lead_on():
+    """Where an iteration is stopped early; the law holds again at the next increment."""
+    structure, friction = ingredients(CASES / "wall_21_mu075.toml")
+    patient = DEFAULT_LIMIT.interior_point
+    hasty = replace(DEFAULT_LIMIT, interior_point=replace(patient, slow=5))
+    problem, stopped = Elastic(structure, friction), Elastic(structure, friction, hasty)
+    standing = Increment(problem, _at_rest(problem), None).solve(1.0)
+    elastic = float(problem.live @ problem.elastic().solve(problem.live))
+    origin, tau = float(problem.live @ standing.displacements), 0.01 * float(standing.normal.max()) ** 2
+    assert Increment(stopped, standing, origin + 0.3 * elastic).solve(tau) is None
+    rough = Increment(stopped, standing, origin + 0.3 * elastic).solve(tau, rough=tau)
+    assert 0.0 < rough.left < tau
+    assert np.abs(problem.imbalance(rough.normal, rough.shear, rough.load)).max() < 1e-4
+    assert (rough.normal > 0.0).all()
+    assert (np.abs(rough.shear) < problem.friction * rough.normal).all()
+    assert problem.residual(rough, standing) > 1e-2  # N p and c ∘ a are not zero yet
+    loads = []
+    for before in (standing, rough):
+        increment = Increment(problem, before, origin + 0.4 * elastic, end=1e-5)
+        found = increment.solve(tau)
+        polished = increment.polished()
+        assert found.left == polished.left == 0.0
+        assert problem.residual(polished, before) < min(1e-3, problem.residual(found, before))
+        loads.append(polished.load)
+    assert loads[1] == pytest.approx(loads[0], rel=5e-3)
+
+
+def test_increments_grow_again_after_one_that_failed(monkeypatch):
+    structure, friction = ingredients(CASES / "wall_21_mu075.toml")
+    solve, tries = Increment.solve, []
+
+    def failing(self, *given):
+        tries.append(self.displacement)
+        return None if len(tries) in (5, 6) else solve(self, *given)
+
+    monkeypatch.setattr(Increment, "solve", failing)
+    path = trace(structure, friction)
+    reached = np.array(path.reached[1:])
+    growth = reached[1:] / reached[:-1] - 1.0
+    assert growth[:2] == pytest.approx([0.3, 0.3])
+    assert growth[2:6] == pytest.approx([0.16 * 0.3, 0.16 * 0.3, 0.32 * 0.3, 0.64 * 0.3])
+    assert path.status == OK
+    assert path.load == pytest.approx(0.645963, rel=1e-4)
 
 
 def test_light_blocks_on_heavy_ones():
