@@ -12,12 +12,12 @@ from dem_cli.contact.detect import block_shape, strained_corners, world_corners
 from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.clearances import play_of_start
-from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
+from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of

@@ -10,9 +10,9 @@ from engine import running_wall, simulation, tables
 
 from dem_cli.bench.cases import KNOWN_STRUCTURES, prisms
 from dem_cli.bench.kernels import simulation as wall_in_space
-from dem_cli.engine.threads.crew import called_by_all, crew_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.simulation import Simulation
+from dem_cli.engine.threads.crew import called_by_all, crew_of
 from dem_cli.kernels import records as slot
 
 WAYS = {"fire": slot.FIRE, "hold": slot.HOLD_LOAD, "creep": slot.CREEP, "guided": slot.GUIDED}
