@@ -17,6 +17,7 @@ from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
+from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
@@ -56,6 +57,7 @@ class Simulation:
         settings: Settings = DEFAULT,
     ):
         self.settings, relaxation = settings, settings.relaxation
+        self.threads = threads_wanted()
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
@@ -147,11 +149,20 @@ class Simulation:
         return self.tracking.measured(self.bodies)
 
     def _take_joints(self) -> None:
-        """What follows from other joints: masses, and how long a compiled call may be."""
+        """What follows from other joints: tiles, masses, and how long a compiled call may be."""
         detection = self.settings.detection
+        self.tiled = self._in_tiles()
+        if self.tiled:
+            self.tracking.tile(self.law.n_of_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
+
+    def _in_tiles(self) -> bool:
+        """Whether joints are worked on many at once; few are not worth another kernel."""
+        if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
+            return False
+        return len(self.joints.kn) >= self.settings.detection.tiled_from
 
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
@@ -238,18 +249,18 @@ class Simulation:
             self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
         if all(map(is_, scene, self._scene)):
-            self._loop = self._loop or self._compiled().bound()
-            done: int = self._loop(n_steps, mode, 1.0, *scene)
+            loop = self._loop = self._loop or self._compiled().bound()
         else:
-            done = self._compiled()(n_steps, mode, 1.0, *scene)
-            self._scene, self._loop = scene, None
+            self._scene, self._loop, loop = scene, None, self._compiled()
+        members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
+        done: int = called_by_all(loop, (n_steps, mode, 1.0, *scene), members)
         return done
 
     def _compiled(self) -> CompiledKernel:
         model = self.model
         return compiled_advance(
             self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0,
+            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
         )  # fmt: skip
 
     @property
