@@ -72,7 +72,6 @@ def test_dilating_joints_hold_a_stack_bond_that_real_ones_do_not():
     assert row.associated.load > 1.25 / 3
 
 
-@pytest.mark.xfail(strict=True, reason="the path does not get round a fold at 0.37 to 0.39")
 def test_dem_agrees_with_the_path_round_a_fold():
     agree("uneven_courses_mu050")
 

@@ -15,10 +15,6 @@ KNOWN = {
     "gallery/gatehouse": (
         "the path gets stuck in a fold at 0.3742, with the load still growing; DEM goes on to 0.3746"
     ),
-    "verification/uneven_courses_mu050": (
-        "the path does not get round a fold at 0.37 to 0.39, however small its increments, and drops to a mechanism of "
-        "two blocks of the upper right corner at 0.262. DEM moves on smoothly there; its load lies below the bound."
-    ),
     "verification/top_load_b11": (
         "the path does not find its first state, under dead loads, of a weight of 2,000 blocks on the end of a beam; "
         "DEM stands, and fails 0.3 % below the associated load."
