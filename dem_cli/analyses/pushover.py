@@ -156,7 +156,7 @@ def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
 def _second_history(job: Job, load_search: LoadSearch) -> None:
     """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
-    Where it ends elsewhere, or nowhere, the load is raised again in small steps.
+    Where it ends elsewhere, or nowhere, the load is raised again in small steps, up to so many blocks.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or unique(search, resolution) or load_search.too_large():
@@ -168,7 +168,9 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
         near = abs(path.load - search.carried) <= resolution * path.load
         if near or load_range(search, resolution) is None:
             return
-    if search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
+    if load_search.largest() > job.settings.warm_start.repeated:
+        job.skipped.append("the load again in small steps: too many blocks")
+    elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
         load_search.run_again_in_small_steps(search.carried)
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")

@@ -109,7 +109,7 @@ def stepping(sim: Simulation) -> tuple[TimedTask, int]:
     from dem_cli.kernels import records as slot
 
     points, start = points_of(sim), sim.save()
-    steps = max(POINT_STEPS // points, 10)
+    steps = max(POINT_STEPS // points, sim.settings.relaxation.chunk)  # as many as there are between two looks
     return TimedTask(lambda: sim.advance(steps, slot.HOLD_LOAD), lambda: sim.restore(start)), points * steps
 
 
@@ -135,7 +135,9 @@ def bytes_per_block(sim: Simulation) -> int:
     """Memory of all arrays of a simulation that a step or a detection works on, per free block."""
     records: tuple[Any, ...] = (sim.bodies, sim.shape, sim.loads, sim.joints, sim.geometry, sim.contacts)
     dampers = [array for array in getattr(sim, "dampers", ()) if isinstance(array, np.ndarray)]
-    return round(sum(array.nbytes for arrays in (*records, dampers) for array in arrays) / len(sim.free))
+    records += (getattr(sim.joints, "tiles", ()),)
+    arrays = (array for each in (*records, dampers) for array in each if isinstance(array, np.ndarray))
+    return round(sum(array.nbytes for array in arrays) / len(sim.free))
 
 
 def measure(options: BenchOptions) -> GroupResult:

@@ -39,6 +39,8 @@ COMMANDS = {  # name -> the line that `dem --help` shows
 for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # read when NumPy is imported
     os.environ.setdefault(_threads, "1")
 
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for some reads all that is installed
+
 INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 

@@ -70,7 +70,8 @@ class TerminalListener(RunListener):
     "--jobs",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Runs side by side, of analyses that consist of many; default: all cores.",
+    help="Runs side by side, of analyses that consist of many; default: all cores. Else threads that step a large"
+    " structure together; default: 1.",
 )
 @click.option("--resume", is_flag=True, help="Go on where an interrupted or killed run of the same case stopped.")
 @click.option("--plot/--no-plot", default=False, help="Draw the pictures of `dem plot` as well.")

@@ -23,6 +23,8 @@ from dem_cli.kernels.planar_forces import make_planar_forces
 from dem_cli.kernels.planar_profiles import make_profiled_forces
 from dem_cli.kernels.shake import make_shake
 from dem_cli.kernels.spatial_forces import make_spatial_forces
+from dem_cli.kernels.tiles.tiled_forces import make_tiled_forces
+from dem_cli.kernels.tiles.tiled_steps import make_tiled_advance
 from dem_cli.laws.law import Law
 from dem_cli.links.link import all_forces
 from dem_cli.links.registry import LINKS
@@ -61,12 +63,15 @@ def compiled_advance(
     links: tuple[str, ...] = (),
     strains: bool = False,
     bends: bool = False,
+    tiled: bool = False,
 ):
     """The stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its first call.
 
     links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows; bends: in
-    quadratic modes as well.
+    quadratic modes as well; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the start asks for.
     """
+    if tiled and law.of_lanes is not None:
+        return make_tiled_advance(make_tiled_forces(law.of_lanes, law.n_of_lanes), _pull(links, False))
     if strains:
         return _strained_advance(kinematics, law, profiled, dimension, bends)
     if kinematics == "fixed":

@@ -57,6 +57,7 @@ class DetectionSettings:
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
     same_place: float = 0.01  # of the reach: blocks that moved less have the same faces as before
     shortest_call: int = 100  # steps of one compiled call, at least
+    tiled_from: int = 1_000  # contact points from which joints of fixed geometry are worked on many at once
     longest_call: int = 20_000_000  # points × steps of one compiled call, about 0.2 s: Ctrl-C waits no longer
 
 

@@ -17,11 +17,13 @@ from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
+from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.tracking import JointTracking
 from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
+from dem_cli.kernels.jit import CompiledKernel
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
@@ -55,11 +57,12 @@ class Simulation:
         settings: Settings = DEFAULT,
     ):
         self.settings, relaxation = settings, settings.relaxation
+        self.threads = threads_wanted()
         self.model, self.law, self.properties, self.kinematics = model, law, properties, kinematics
         self.stages: Stages = NOTHING_KEPT
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
-        self._loop: Callable[..., int]
+        self._loop: Callable[..., int] | None = None
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -146,11 +149,20 @@ class Simulation:
         return self.tracking.measured(self.bodies)
 
     def _take_joints(self) -> None:
-        """What follows from other joints: masses, and how long a compiled call may be."""
+        """What follows from other joints: tiles, masses, and how long a compiled call may be."""
         detection = self.settings.detection
+        self.tiled = self._in_tiles()
+        if self.tiled:
+            self.tracking.tile(self.law.n_of_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self.set_masses()
+
+    def _in_tiles(self) -> bool:
+        """Whether joints are worked on many at once; few are not worth another kernel."""
+        if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
+            return False
+        return len(self.joints.kn) >= self.settings.detection.tiled_from
 
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
@@ -236,14 +248,20 @@ class Simulation:
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
         )  # fmt: skip
-        if not all(map(is_, scene, self._scene)):
-            model, self._scene = self.model, scene
-            self._loop = compiled_advance(
-                self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-                model.n_modes > 0, len(model.mode_shapes) > 0,
-            ).bound(n_steps, mode, 1.0, *scene)  # fmt: skip
-        done: int = self._loop(n_steps, mode, 1.0, *scene)
+        if all(map(is_, scene, self._scene)):
+            loop = self._loop = self._loop or self._compiled().bound()
+        else:
+            self._scene, self._loop, loop = scene, None, self._compiled()
+        members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
+        done: int = called_by_all(loop, (n_steps, mode, 1.0, *scene), members)
         return done
+
+    def _compiled(self) -> CompiledKernel:
+        model = self.model
+        return compiled_advance(
+            self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
+            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
+        )  # fmt: skip
 
     @property
     def speeds(self) -> np.ndarray:

@@ -9,7 +9,10 @@ from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
 from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
 from dem_cli.engine.settings import DEFAULT, DetectionSettings
+from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.records import Bodies, Contacts
+from dem_cli.kernels.tiles.joint_tiles import tiled
+from dem_cli.kernels.tiles.team import new_team
 from dem_cli.model.model import Model
 
 
@@ -46,6 +49,22 @@ class JointTracking:
     def arrays(self) -> JointArrays:
         """All of the joints that there are now."""
         return JointArrays(self.joints, self.geometry, self.contacts)
+
+    def tile(self, n_numbers: int, threads: int) -> None:
+        """Puts joints that do not move into tiles, for a law that reads so many numbers of a joint there."""
+        joints = self.joints
+        if isinstance(joints, FixedJoints):
+            n, d = self.model.n_blocks, self.model.dimension
+            self.joints = joints._replace(tiles=tiled(joints.blocks, joints.starts, n, d, n_numbers, threads))
+
+    def assemble(self, threads: int) -> int:
+        """A team for the next call of the loop over tiles: of at most so many threads; returns how many."""
+        if not isinstance(self.joints, FixedJoints):
+            return 1
+        tiles = self.joints.tiles
+        members = max(min(threads, len(tiles.books) - 1), 1)
+        tiles.team[:] = new_team(members)
+        return members
 
     def _first(self, bodies: Bodies) -> JointArrays:
         model, n_memory = self.model, self.n_memory

@@ -40,12 +40,22 @@ from dem_cli.kernels.records import (
 
 
 @inline
-def _creep_factor(forces, dead_loads, live_loads, inverse_masses, dead, stiffness):
-    """Live factor that leaves no force along the live load: q·M⁻¹(F + f0 + λ q) = 0."""
+def along_live_load(forces, dead_loads, live_loads, inverse_masses, dead):
+    """q·M⁻¹(F + f0), which a live factor λ brings to zero: q·M⁻¹(F + f0 + λ q) = 0."""
     total = 0.0
     for i in range(forces.size):
         total += live_loads[i] * inverse_masses[i] * (forces[i] + dead * dead_loads[i])
-    return -total / stiffness
+    return total
+
+
+@inline
+def carry(along, stiffness, tilts, control):
+    """The live factor that leaves no force along the live load; a table turns gravity by θ: dead cos θ + live sin θ."""
+    factor = -along / stiffness
+    if tilts:
+        factor = min(max(factor, -1.0), 1.0)
+        control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
+    control[LIVE_FACTOR] = factor
 
 
 @inline
@@ -64,11 +74,10 @@ def local_drag(unbalanced, previous, velocity, damp, damp_change):
 
 
 @inline
-def _rate_impulse(
-    velocities, forces, previous, dead_loads, live_loads, inverse_masses,
-    dead, live, damp, damp_change, rate, dt, stiffness,
+def driven_flow(
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses, dead, live, damp, damp_change, dt
 ):  # fmt: skip
-    """Impulse of the live load after which q·v = rate, local damping included."""
+    """q·v after the step, local damping included, before the impulse of the live load that makes it the rate."""
     flow = 0.0
     for i in range(forces.size):
         q = live_loads[i]
@@ -76,21 +85,21 @@ def _rate_impulse(
             unbalanced = forces[i] + dead * dead_loads[i] + live * q
             drag = local_drag(unbalanced, previous[i], velocities[i], damp, damp_change)
             flow += q * (velocities[i] + dt * inverse_masses[i] * (unbalanced - drag))
-    return (rate - flow) / stiffness
+    return flow
 
 
 @inline
-def _guiding_impulse(velocities, live_loads, keep, rate, stiffness):
-    """The same where velocities are steered (FIRE): what drives them has no component along the live load."""
+def steered_flow(velocities, live_loads):
+    """q·v. Where velocities are steered (FIRE) what drives them has no component along the live load."""
     flow = 0.0
     for i in range(live_loads.size):
         flow += live_loads[i] * velocities[i]
-    return (rate - keep * flow) / stiffness
+    return flow
 
 
 @inline
-def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control):
-    """FIRE (Bitzek et al. 2006) in the metric of the masses: v <- keep v + steer M⁻¹F, and a stop when uphill."""
+def powers(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live):
+    """F·v, v·Mv and F·M⁻¹F, by which FIRE steers."""
     power = speed2 = force2 = 0.0
     for i in range(forces.size):
         inverse = inverse_masses[i]
@@ -99,6 +108,12 @@ def _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, 
             power += force * velocities[i]
             speed2 += velocities[i] * velocities[i] / inverse
             force2 += force * force * inverse
+    return power, speed2, force2
+
+
+@inline
+def steering(power, speed2, force2, control):
+    """FIRE (Bitzek et al. 2006) in the metric of the masses: v <- keep v + steer M⁻¹F, and a stop when uphill."""
     if power <= 0.0 or force2 == 0.0:
         control[SINCE_UPHILL] = 0.0
         control[FIRE_MIX] = control[FIRE_START]
@@ -117,11 +132,11 @@ def _clip(x, limit):
 
 
 @inline
-def _kick(
+def kick(
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
     dead, live, damp, damp_change, keep, steer, impulse, dt,
 ):  # fmt: skip
-    """Velocities from forces, damped; leaves mean velocities and damping forces for `_book`.
+    """Velocities from forces, damped; leaves mean velocities and damping forces for `book`.
 
     Plain loops without sums, so that the compiler works on several degrees of freedom at once.
     """
@@ -156,7 +171,7 @@ def _kick(
 
 
 @inline
-def _book(
+def book(
     forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
 ):  # fmt: skip
     """Work of one step into the ledger.
@@ -235,28 +250,25 @@ def make_advance(
                 resist_bending(bodies, shape)
             keep, steer, impulse = 1.0, 0.0, 0.0
             if creeps:
-                factor = _creep_factor(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR], stiffness)
-                if mode in (TILT_CREEP, TILT_GUIDED):  # the table turns gravity by θ: dead cos θ + live sin θ
-                    factor = min(max(factor, -1.0), 1.0)
-                    control[DEAD_FACTOR] = math.sqrt(1.0 - factor * factor)
-                control[LIVE_FACTOR] = factor
+                along = along_live_load(forces, dead_loads, live_loads, inverse_masses, control[DEAD_FACTOR])
+                carry(along, stiffness, mode in (TILT_CREEP, TILT_GUIDED), control)
             dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if guided or mode == FIRE:
-                keep, steer = _steering(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live, control)
+                power, speed2, force2 = powers(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live)
+                keep, steer = steering(power, speed2, force2, control)
             if guided:
-                impulse = _guiding_impulse(velocities, live_loads, keep, control[RATE], stiffness)
+                impulse = (control[RATE] - keep * steered_flow(velocities, live_loads)) / stiffness
             elif creeps:
-                impulse = _rate_impulse(
+                flow = driven_flow(
                     velocities, forces, previous, dead_loads, live_loads, inverse_masses,
-                    dead, live, control[DAMP], control[DAMP_CHANGE], control[RATE], dt, stiffness,
+                    dead, live, control[DAMP], control[DAMP_CHANGE], dt,
                 )  # fmt: skip
-            _kick(
+                impulse = (control[RATE] - flow) / stiffness
+            kick(
                 velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
                 dead, live, control[DAMP], control[DAMP_CHANGE], keep, steer, impulse, dt,
             )  # fmt: skip
-            _book(
-                forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
-            )
+            book(forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger)
             mean_load += live
             moved = drift(bodies, shape, dt, like)
             done += 1

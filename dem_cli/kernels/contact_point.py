@@ -23,6 +23,18 @@ def meeting(gap, opened):
     return 0.5 * gap * (step - gap) / step
 
 
+@always_inline
+def plastic_slide(old, shear, slide, ks):
+    """What of a slide the shear spring did not take up: slide + Δs/ks [m]."""
+    return axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
+
+
+@always_inline
+def friction_work(old, shear, plastic):
+    """Work that friction takes: mean of the forces really applied × plastic slide [J]."""
+    return -0.5 * (dot(old, plastic) + dot(shear, plastic))
+
+
 def make_press(law: Callable, bonded: bool = False) -> Callable:
     """What happens at one point that touches or did: a function for the loops.
 
@@ -40,11 +52,10 @@ def make_press(law: Callable, bonded: bool = False) -> Callable:
         normal, shear, slipped = law(gap, slide, old, kn, ks, joints.law, joint, contacts.memory, point)
         lost = 0.0
         if slipped:
-            # Mean of the forces really applied; the plastic part of the slide is slide + Δs/ks.
-            plastic = axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
+            plastic = plastic_slide(old, shear, slide, ks)
             if normal > 0.0:
                 slips[point] += norm(plastic)
-            lost = -0.5 * (dot(old, plastic) + dot(shear, plastic))
+            lost = friction_work(old, shear, plastic)
             if bonded and not (pressed >= 0.0 and normal >= 0.0 and pressed * normal == 0.0):
                 # The same across the joint: work done on the spring, less what it stores; meeting or parting is free.
                 lost -= 0.5 * (pressed + normal) * (opened + (normal - pressed) / kn)

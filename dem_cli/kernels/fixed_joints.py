@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.kernels.tiles.joint_tiles import NO_TILES, JointTiles
+
 
 class FixedJoints(NamedTuple):
     """Joints as geometry of the start has them; a joint owns points starts[j]:starts[j + 1]."""
@@ -23,6 +25,7 @@ class FixedJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
 
     @property
     def owners(self) -> np.ndarray:

@@ -69,16 +69,13 @@ class CompiledKernel:
                 return self.py_func(*arguments)
         return (self._machine_code or self._made())(*arguments)
 
-    def bound(self, *arguments: Any) -> Callable:
-        """The compiled code for these very objects: a call of it does not look at their types, which saves 6 µs.
+    def bound(self) -> Callable:
+        """The compiled code itself, for more calls with the objects of the last one: it does not look at types, 7 µs.
 
         Numbers may be others of the same type; in the place of an array of another type it would read nonsense.
         """
-        if _door.uncompiled:
-            return self
-        from dem_cli.kernels.compilation.machine_code import types_of
-
-        return (self._machine_code or self._made()).compile(types_of(arguments))
+        overloads = [] if _door.uncompiled else list((self._machine_code or self._made()).overloads.values())
+        return overloads[0].entry_point if len(overloads) == 1 else self
 
     def _made(self) -> Any:
         self._machine_code = _door.compiled(self.py_func)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import always_inline, inline, overload
+from dem_cli.kernels.jit import always_inline, overload
 
 
 def load(array, row, start, like):
@@ -232,7 +232,13 @@ def _scale(a, x):
     return lambda a, x: (a * x[0], a * x[1], a * x[2])
 
 
-@inline
 def norm(x):
     """Length of a vector."""
-    return math.sqrt(dot(x, x))
+    return abs(x[0]) if len(x) == 1 else math.sqrt(dot(x, x))
+
+
+@overload(norm)
+def _norm(x):
+    if len(x) == 1:
+        return lambda x: abs(x[0])
+    return lambda x: math.sqrt(dot(x, x))

@@ -12,8 +12,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from dem_cli.kernels.jit import inline
-from dem_cli.kernels.vec import axpy, dot, scale
+from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.vec import axpy, dot, norm, scale
 from dem_cli.laws.envelope import frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
@@ -45,10 +45,25 @@ def coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
     return normal, scale(limit / math.sqrt(square), trial), True
 
 
+@always_inline
+def coulomb_of_lanes(gap, slide, shear, kn, ks, numbers, at):
+    """The same without branches; and whether something was lost."""
+    closed = gap < 0.0
+    normal = -kn * gap if closed else 0.0
+    trial = axpy(-ks, slide, shear)
+    limit = numbers[at] * normal
+    square = dot(trial, trial)
+    slips = square > limit * limit
+    share = limit / (norm(trial) if slips else 1.0) if slips else 1.0
+    return normal, scale(share if closed else 0.0, trial), slips & (closed | (dot(shear, shear) > 0.0))
+
+
 COULOMB = Law(
     name="coulomb",
     parameters=CoulombJoint,
     function=coulomb,
+    of_lanes=coulomb_of_lanes,
+    n_of_lanes=1,
     columns=lambda table, kn: (table.coefficient,),
     shear_limit=lambda parameters, normal, memory, kn: parameters[:, 0] * normal,
     envelope=lambda parameters, kn: frictional(parameters[:, 0]),

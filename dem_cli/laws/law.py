@@ -51,6 +51,11 @@ class Law(Generic[JointTable]):
     pressed: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray] = (
         lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     )
+    # The same law without branches, for LANES points at once (kernels/tiles): numbers[at + k·LANES] for
+    # parameters[joint, k], no memory; `slipped` is left out where no force was there before nor is now. None: there is
+    # no such form.
+    of_lanes: Callable | None = None
+    n_of_lanes: int = 0  # so many first numbers of `parameters`
     scalars: int = 0  # numbers that a point remembers
     vectors: int = 0  # vectors along the tangents that it remembers beside them
     intact: tuple[float, ...] = ()  # first scalars of points that touch at the start; all others start from zero

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class BatchOptions(NamedTuple):
     """How runs are done, and what is kept of them meanwhile."""
 
-    threads: int | None = None  # of an analysis that consists of many; None: all cores
+    threads: int | None = None  # of an analysis that consists of many runs, None: all cores; of a run itself, None: one
     resume: bool = False  # go on where an interrupted one stopped
     keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: nobody will ask for them
 

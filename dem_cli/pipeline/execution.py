@@ -9,9 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from dem_cli.engine.threads.crew import crew_of
 from dem_cli.errors import CaseProblem, SolverError
 from dem_cli.interrupts import Interrupts
-from dem_cli.pipeline.batches import BatchOptions, batch_of, finish, finish_stages, stages_of
+from dem_cli.pipeline.batches import BatchOptions, batch_of, finish, finish_stages, many, stages_of
 from dem_cli.pipeline.completion import completed, stopped, with_names
 from dem_cli.pipeline.listener import RunListener
 from dem_cli.pipeline.monitor_names import check_quantities, monitor_names, monitor_quantities
@@ -109,6 +110,7 @@ def execute(
             loaded.located(),
             batch_of(case, text, folder, options, listener) as batch,
             stages_of(case, text, folder, options, recorder) as checkpoints,
+            crew_of(1 if many(case) else options.threads or 1),
         ):
             found = solved(solve or load_solver(batch), case, model, recorder)
             listener.solved()

@@ -59,7 +59,8 @@ def run(
 
     case, set   as `load`
     out         folder of the results, which appear in it whole or not at all; None: they are gone with the Result
-    threads     runs side by side, of analyses that consist of many; None: all cores
+    threads     runs side by side, of analyses that consist of many, None: all cores; else threads that step a large
+                structure together, None: one
     resume      go on where an interrupted or killed run of the same case stopped in `out`
     force       write among files that dem did not write; those stay
     progress    is told now and then: stage, load multiplier, control displacement [m], share of the work done or None
@@ -71,7 +72,7 @@ def run(
     started = time.perf_counter()
     options = BatchOptions(threads, resume, None if out is None else DEFAULT_KEEPING)
     if threads is not None and (not isinstance(threads, int) or threads < 1):
-        raise UsageError(f"threads: {threads!r} is not allowed; must be an integer ≥ 1, or None for all cores")
+        raise UsageError(f"threads: {threads!r} is not allowed; must be an integer ≥ 1, or None")
     if resume and out is None:
         raise UsageError("resume: needs the folder `out` of the run that was interrupted")
     loaded = load(case, set)

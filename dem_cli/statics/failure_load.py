@@ -144,8 +144,12 @@ class LoadSearch:
 
     def too_large(self) -> bool:
         """Whether the path would take too many factorisations."""
-        sim = self.sim
-        return largest_structure(sim.joints.blocks, sim.model.fixed) > sim.settings.warm_start.large
+        warm_start = self.sim.settings.warm_start
+        return self.largest() > {2: warm_start.large, 3: warm_start.large_in_space}[self.sim.model.dimension]
+
+    def largest(self) -> int:
+        """Blocks of the largest structure."""
+        return largest_structure(self.sim.joints.blocks, self.sim.model.fixed)
 
     def _holds(self, start: WarmStart | CurveStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""

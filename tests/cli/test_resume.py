@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -15,13 +16,14 @@ from click.testing import CliRunner
 
 from dem_cli import api
 from dem_cli.cli.main import main
+from dem_cli.interrupts import Interrupts
 from dem_cli.output.resume.checkpoints import Checkpoints
 from dem_cli.output.resume.stages import Keeping
 from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.execution import Destination, run_case
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
-ALL = Keeping(first=0.0, every=0.02, worth=0.0)
+ALL = Keeping(first=0.0, every=0.005, worth=0.0)
 SCRIPT = """
 import sys, time
 from pathlib import Path
@@ -35,8 +37,9 @@ run_case(api.load_case(sys.argv[1]), Destination(Path(sys.argv[2])), time.perf_c
 
 
 def run(case, folder, keeping=None, resume=False):
-    options = BatchOptions(1, resume, keeping)
-    return run_case(api.load_case(case), Destination(folder), time.perf_counter(), options=options)
+    options, interrupts = BatchOptions(1, resume, keeping), Interrupts(ends_program=False)  # others come after it
+    destination, started = Destination(folder), time.perf_counter()
+    return run_case(api.load_case(case), destination, started, options=options, interrupts=interrupts)
 
 
 def untimed(value):
@@ -65,26 +68,32 @@ class Killed(BaseException):
     """As a kill, which no one answers."""
 
 
-@pytest.mark.parametrize("name", ["wall_21", "sliding_n2", "settlement_two_blocks", "follower_load"])
-def test_killed_at_several_instants(name, tmp_path, monkeypatch):
+def kill():
+    raise Killed
+
+
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.parametrize("name", ["wall_21", "sliding_n2", "settlement_group", "follower_load"])
+def test_killed_then_interrupted(name, tmp_path, monkeypatch):
     """A pushover with its collapse, a capacity curve, a settlement, a load path."""
-    case, left = CASES / f"{name}.toml", [2, 5, 9]  # checkpoints until the next kill
+    case, ways = CASES / f"{name}.toml", {2: kill, 7: interrupt}  # by the number of a checkpoint, of both runs
     run(case, tmp_path / "straight")
-    whole = Checkpoints.write
+    whole, written = Checkpoints.write, []
 
-    def killing(self, *words):
+    def writing(self, *words):
         whole(self, *words)
-        left[0] -= 1
-        if left[0] == 0:
-            del left[0]
-            raise Killed
+        written.append(words[0])
+        ways.get(len(written), lambda: None)()
 
-    monkeypatch.setattr(Checkpoints, "write", killing)
-    for number in range(2):
-        with pytest.raises(Killed):
-            run(case, tmp_path / "out", ALL, resume=number > 0)
-        assert not (tmp_path / "out").exists()
-    left[:] = [-1]
+    monkeypatch.setattr(Checkpoints, "write", writing)
+    with pytest.raises(Killed):
+        run(case, tmp_path / "out", ALL)
+    assert not (tmp_path / "out").exists()
+    assert run(case, tmp_path / "out", ALL, resume=True)[0]["status"] == "interrupted"
+    assert len(written) == 7, "what comes after an interrupt is not kept"
     run(case, tmp_path / "out", ALL, resume=True)
     assert results(tmp_path / "out") == results(tmp_path / "straight")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "straight"]

@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.records import Bodies, Contacts, Loads
+from dem_cli.kernels.tiles.joint_tiles import NO_TILES
 
 LIKE = {2: (0.0,) * 2, 3: (0.0,) * 3}
 LIKE_ROTATION = {2: (0.0,), 3: (0.0,) * 3}
@@ -76,6 +77,7 @@ def _joints(joints: FixedJoints, layers: np.ndarray) -> FixedJoints:
         places=np.ascontiguousarray(places),
         kn=joints.kn.repeat(m) / m,
         ks=joints.ks.repeat(m) / m,
+        tiles=NO_TILES,
     )
 
 

@@ -40,7 +40,6 @@ __all__ = [
     "declare_callee",
     "declare_overload",
     "literal_unroll",
-    "types_of",
 ]
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -215,11 +214,6 @@ def compiled(function: Callable) -> Callable:
     found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
-
-
-def types_of(arguments: tuple) -> tuple:
-    """What numba takes these for."""
-    return tuple(map(numba.typeof, arguments))
 
 
 def declare_callee(function: Callable, forced: bool) -> None:

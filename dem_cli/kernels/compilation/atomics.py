@@ -1,0 +1,55 @@
+"""Atomic addition and reading of what several threads share, and giving a core away, for compiled code."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numba.np.arrayobj import make_array
+
+__all__ = ["add", "give_core_away", "seen"]
+
+_YIELD = "SwitchToThread" if os.name == "nt" else "sched_yield"
+
+
+def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Where an entry of an array is."""
+    array = make_array(signature.args[0])(context, builder, arguments[0])
+    return cgutils.gep(builder, array.data, arguments[1])
+
+
+@intrinsic
+def add(typing_context: Any, array: Any, index: Any, amount: Any) -> Any:
+    """array[index] += amount, of integers; returns what was there before."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.atomic_rmw("add", _place(context, builder, signature, arguments), arguments[2], "seq_cst")
+
+    return types.int64(array, types.int64, types.int64), code
+
+
+@intrinsic
+def seen(typing_context: Any, array: Any, index: Any) -> Any:
+    """array[index], of integers."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.load_atomic(_place(context, builder, signature, arguments), "seq_cst", 8)
+
+    return types.int64(array, types.int64), code
+
+
+@intrinsic
+def give_core_away(typing_context: Any) -> Any:
+    """The operating system may run somebody else here."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        function = cgutils.get_or_insert_function(
+            builder.module, cgutils.ir.FunctionType(cgutils.ir.IntType(32), []), _YIELD
+        )
+        builder.call(function, [])
+        return context.get_dummy_value()
+
+    return types.void(), code
