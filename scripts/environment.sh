@@ -43,8 +43,9 @@ make_environment() {
 # not know what pip was told of indexes, and then leaves the work to pip, as where it does not come or does not go.
 find_uv() {
     [ -z "${PIP_INDEX_URL:-}${PIP_NO_INDEX:-}" ] || return 1
-    ! grep -qsE '^ *(index[-_]url|no[-_]index)' "${PIP_CONFIG_FILE:-/dev/null}" /etc/pip.conf "$HOME/.pip/pip.conf" \
-        "${XDG_CONFIG_HOME:-$HOME/.config}/pip/pip.conf" || return 1
+    ! grep -qsE '^ *(index[-_]url|no[-_]index)' "${PIP_CONFIG_FILE:-/dev/null}" /etc/pip.conf /etc/xdg/pip/pip.conf \
+        {"${HOME:-}",}/Library/Application\ Support/pip/pip.conf "${HOME:-}/.pip/pip.conf" \
+        "${XDG_CONFIG_HOME:-${HOME:-}/.config}/pip/pip.conf" || return 1
     uv=$(command -v uv) && return
     uv=$venv/bin/uv
     [ -x "$uv" ] || "${pip[@]}" install --quiet --disable-pip-version-check --no-compile \
@@ -71,15 +72,18 @@ prepare() {
             [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
         done
     fi
-    "$venv/bin/python" -c 'import pip' >/dev/null 2>&1 || make_environment
+    # A package that a kill cut short looks whole to pip and uv, and would stay as it is.
+    { [ ! -e "$venv/.installing" ] && "$venv/bin/python" -c 'import pip' >/dev/null 2>&1; } || make_environment
     say "installing dem and what it needs: NumPy, Numba, VTK and more (once, about half a minute)"
     # To compile every module to bytecode takes long; Python compiles and keeps those that a run imports.
     [ "$extra" != dev ] || pip_options=(--compile) uv_options=(--compile-bytecode)
     rm -f "$venv"/.installed-*
+    : >"$venv/.installing"
     if ! { install_with_uv "$extra" || install_with_pip "$extra"; } >"$venv/install.log" 2>&1; then
         tail -n 15 "$venv/install.log" >&2
         fail "the installation failed; the whole output is in $venv/install.log"
     fi
+    rm -f "$venv/.installing"
     printf '%s\n' "$wanted" >"$venv/.installed-$extra"
     # The first command keeps the bytecode of what it imports, which is part of installing it, whatever later ones do.
     unset PYTHONDONTWRITEBYTECODE

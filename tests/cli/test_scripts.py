@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TOOLS = ("bash", "env", "dirname", "basename", "cat", "cksum", "tail", "rm")
+TOOLS = ("bash", "env", "dirname", "basename", "cat", "cksum", "tail", "rm", "grep")
 
 
 @pytest.fixture
@@ -40,8 +40,18 @@ def fake_python(project: Path, name: str, *, new_enough: bool) -> None:
     script.chmod(0o755)
 
 
-def run(project: Path, script: str = "run") -> subprocess.CompletedProcess:
-    environment = {"PATH": str(project / "bin"), "HOME": str(project)}
+def made_environment(project: Path) -> Path:
+    """An environment in which every installation succeeds."""
+    venv = project / ".venv"
+    (venv / "bin").mkdir(parents=True)
+    for name in ("python", "dem"):
+        (venv / "bin" / name).write_text("#!/usr/bin/env bash\n")
+        (venv / "bin" / name).chmod(0o755)
+    return venv
+
+
+def run(project: Path, script: str = "run", home: bool = True) -> subprocess.CompletedProcess:
+    environment = {"PATH": str(project / "bin")} | ({"HOME": str(project)} if home else {})
     command = [str(project / "scripts" / script), "case.toml"]
     return subprocess.run(command, env=environment, cwd=project, capture_output=True, text=True)
 
@@ -68,6 +78,21 @@ def test_no_venv_module(project):
 
 def test_no_python_at_all(project):
     done = run(project)
+    assert done.returncode == 2
+    assert "needs Python 3.11 or newer" in done.stderr
+
+
+def test_no_home(project):
+    venv = made_environment(project)
+    done = run(project, home=False)
+    assert done.returncode == 0, done.stderr
+    assert (venv / ".installed-plot").exists()
+    assert not (venv / ".installing").exists()
+
+
+def test_interrupted_installation_is_begun_anew(project):
+    (made_environment(project) / ".installing").touch()
+    done = run(project)  # no python here makes another environment
     assert done.returncode == 2
     assert "needs Python 3.11 or newer" in done.stderr
 

@@ -40,13 +40,13 @@ class Checkpoints:
         self._told: int | None = None
         self._out_of_use = False  # another run keeps its own there
         self.seconds = 0.0  # of work before, at the last checkpoint
-        about = self._read_about()
-        if about is None:
+        if not self.path.is_dir():
             return
+        about = self._read_about()
         if not self._locks():
             raise in_use(folder / name)
         try:
-            if not self._fit(about, resume):
+            if about is None or not self._fit(about, resume):
                 self.remove()
                 self.seconds = 0.0
         except BaseException:
@@ -64,13 +64,13 @@ class Checkpoints:
         return self._told is not None
 
     def _read_about(self) -> dict[str, Any] | None:
-        if not self.path.is_dir():
-            return None
+        """None where a kill or the disk left nothing to go on from."""
         try:
-            return dict(json.loads((self.path / _ABOUT).read_text(encoding="utf-8")))
-        except (OSError, ValueError):  # killed as it was made
-            shutil.rmtree(self.path, ignore_errors=True)
+            about = json.loads((self.path / _ABOUT).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
             return None
+        whole = isinstance(about, dict) and isinstance(about.get("what"), dict)
+        return about if whole and isinstance(about.get("seconds"), (int, float)) else None
 
     def _locks(self) -> bool:
         self._lock = os.open(self.path / _LOCK, os.O_CREAT | os.O_RDWR, 0o644)

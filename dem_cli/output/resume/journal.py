@@ -53,12 +53,12 @@ class Journal:
         lines = os.read(self._file, os.fstat(self._file).st_size).split(b"\n")
         whole = lines[:-1]  # what follows the last line feed was cut short
         header = _parsed(whole[0]) if whole else None
-        if header is None:
+        if not isinstance(header, dict) or not isinstance(header.get("what"), dict):
             if resume and whole:
                 raise UsageError(f"{self.path}: is damaged; delete it to start anew")
             self._begin()
             return
-        rows = [row for row in map(_parsed, whole[1:]) if row is not None]
+        rows = [row for row in map(_parsed, whole[1:]) if isinstance(row, list) and len(row) == 2]
         if not fits(header, JOURNAL_FORMAT, self.what, resume, f"{len(rows):,} runs" if rows else None, self.path):
             self._begin()
             return

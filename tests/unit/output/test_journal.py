@@ -72,3 +72,17 @@ def test_nothing_stays_of_a_journal_without_runs_or_one_that_is_done(tmp_path):
         done.add((0,), (1,))
         done.remove()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_line_that_the_disk_changed(tmp_path):
+    with journal(tmp_path) as first:
+        first.add((0,), ("whole",))
+        first.add((1,), ("whole",))
+    path = tmp_path / ".out.dem-runs"
+    header, row, other = path.read_text().splitlines()
+    path.write_text(f"{header}\n5\n{other}\n")
+    with journal(tmp_path, resume=True) as second:
+        assert second.known() == {(1,): ("whole",)}
+    path.write_text(f"5\n{row}\n")
+    with pytest.raises(UsageError, match="is damaged; delete it"):
+        journal(tmp_path, resume=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 
 import numpy as np
 import pytest
 
 from dem_cli.errors import SolverError, UsageError
+from dem_cli.output.folder import locked
 from dem_cli.output.resume.checkpoints import Checkpoints
 from dem_cli.output.resume.kept_objects import all_changing, decoded, encoded
 from dem_cli.output.resume.stages import NOTHING_KEPT, Keeping, KeptStages, stage
@@ -174,3 +176,20 @@ def test_only_data_is_read():
     assert again == {"of": sim, "model": model}
     assert sim.steps == 0
     assert not hasattr(sim, "later")
+
+
+@pytest.mark.parametrize("about", [None, "5", '{"format', '{"format": 1, "what": 3, "seconds": 1.0}', '{"what": {}}'])
+def test_a_folder_that_says_nothing_of_its_run(tmp_path, about):
+    """Of a run that was killed, or is under way, as it made it, or damaged by the disk."""
+    folder = tmp_path / ".out.dem-stages"
+    folder.mkdir()
+    if about is not None:
+        (folder / "about.json").write_text(about)
+    lock = os.open(folder / ".lock", os.O_CREAT | os.O_RDWR)
+    assert locked(lock)
+    with pytest.raises(UsageError, match="another run is writing"):
+        Checkpoints(tmp_path, "out", lambda: WHAT, True)
+    assert folder.exists()
+    os.close(lock)
+    assert not Checkpoints(tmp_path, "out", lambda: WHAT, True).found
+    assert not folder.exists()
