@@ -67,6 +67,7 @@ def page(records: list[Measurement]) -> list[str]:
         rows.append((r.axis, str(r.value), seconds(r.best), f"{60 * each / r.best:.0f}", same))
     text = (
         f"Processes of {records[0].case}, limit analysis beside the failure load, from shell to shell. Without"
-        " `--threads` nothing in a run is parallel: library threads change neither time nor answer, to the bit. Give other cores other runs."
+        " `--threads` nothing in a run is parallel: library threads change neither time nor answer, to the bit. Give"
+        " other cores other runs."
     )
     return [text, "", *lines_of(head, rows)]
