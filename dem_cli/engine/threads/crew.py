@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ThreadPoolExecutor
 
 _wanted: ContextVar[int] = ContextVar("threads", default=1)
 
@@ -38,6 +40,8 @@ def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> A
     """
     if members == 1:
         return loop(*arguments)
+    from concurrent.futures import wait
+
     pool = _pool(os.getpid(), members)
     calls: list[Future] = []
     try:
@@ -55,4 +59,6 @@ def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> A
 @cache
 def _pool(process: int, members: int) -> ThreadPoolExecutor:
     """Threads that wait for calls, of one process: a forked one has none of its parent's."""
+    from concurrent.futures import ThreadPoolExecutor
+
     return ThreadPoolExecutor(members, thread_name_prefix="crew")
