@@ -152,14 +152,14 @@ def test_a_start_that_touches_is_not_refused(kn):
 
 
 def test_a_run_that_makes_energy_stops_and_keeps_what_came_before(tmp_path):
-    """A block thrown at 10 km/s passes its joint in a step. Exit 3; when, where and why; results up to there."""
+    """A block that falls, at 0.9 of the longest stable step. Exit 3; when, where and why; results up to there."""
     case = tables(
         block("base", rectangle(-2, -0.5, 2, 0), fixed=True),
         block("b", rectangle(-0.25, 0, 0.25, 1)),
         joints={"j": {"friction": 10.0, "kn": 1e9}},
-        analysis={"kind": "time-history", "duration": 1.0},
-        damping={"contact_fraction": 2.0},
-        initial=[{"block": "b", "velocity": [0.0, -1e4, 0.0]}],
+        analysis={"kind": "time-history", "duration": 1.0, "margin": 0.9},
+        damping={"contact_fraction": 0.0},
+        initial=[{"block": "b", "velocity": [0.0, -0.1, 0.0]}],
         monitor=[{"block": "b", "component": "y"}],
     )
     path = tmp_path / "case.toml"
@@ -168,6 +168,6 @@ def test_a_run_that_makes_energy_stops_and_keeps_what_came_before(tmp_path):
     assert result.exit_code == 3, result.output
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
     assert summary["status"] == "not converged"
-    assert any(text.startswith("blew up at 0.0") and "block 'b' is the fastest" in text for text in summary["warnings"])
+    assert any(text.startswith("blew up at 0.1") and "block 'b' is the fastest" in text for text in summary["warnings"])
     assert summary["reached"]["stage"] == "shaking"
     assert len((tmp_path / "out" / "history.csv").read_text(encoding="utf-8").splitlines()) >= 2  # names and values
