@@ -106,8 +106,9 @@ class Increment:
 
     def polished(self) -> State | None:
         """What was solved with smaller products, down to the end that is set; None where that fails."""
+        if self.last is None:
+            return None
         self.end = self.settings.end * self.lightest
-        assert self.last is not None
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return self._solved(self.last.copy(), None, 0, lambda: False, 0.0)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -119,50 +119,64 @@ def trace(
     return path
 
 
+class Stride(NamedTuple):
+    """One increment that led to a state, and the state before it."""
+
+    increment: Increment
+    before: State
+    state: State
+    length: float  # displacement [elastic ones]
+    share: float  # of the longest increment, over that tried first
+    earlier: Increment | None  # the one that led to the state before; None: gravity
+
+
 class Walk:
     """The way from gravity, increment by increment: longer ones where they are easy, shorter ones where they fail."""
 
     def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
         self.problem, self.settings, self.stop = problem, problem.settings.path, stop
-        self.state = self.before = standing
+        self.state = standing
         self.origin, self.elastic = float(problem.live @ standing.displacements), _compliance(problem, standing)
-        self.reached = self.last = 0.0  # displacement, and of it the last increment
+        self.reached = 0.0
         self.share = 1.0  # of the longest increment, that the next one is tried with
-        self.increment: Increment | None = None  # the last one
+        self.last: Stride | None = None
 
     def go_on(self) -> bool:
         """Whether an increment of some size led to another state: one under the law, or a rough one (State.left)."""
         settings = self.settings
         longest = (settings.growth - 1.0) * self.reached if self.reached else settings.first
+        found, resort = None, None  # a rough state is the last resort, where shorter increments lead nowhere either
         for share, easier, folds in settings.attempts:
-            stride = share * self.share * longest
-            found = self._advanced(stride, easier, folds)
-            if found is not None:
-                self._moved(found, stride, share)
-                return True
-            if self.stop():
+            found = self._advanced(longest, share, easier, folds)
+            if found is not None and not found.state.left:
                 break
-        return False
+            found, resort = None, resort or found
+            if self.stop() or (resort is not None and share == settings.last_exact):
+                break
+        if (stride := found or resort) is not None:
+            self._moved(stride)
+        return stride is not None
 
-    def _advanced(self, stride: float, easier: float, folds: int) -> State | None:
+    def _advanced(self, longest: float, share: float, easier: float, folds: int) -> Stride | None:
         settings, problem, state = self.settings, self.problem, self.state
-        target = self.origin + self.elastic * (self.reached + stride)
-        ahead = min(stride / self.last, settings.ahead) if self.last and easier == 1.0 else 0.0
-        self.increment = Increment(problem, state, target, end=settings.end)
+        length = share * self.share * longest
+        target = self.origin + self.elastic * (self.reached + length)
+        ahead = min(length / self.last.length, settings.ahead) if self.last is not None and easier == 1.0 else 0.0
+        increment = Increment(problem, state, target, end=settings.end)
         rough = settings.rough * float(state.normal.max(initial=1.0)) ** 2
         tau = easier * _first_products(problem, state, target)
-        found = self.increment.solve(tau, ahead, folds, self.stop, rough)
-        if found is not None and not found.left and problem.residual(found, state) >= settings.accepted:
+        found = increment.solve(tau, ahead, folds, self.stop, rough)
+        if found is None or (not found.left and problem.residual(found, state) >= settings.accepted):
             return None
-        return found
+        return Stride(increment, state, found, length, share, self.last.increment if self.last is not None else None)
 
-    def _moved(self, found: State, stride: float, share: float) -> None:
-        self.before, self.state = self.state, found
-        self.reached, self.last = self.reached + stride, stride
-        if share == 1.0:
+    def _moved(self, stride: Stride) -> None:
+        self.last, self.state = stride, stride.state
+        self.reached += stride.length
+        if stride.share == 1.0:
             self.share = min(1.0, self.settings.regrowth * self.share)
-        elif share < 1.0:
-            self.share = max(self.settings.smallest, share * self.share)
+        elif stride.share < 1.0:
+            self.share = max(self.settings.smallest, stride.share * self.share)
 
 
 def _follow(
@@ -177,16 +191,17 @@ def _follow(
     """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
     settings, walk = problem.settings.path, Walk(problem, state, stop)
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
-    best: tuple[Increment | None, State, float] | None = None
+    best: tuple[Stride, float] | None = None  # that of the highest load, and where it led
     while not is_plateau(settings, walk.reached, calm_since, slope / plateau) and walk.reached < settings.furthest:
         if not walk.go_on():
             break
+        assert walk.last is not None
         if walk.state.left:
             continue
         slope, since = _slope(path, settings, walk.state.load * problem.live_scale, walk.reached)
         calm_since = min(calm_since, since) if slope < plateau else np.inf
-        if _keep(path, structure, problem, walk.state, walk.before, walk.reached):
-            best = (walk.increment, walk.before, walk.reached)
+        if _keep(path, structure, problem, walk.state, walk.last.before, walk.reached):
+            best = (walk.last, walk.reached)
         progress(path.loads[-1], walk.reached)
     if best is not None:
         _polish(path, structure, problem, *best)
@@ -247,24 +262,34 @@ def _compliance(problem: Elastic, state: State) -> float:
     return float(problem.live @ problem.elastic(share).solve(problem.live))
 
 
-def _polish(
-    path: Path, structure: Structure, problem: Elastic, increment: Increment | None, before: State, reached: float
-) -> None:
-    """The increment of the highest load, solved to the end."""
-    found = increment.polished() if increment is not None else None
-    if found is None or problem.residual(found, before) > path.residual:
+def _polish(path: Path, structure: Structure, problem: Elastic, stride: Stride, reached: float) -> None:
+    """The increment of the highest load, solved to the end; and the one before, for the mechanism between them."""
+    found = stride.increment.polished()
+    if found is None or problem.residual(found, stride.before) > path.residual:
         return
+    before = (stride.earlier.polished() if stride.earlier is not None else None) or stride.before
     later = [part[path.highest + 1 :] for part in (path.loads, path.reached, path.live_displacements)]
     for part in (path.loads, path.reached, path.live_displacements):
         del part[path.highest :]
     path.load = None
-    _keep(path, structure, problem, found, before, reached)
+    _keep(path, structure, problem, found, stride.before, reached, before)
     for part, after in zip((path.loads, path.reached, path.live_displacements), later, strict=True):
         part += after
 
 
-def _keep(path: Path, structure: Structure, problem: Elastic, state: State, before: State, reached: float) -> bool:
-    """One more increment; its state in SI units, where the load is the highest so far: whether it is."""
+def _keep(
+    path: Path,
+    structure: Structure,
+    problem: Elastic,
+    state: State,
+    before: State,
+    reached: float,
+    since: State | None = None,
+) -> bool:
+    """One more increment; its state in SI units, where the load is the highest so far: whether it is.
+
+    since: the state before, closer to the law, that the mechanism is taken from (None: before)
+    """
     moved = problem.displacements(state.displacements)
     load = state.load * problem.live_scale
     path.loads.append(load)
@@ -280,7 +305,7 @@ def _keep(path: Path, structure: Structure, problem: Elastic, state: State, befo
     closed = state.normal > problem.kn * (gaps + state.normal / problem.kn)
     path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit
     path.displacements = structure.on_blocks(moved)
-    motion = moved - problem.displacements(before.displacements)
+    motion = moved - problem.displacements((since or before).displacements)
     power = float(structure.live @ motion)
     path.mechanism = structure.on_blocks(motion / power) if power > 0.0 else structure.on_blocks(0.0 * motion)
     return True

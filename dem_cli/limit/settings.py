@@ -20,6 +20,7 @@ class PathSettings:
     regrowth: float = 2.0  # of increments that had to be shorter, one after the other
     smallest: float = 0.15  # of the longest increment: the next one begins no shorter
     ahead: float = 1.5  # of the last slips, that the next increment expects at most
+    last_exact: float = 0.16  # share of an increment: where none down to it is found, one in a rough state is taken
     rough: float = 5e-4  # products that may be left on the way, over the square of the largest normal force
     span: float = 1.2  # growth of the displacement over which that of the load is looked at
     # Under dead loads alone: first products in those that are set, and folds.

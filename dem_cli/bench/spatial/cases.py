@@ -53,7 +53,7 @@ KNOWN_IN_SPACE = {
         _block(30),
         _block(60),
         KnownStructure("panel", "spatial/panel", (), 0.125, "closed form: turns over at thickness / height"),
-        KnownStructure("L wall", "spatial/l_wall", (), 0.285812, SEARCH, 0.361778, 0.285266),
+        KnownStructure("L wall", "spatial/l_wall", (), 0.285812, SEARCH, 0.361778, 0.285595),
         wall_out_of_plane(10, 20, 0.201955, 0.371604),
     )
 }
