@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 import tempfile
-import time
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from dem_cli.bench.cases import FOLDER
+from dem_cli.bench.processes import dem_process
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 
@@ -19,25 +16,11 @@ PICTURES: dict[str, Any] = {}
 FIRST_RUN = "first run of T21, nothing compiled"
 
 
-def shell(words: list[str], cache: str) -> tuple[float, float]:
-    """Wall-clock and CPU seconds of a new process, until it ended."""
-    environment = os.environ | {"DEM_CACHE_DIR": cache}
-    children, begun = cpu_of_children(), time.perf_counter()
-    subprocess.run([sys.executable, "-m", "dem_cli", *words], env=environment, check=True, capture_output=True)
-    return time.perf_counter() - begun, cpu_of_children() - children
-
-
-def cpu_of_children() -> float:
-    """CPU seconds of all child processes that ended."""
-    times = os.times()
-    return times.children_user + times.children_system
-
-
 def measure(options: BenchOptions) -> GroupResult:
     """`dem --help`, `dem check`, the first run with an empty cache of compiled code, later runs."""
     found, times = GroupResult(), {}
     with tempfile.TemporaryDirectory() as folder:
-        case = str(FOLDER / "wall.toml")
+        case, cache = str(FOLDER / "wall.toml"), {"DEM_CACHE_DIR": folder}
         run = ["run", case, "--quiet", "-o", str(Path(folder) / "results")]
         commands = {"`dem --help`": ["--help"], "`dem check` of T21": ["check", case], "later runs of T21": run}
         if find_spec("matplotlib") is not None:
@@ -45,12 +28,12 @@ def measure(options: BenchOptions) -> GroupResult:
         if options.quick:
             commands = {"`dem --help`": ["--help"]}
         else:
-            times[FIRST_RUN] = [shell(run, folder)]
+            times[FIRST_RUN] = [dem_process(run, cache)]
         for _ in range(options.rounds(5)):
             for name, words in commands.items():
-                times.setdefault(name, []).append(shell(words, folder))
-    for name, pairs in times.items():
-        wall, cpu = zip(*pairs, strict=True)
+                times.setdefault(name, []).append(dem_process(words, cache))
+    for name, costs in times.items():
+        wall, cpu = [cost.wall for cost in costs], [cost.cpu for cost in costs]
         best, median = min(wall), sorted(wall)[len(wall) // 2]
         found.records.append(record("T21 μ 0.6", "command", name, cpu, best_wall=best, median_wall=median))
     return found

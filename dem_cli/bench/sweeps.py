@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from dem_cli.bench.cases import KNOWN_STRUCTURES, KnownStructure
+from dem_cli.bench.processes import dem_process
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, percent, seconds
 
@@ -56,20 +55,12 @@ def measure(options: BenchOptions) -> GroupResult:
 def sweep(place: Path, count: int, jobs: int, known: KnownStructure) -> SweepTiming:
     """One sweep, in a folder of its own."""
     output = place / f"out-{time.monotonic_ns()}"
-    words = [sys.executable, "-m", "dem_cli", "sweep", str(place / f"{count}.toml"), "-o", str(output)]
-    begun, spent = time.perf_counter(), cpu_of_children()
-    subprocess.run([*words, "-j", str(jobs), "-q", "--json"], check=True, stdout=subprocess.DEVNULL)
-    wall, cpu = time.perf_counter() - begun, cpu_of_children() - spent
+    words = ["sweep", str(place / f"{count}.toml"), "-o", str(output), "-j", str(jobs), "-q", "--json"]
+    cost = dem_process(words)
     summaries = [json.loads(path.read_text(encoding="utf-8")) for path in output.glob("runs/*/summary.json")]
     errors = [known.error(summary["failure_load"]) for summary in summaries]
     worst = max(abs(error) for error in errors if error is not None)
-    return SweepTiming(wall, cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
-
-
-def cpu_of_children() -> float:
-    """CPU seconds of all processes that were started here and have ended, and of theirs."""
-    spent = os.times()
-    return spent.children_user + spent.children_system
+    return SweepTiming(cost.wall, cost.cpu, sum(summary["solve_seconds"] for summary in summaries), worst)
 
 
 def page(records: list[Measurement]) -> list[str]:
