@@ -12,10 +12,10 @@ class PathSettings:
     first: float = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
     growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
     # Where an increment fails: shares of it, first products in those that are set, and folds of the central path to go
-    # round.
+    # round. Longer ones last: they may leap over a failure, onto a branch that carries more.
     attempts: tuple[tuple[float, float, int], ...] = (
-        (1.0, 1.0, 0), (0.4, 1.0, 0), (0.16, 1.0, 0), (0.064, 1.0, 0), (2.2, 1.0, 0), (5.0, 1.0, 0), (1.0, 100.0, 0),
-        (0.4, 1.0, 4), (1.0, 1.0, 4),
+        (1.0, 1.0, 0), (0.4, 1.0, 0), (0.16, 1.0, 0), (0.064, 1.0, 0), (1.0, 100.0, 0), (0.4, 1.0, 4), (1.0, 1.0, 4),
+        (2.2, 1.0, 0), (5.0, 1.0, 0),
     )  # fmt: skip
     regrowth: float = 2.0  # of increments that had to be shorter, one after the other
     smallest: float = 0.15  # of the longest increment: the next one begins no shorter
