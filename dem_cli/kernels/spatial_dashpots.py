@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.kernels.dashpots import WIDTH as PLANAR_WIDTH
 from dem_cli.kernels.dashpots import (
     OPEN,
     SLIPS,
@@ -35,7 +36,7 @@ from dem_cli.kernels.vec import add_at, axpy, components, compose, dot, load, lo
 # Columns of Dampers.gains: n, place, J, S (xx xy xz yy yz zz), C⁻¹ = EVENLY + ACROSS n nᵀ, least J·n.
 NORMAL, PLACE, IMPULSE, GAIN, EVENLY, ACROSS, LEAST = 0, 3, 6, 9, 15, 16, 17
 WIDTH = 18
-GAINS = {2: 2, 3: WIDTH}  # columns by dimension
+GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
 
 def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
