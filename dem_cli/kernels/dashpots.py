@@ -3,7 +3,8 @@
 A dashpot beside each spring resists its mean rate over the step, J = −c dt (w₀ + w)/2, together with all others: two
 symmetric Gauss–Seidel sweeps over the impulses J, warm from the step before, leave the largest stable step that of
 the springs alone, however stiff the dashpots. Spring and dashpot together do not pull (J_n ≥ −N dt); points that
-slip have no dashpot along the joint, and open ones none at all. In 3D, where a point has two tangents, its three
+slip have no dashpot along the joint, and open ones none at all. Where points have met, further sweeps go over the
+joints of those blocks whose impulses still change. In 3D, where a point has two tangents, its three
 impulses are solved at once (spatial_dashpots.py).
 """
 
@@ -22,13 +23,13 @@ from dem_cli.kernels.deformation.strain_dashpots import (
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
-from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
+from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, norm, scale, store
 
 OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
-# Columns of Dampers.gains in the plane, of the points that touch: normal, levers about both centroids, C (half of damping
-# × step) across and along the joint, shares of their errors that impulses give up in one turn, rates before the step,
+# Columns of Dampers.gains in the plane, of the points that touch: normal, levers about both centroids, C (half of
+# damping × step) across and along the joint, shares of their errors that impulses give up in one turn, rates before the step,
 # impulses, the least one across the joint.
 NORMAL, LEVERS_A, LEVERS_B, VISCOUS, GAIN, RATE, IMPULSE, LEAST = 0, 2, 4, 6, 8, 10, 12, 14
 WIDTH = 16  # of which the last is empty: two lines of the cache
@@ -76,6 +77,47 @@ def closed_share(gap, opening, dt):
     return min(max(gap / (opening * dt), 0.0), 1.0)
 
 
+@always_inline
+def begin_joint(dampers, joint, n_rows):
+    """A joint whose rows begin here, if it gets any."""
+    dampers.packed[joint], dampers.met[joint] = n_rows, 0
+
+
+@always_inline
+def end_joint(dampers, joint, n_rows, n_active):
+    """A joint has all its rows: it is swept if these are any. Returns how many joints there are to sweep."""
+    if n_rows > dampers.packed[joint]:
+        dampers.active[n_active] = joint
+        n_active += 1
+    return n_active
+
+
+@always_inline
+def stir(dampers, joint, a, b, turn, change):
+    """Notes the turn in which a joint changed its impulses by so much [N s] that others on its blocks notice.
+
+    At first only where points have met, then wherever it spreads to.
+    """
+    if turn > 1 or dampers.met[joint] != 0:
+        if change > dampers.trifles[a]:
+            dampers.stirred[a] = turn
+        if change > dampers.trifles[b]:
+            dampers.stirred[b] = turn
+
+
+@inline
+def waken(joints, dampers, n_active, turn):
+    """Joints to sweep in a turn after the first: those of blocks stirred in the one before. Returns how many."""
+    blocks, active, awake, stirred = joints.blocks, dampers.active, dampers.awake, dampers.stirred
+    found = 0
+    for i in range(n_active):
+        joint = np.uint64(active[i])
+        if stirred[blocks[joint, 0]] == turn - 1 or stirred[blocks[joint, 1]] == turn - 1:
+            awake[found] = joint
+            found += 1
+    return found
+
+
 @inline
 def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """States of all points before the kick; rows of `gains` for those that touch, of joint j from packed[j] on.
@@ -86,16 +128,14 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
-    viscosity, rates, rows, packed, holders = (
-        dampers.viscosity, dampers.rates, dampers.gains, dampers.packed, dampers.holders
-    )  # fmt: skip
+    viscosity, rates, rows, holders = dampers.viscosity, dampers.rates, dampers.gains, dampers.holders
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     motions, lifts = dampers.motions, dampers.lifts
     pushes[:] = 0.0
-    d, with_elements, n_met, n_rows = len(like), dampers.elements.shape[0] > 0, 0, 0
+    d, with_elements, n_met, n_rows, n_active = len(like), dampers.elements.shape[0] > 0, 0, 0, 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
-        packed[joint] = n_rows
+        begin_joint(dampers, joint, n_rows)
         low, high, touched = starts[joint], starts[number + 1], False
         for p in range(low, high):
             point = np.uint64(p)
@@ -126,7 +166,9 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             moved = plus_modes(motions, velocities, point, a, b, relative)
             opening, sliding = rates_at(frame, reach_a, reach_b, moved, spin_a, spin_b)
             share = 1.0
-            n_met += met
+            if met:
+                n_met += 1
+                dampers.met[joint] = 1
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
                 closed = closed_share(contacts.gaps[point], opening, dt)
                 share = 0.5 + closed
@@ -143,8 +185,21 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 rows[row, GAIN] = _gain(
                     reach_a[0][0], reach_b[0][0], masses, turning_a, turning_b, across, motions, lifts, point, frame[0]
                 )
-                rows[row, GAIN + 1] = 0.0 if slipping else _gain(
-                    reach_a[1][0], reach_b[1][0], masses, turning_a, turning_b, aside, motions, lifts, point, frame[1]
+                rows[row, GAIN + 1] = (
+                    0.0
+                    if slipping
+                    else _gain(
+                        reach_a[1][0],
+                        reach_b[1][0],
+                        masses,
+                        turning_a,
+                        turning_b,
+                        aside,
+                        motions,
+                        lifts,
+                        point,
+                        frame[1],
+                    )
                 )
                 rows[row, RATE] = opening
                 store(rows, row, RATE + 1, sliding)
@@ -167,7 +222,8 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
         store(pushes, a, d, turned_a)
         store(pushes, b, 0, pushed_b)
         store(pushes, b, d, turned_b)
-    packed[blocks.shape[0]] = n_rows
+        n_active = end_joint(dampers, joint, n_rows, n_active)
+    dampers.packed[blocks.shape[0]], dampers.active[blocks.shape[0]] = n_rows, n_active
     return n_met
 
 
@@ -211,17 +267,15 @@ def _relax(memory, rates, elements, state, pressed, stiffness, closed, point, fi
 
 
 @inline
-def _sweep(joints, contacts, bodies, inverse_masses, dampers, backwards, last, like, like_rotation):
-    """One sweep over all impulses; last: which are then kept with the points."""
+def _sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, backwards, like, like_rotation):
+    """One sweep over the impulses of n joints; backwards: which are then kept with the points, too."""
     blocks, velocities, mobilities, memory = joints.blocks, bodies.velocities, bodies.mobilities, contacts.memory
     rows, packed, holders, first = dampers.gains, dampers.packed, dampers.holders, dampers.first
-    d, n, motions = len(like), blocks.shape[0], dampers.motions
+    d, motions = len(like), dampers.motions
     for i in range(n):
-        number = n - 1 - i if backwards else i
+        number = swept[n - 1 - i if backwards else i]
         joint = np.uint64(number)
-        low, high = packed[joint], packed[number + 1]
-        if low == high:
-            continue
+        low, high, change = packed[joint], packed[number + 1], 0.0
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
         mobility_a, mobility_b = load_mobility(mobilities, a, like), load_mobility(mobilities, b, like)
@@ -240,14 +294,14 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, backwards, last, l
             error_along = axpy(rows[row, VISCOUS + 1], mean, along)
             new = max(push - error * rows[row, GAIN], rows[row, LEAST])
             new_along = axpy(-rows[row, GAIN + 1], error_along, along)
-            if last:
+            rows[row, IMPULSE] = new
+            store(rows, row, IMPULSE + 1, new_along)
+            if backwards:
                 point = np.uint64(holders[row])
                 memory[point, first] = new
                 store(memory, point, first + 1, new_along)
-            else:
-                rows[row, IMPULSE] = new
-                store(rows, row, IMPULSE + 1, new_along)
             new, new_along = new - push, axpy(-1.0, along, new_along)
+            change = max(change, max(abs(new), norm(new_along)))
             force = compose(frame, new, new_along, scale(0.0, like))
             va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
             push_modes(dampers.lifts, velocities, holders[row], a, b, force)
@@ -257,14 +311,12 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, backwards, last, l
         store(velocities, a, d, spin_a)
         store(velocities, b, 0, vb)
         store(velocities, b, d, spin_b)
+        stir(dampers, joint, a, b, turn, change)
 
 
 @inline
 def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
-    """The impulses of all dashpots on the velocities after the kick, from those of the step before.
-
-    turns: pairs of sweeps, to and fro. One is enough where the step before is a good guess.
-    """
+    """As spatial_dashpots.resist."""
     velocities, mobilities, pushes, d = bodies.velocities, bodies.mobilities, dampers.pushes, len(like)
     for block in range(velocities.shape[0]):
         for k in range(d):
@@ -272,10 +324,20 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
         push = load(pushes, block, d, like_rotation)
         add_at(velocities, block, d, spun(load_mobility(mobilities, block, like), push), 1.0)
         give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
-    for turn in range(turns):
-        last = turn == turns - 1
-        _sweep(joints, contacts, bodies, inverse_masses, dampers, False, False, like, like_rotation)
-        _sweep(joints, contacts, bodies, inverse_masses, dampers, True, last, like, like_rotation)
+    dampers.stirred[:] = 0
+    swept, n_active = dampers.active, dampers.active[-1]
+    n = n_active
+    for turn in range(1, turns + 1):
+        if turn > 1:
+            swept, n = dampers.awake, waken(joints, dampers, n_active, turn)
+        if n == 0:
+            break
+        _sweep(
+            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, False, like, like_rotation
+        )  # fmt: skip
+        _sweep(
+            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, True, like, like_rotation
+        )  # fmt: skip
 
 
 @inline
