@@ -21,9 +21,7 @@ SELDOM = (200_000, 10, 10)  # objects between two collections, and collections b
 class LateModules(MetaPathFinder):
     """Finder of modules that are loaded when something in them is first asked for."""
 
-    def find_spec(
-        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
+    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
         """Of a module that may wait."""
         spec = PathFinder.find_spec(name, path, target) if name in LATE else None
         if spec is not None and isinstance(spec.loader, Loader):

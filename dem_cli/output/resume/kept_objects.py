@@ -10,7 +10,6 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Iterable, Iterator, Mapping
-from functools import cache
 from typing import Any, Protocol
 
 _DATA = {
@@ -21,6 +20,7 @@ _DATA = {
 _ARRAYS = ("numpy._core.", "numpy.core.")  # as numpy 2 and 1 call it
 _OF_ARRAYS = {"_reconstruct", "scalar", "_frombuffer"}
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, tuple, frozenset)  # which others may share by chance
+_known: dict[type, bool] = {}  # which classes change
 
 
 class Changing(Protocol):
@@ -29,10 +29,12 @@ class Changing(Protocol):
     LASTING: frozenset[str]  # attributes that stay the objects that they are
 
 
-@cache
-def _changes(kind: type) -> bool:
-    """Whether objects of a class are `Changing`; Python takes 30 µs to say so of a protocol."""
-    return hasattr(kind, "LASTING")
+def _changes(one: Any) -> bool:
+    """Whether it is `Changing`; Python takes 30 µs to say so of a protocol."""
+    kind = type(one)
+    if kind not in _known:
+        _known[kind] = hasattr(kind, "LASTING")
+    return _known[kind]
 
 
 def all_changing(objects: Iterable[Any]) -> list[Changing]:
@@ -41,7 +43,7 @@ def all_changing(objects: Iterable[Any]) -> list[Changing]:
     waiting = list(objects)
     while waiting:
         one = waiting.pop(0)
-        if _changes(type(one)) and id(one) not in found:
+        if _changes(one) and id(one) not in found:
             found[id(one)] = one
             waiting += [value for _, value in _lasting(one)]
     return list(found.values())
