@@ -136,6 +136,6 @@ CALLEE: dict[str, Any] = {}  # options of numba's `jit`
 KERNEL: dict[str, Any] = {}
 if numba.__version__.startswith(TRIED):
     CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}
-    KERNEL = {"pipeline_class": KernelCompiler, "_nrt": False}
+    KERNEL = {"pipeline_class": KernelCompiler}
     take_shortcuts(CalleeCompiler)
     pass_records_by_reference()

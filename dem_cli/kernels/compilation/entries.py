@@ -27,6 +27,7 @@ __all__ = ["KernelLowering", "keep_compiled"]
 _WORD = 8  # bytes
 _RESULTS = {types.int64: "i", types.float64: "d", types.none: ""}
 _OF_PYTHON = re.compile(r"(NRT_|numba_|Py|_Py|\.numba)")  # names of what only numba and Python have
+_NEVER_DONE = {"NRT_incref", "NRT_decref", "NRT_MemInfo_call_dtor"}  # to arrays whose memory somebody else counts
 _NAMES = re.compile(r'@"?([\w.$]+)"?')
 
 
@@ -103,7 +104,7 @@ def keep_compiled(function: Callable, compiled: Any) -> None:
         return
     code = library._get_compiled_object()
     undefined = _undefined(code)
-    called = _called(str(library._final_module), entry)
+    called = _called(str(library._final_module), entry) - _NEVER_DONE
     needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))
     if entry in called and not any(_OF_PYTHON.match(name) for name in called):
         header = Header(kinds, _RESULTS[of.restype], entry, needed, sorted(undefined - set(needed)), 0)

@@ -22,7 +22,7 @@ from dem_cli.laws.registry import LAWS
 
 PROGRAM = """
 import os
-from dem_cli.kernels.compilation.cache_folder import cache_folder
+from dem_cli.kernels.compilation.machine_code import cache_folder
 from dem_cli.kernels.planar_geometry import measure  # any kernel
 import numba
 os.environ["NUMBA_NUM_THREADS"] = "1"  # as `dem bench` does
