@@ -37,6 +37,7 @@ from dem_cli.kernels.records import (
     TRAVEL_LIMIT,
     UNBALANCED,
 )
+from dem_cli.kernels.vec import in_a_row
 
 
 @inline
@@ -245,11 +246,11 @@ def make_advance(
         like_rotation,
     ):  # fmt: skip
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
-        velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
-        previous = bodies.unbalanced.ravel()
-        dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
-        inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
-        speed_limits = loads.speed_limits.ravel()
+        velocities, forces = in_a_row(bodies.velocities), in_a_row(bodies.forces)
+        previous = in_a_row(bodies.unbalanced)
+        dead_loads, live_loads = in_a_row(loads.dead), in_a_row(loads.live)
+        inverse_masses, force_scales = in_a_row(loads.inverse_masses), in_a_row(loads.force_scales)
+        speed_limits = in_a_row(loads.speed_limits)
         guided = mode in (GUIDED, TILT_GUIDED)
         creeps = guided or mode in (CREEP, TILT_CREEP)
         stiffness = mobility(live_loads, inverse_masses) if creeps else 0.0

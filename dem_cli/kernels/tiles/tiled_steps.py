@@ -44,7 +44,7 @@ from dem_cli.kernels.records import (
 from dem_cli.kernels.tiles.joint_tiles import BLOCKS_OF_CHUNK, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.team import join, wait
 from dem_cli.kernels.tiles.tiled_forces import TiledForces, gather
-from dem_cli.kernels.vec import axpy, load, store
+from dem_cli.kernels.vec import axpy, in_a_row, load, store
 
 # Columns of `books` behind those of the ledger.
 ALONG, POWER, SPEED, FORCE, FLOW = N_LEDGER, N_LEDGER + 1, N_LEDGER + 2, N_LEDGER + 3, N_LEDGER + 4
@@ -140,12 +140,12 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         tiles = joints.tiles
         books, n_tiles, n_blocks = tiles.books, tiles.slots.size - 1, bodies.velocities.shape[0]
         n_chunks, of_chunk = books.shape[0], BLOCKS_OF_CHUNK * bodies.velocities.shape[1]
-        velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
-        previous = bodies.unbalanced.ravel()
-        dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
-        inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
+        velocities, forces = in_a_row(bodies.velocities), in_a_row(bodies.forces)
+        previous = in_a_row(bodies.unbalanced)
+        dead_loads, live_loads = in_a_row(loads.dead), in_a_row(loads.live)
+        inverse_masses, force_scales = in_a_row(loads.inverse_masses), in_a_row(loads.force_scales)
         n_dof = bodies.velocities.shape[1]
-        flat = (velocities, forces, previous, dead_loads, live_loads, inverse_masses, loads.speed_limits.ravel())
+        flat = (velocities, forces, previous, dead_loads, live_loads, inverse_masses, in_a_row(loads.speed_limits))
         guided = mode in (GUIDED, TILT_GUIDED)
         creeps = guided or mode in (CREEP, TILT_CREEP)
         stiffness = mobility(live_loads, inverse_masses) if creeps else 0.0
