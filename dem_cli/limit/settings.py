@@ -40,6 +40,7 @@ class PathSettings:
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
     opened: float = 1e-6  # ... and has this share of its stiffness, for the compliance of the start
+    in_fronts: int = 300  # degrees of freedom from which on factors are dense fronts in compiled code
     pivot: float = 1e-3  # of the largest in its column, below which a diagonal entry is no pivot
     singular: float = 1e-13  # added to the diagonal, over its mean
 
