@@ -38,6 +38,7 @@ from dem_cli.kernels.records import (
 )
 from dem_cli.kernels.spatial_dashpots import meet, resist
 from dem_cli.kernels.spin import add_gyration, add_spin_powers, kick_spins, rotation
+from dem_cli.kernels.vec import shaped_as
 
 TURNS_OF_IMPACT = 6  # pairs of sweeps where points have met, which have no impulse of the step before to start from
 
@@ -195,7 +196,7 @@ def make_shake(
                 if dampers.elements.shape[0] > 0:
                     book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
                 if n_moving > 0:
-                    old = means.reshape(velocities.shape)
+                    old = shaped_as(means, velocities)
                     book_supports(
                         joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip
