@@ -43,19 +43,8 @@ class Simulation:
     """
 
     LASTING = frozenset(
-        (
-            "settings",
-            "model",
-            "law",
-            "properties",
-            "kinematics",
-            "shape",
-            "following",
-            "stages",
-            "_scene",
-            "_loop",
-            "_masses",
-        )
+        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages")
+        + ("_scene", "_loop", "_masses")
     )
 
     def __init__(
