@@ -146,7 +146,11 @@ class DynamicSimulation(Simulation):
             gains=np.ones((n, GAINS[d])),
             packed=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
             holders=np.zeros(n, dtype=np.int64),
-            shares=np.ones(n),
+            active=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
+            awake=np.zeros(len(joints.blocks), dtype=np.int64),
+            met=np.zeros(len(joints.blocks), dtype=np.int8),
+            stirred=np.zeros(self.model.n_blocks, dtype=np.int8),
+            trifles=self._trifles(),
             slips=contacts.slip[:n].copy(),
             states=np.where(contacts.normal[:n] != 0.0, closed, OPEN).astype(np.int8),
             masses=self.masses,
@@ -155,6 +159,11 @@ class DynamicSimulation(Simulation):
             motions=np.zeros(of_modes),
             lifts=np.zeros(of_modes),
         )
+
+    def _trifles(self) -> np.ndarray:
+        """Impulses that no other joint of a block notices [N s], (n_blocks,)."""
+        weights = 1.0 / self.loads.force_scales[:, 0]
+        return np.where(self.model.fixed, np.inf, self.settings.history.trifle * weights * self.dt)
 
     def _decays(self) -> np.ndarray:
         """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""

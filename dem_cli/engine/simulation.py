@@ -42,10 +42,10 @@ class Simulation:
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
 
-    LASTING = frozenset(
-        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages")
-        + ("_scene", "_loop", "_masses")
-    )
+    LASTING = frozenset((
+        "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
+        "_loop", "_masses",
+    ))  # fmt: skip
 
     def __init__(
         self,
@@ -252,6 +252,8 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        threads = 1 if n_steps == 0 else self.threads
+        members = self.tracking.assemble(self.law.n_of_lanes, threads) if self.tiled else 1
         scene = (
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
@@ -260,7 +262,6 @@ class Simulation:
             loop = self._loop = self._loop or self._compiled().bound()
         else:
             self._scene, self._loop, loop = scene, None, self._compiled()
-        members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
         done: int = called_by_all(loop, (n_steps, mode, 1.0, *scene), members)
         return done
 

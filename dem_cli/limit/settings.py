@@ -12,10 +12,10 @@ class PathSettings:
     first: float = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
     growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
     # Where an increment fails: shares of it, first products in those that are set, and folds of the central path to go
-    # round.
+    # round. Longer ones last: they may leap over a failure, onto a branch that carries more.
     attempts: tuple[tuple[float, float, int], ...] = (
-        (1.0, 1.0, 0), (0.4, 1.0, 0), (0.16, 1.0, 0), (0.064, 1.0, 0), (2.2, 1.0, 0), (5.0, 1.0, 0), (1.0, 100.0, 0),
-        (0.4, 1.0, 4), (1.0, 1.0, 4),
+        (1.0, 1.0, 0), (0.4, 1.0, 0), (0.16, 1.0, 0), (0.064, 1.0, 0), (1.0, 100.0, 0), (0.4, 1.0, 4), (1.0, 1.0, 4),
+        (2.2, 1.0, 0), (5.0, 1.0, 0),
     )  # fmt: skip
     regrowth: float = 2.0  # of increments that had to be shorter, one after the other
     smallest: float = 0.15  # of the longest increment: the next one begins no shorter
@@ -40,6 +40,7 @@ class PathSettings:
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
     opened: float = 1e-6  # ... and has this share of its stiffness, for the compliance of the start
+    in_fronts: int = 300  # degrees of freedom from which on factors are dense fronts in compiled code
     pivot: float = 1e-3  # of the largest in its column, below which a diagonal entry is no pivot
     singular: float = 1e-13  # added to the diagonal, over its mean
 

@@ -112,10 +112,12 @@ def execute(
             loaded.located(),
             batch_of(case, text, folder, options, listener) as batch,
             stages_of(case, text, folder, options, recorder) as checkpoints,
-            crew_of(1 if many(case) else options.threads or 1),
+            crew_of(1 if many(case) else options.threads or 1) as crew,
         ):
             found = solved(solve or load_solver(batch), case, model, recorder)
             listener.solved()
+            if crew.used < crew.wanted:
+                listener.threads_without_work(crew.used, crew.wanted)
             if batch is not None:
                 found = with_names(found, names, quantities)
             summary = completed(found | writer.measured(found), loaded, model, started)

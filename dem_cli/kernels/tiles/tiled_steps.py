@@ -10,7 +10,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.advance import along_live_load, book, carry, driven_flow, kick, powers, steered_flow, steering
+from dem_cli.kernels.advance import (
+    along_live_load,
+    book,
+    carry,
+    driven_flow,
+    is_carried,
+    kick,
+    largest_unbalanced,
+    mobility,
+    powers,
+    steered_flow,
+    steering,
+)
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
     CREEP,
@@ -136,14 +148,10 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         flat = (velocities, forces, previous, dead_loads, live_loads, inverse_masses, in_a_row(loads.speed_limits))
         guided = mode in (GUIDED, TILT_GUIDED)
         creeps = guided or mode in (CREEP, TILT_CREEP)
-        stiffness = 0.0
-        if creeps:
-            for i in range(live_loads.size):
-                stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
-        carried, free = False, True
+        stiffness = mobility(live_loads, inverse_masses) if creeps else 0.0
+        carried, free = is_carried(velocities, inverse_masses), True
         for i in range(velocities.size):
             free = free and flat[6][i] == np.inf
-            carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
         member, members = join(tiles.team)
         met = 0
         control = tiles.controls[member]
@@ -260,10 +268,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                 ledger[FRICTION] += steps_work[part]
             for k in range(N_CONTROL):
                 common[k] = control[k]
-            largest = 0.0
-            for i in range(previous.size):
-                largest = max(largest, abs(previous[i]) * force_scales[i])
-            common[UNBALANCED] = largest
+            common[UNBALANCED] = largest_unbalanced(previous, force_scales)
             common[MEAN_LOAD] = mean_load / n_steps
         return n_steps
 

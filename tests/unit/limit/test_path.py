@@ -175,6 +175,30 @@ def test_increments_grow_again_after_one_that_failed(monkeypatch):
     assert path.load == pytest.approx(0.645963, rel=1e-4)
 
 
+RUBBLE = """
+[materials.stone]
+density = 2140.0
+[joints.dry]
+friction = 0.6
+[[structure]]
+kind = "voronoi-wall"
+cells = 70
+relax = 6
+size = [2.6, 2.9]
+seed = 8
+[analysis]
+kind = "pushover"
+"""
+
+
+def test_no_leap_over_a_failure_while_shorter_increments_lead_on(tmp_path):
+    """Rubble fails at 0.055; the first increment is hard, one of 2.2 times leads to a branch up to 0.09."""
+    (tmp_path / "rubble.toml").write_text(RUBBLE)
+    path = trace(*ingredients(tmp_path / "rubble.toml"))
+    assert path.status == OK
+    assert path.load == pytest.approx(0.05497, rel=1e-3)
+
+
 def test_light_blocks_on_heavy_ones():
     """Each of two towers tilts at w/h of itself, the weights of which differ by 1e6."""
     heavy, light = tower(2), tower(2)
