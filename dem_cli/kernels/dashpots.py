@@ -29,8 +29,8 @@ OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
 # Columns of Dampers.gains in the plane, of the points that touch: normal, levers about both centroids, C (half of
-# damping × step) across and along the joint, shares of their errors that impulses give up in one turn, rates before the step,
-# impulses, the least one across the joint.
+# damping × step) across and along the joint, shares of their errors that impulses give up in one turn, rates before the
+# step, impulses, the least one across the joint.
 NORMAL, LEVERS_A, LEVERS_B, VISCOUS, GAIN, RATE, IMPULSE, LEAST = 0, 2, 4, 6, 8, 10, 12, 14
 WIDTH = 16  # of which the last is empty: two lines of the cache
 
