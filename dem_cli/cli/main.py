@@ -15,6 +15,7 @@ import click
 
 from dem_cli.errors import DemError
 from dem_cli.interrupts import Interrupts, asked
+from dem_cli.late_modules import start_lightly
 from dem_cli.version import __version__
 
 COMMANDS = {  # name -> the line that `dem --help` shows
@@ -40,6 +41,7 @@ for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # read when NumPy 
     os.environ.setdefault(_threads, "1")
 
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for some reads all that is installed
+start_lightly()
 
 INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from dem_cli.pipeline.execution import RunOutcome, Solve
 
 
+MORE_THREADS = (
+    "several step a structure where its geometry is fixed and joints follow coulomb, from some 1,000 blocks on"
+)
+
+
 class TerminalListener(RunListener):
     """Shows a bar, says what is left where, draws the pictures that are asked for."""
 
@@ -35,6 +40,10 @@ class TerminalListener(RunListener):
     def solved(self) -> None:
         """The bar goes."""
         self.bar.stop()
+
+    def threads_without_work(self, used: int, wanted: int) -> None:
+        """A line on stderr."""
+        console.note(f"{used} of {wanted} threads had work: {MORE_THREADS}", self.quiet)
 
     def written(self, folder: Path) -> None:
         """The pictures, where they were asked for."""

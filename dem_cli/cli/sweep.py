@@ -141,7 +141,7 @@ def spread(
         with connected(scheduler, folder) as client:
             yield from on_cluster(client, do_job, jobs)
         return
-    from dem_cli.kernels.compilation.machine_code import cache_is_cold
+    from dem_cli.kernels.compilation.cache_folder import cache_is_cold
     from dem_cli.pipeline.batches import usable_cores
     from dem_cli.sweep.pool import each_done
 

@@ -126,7 +126,7 @@ def left_out(without: int, slow: Sequence[Path]) -> list[str]:
 def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, quiet: bool) -> Iterator[Record]:
     """Records of all cases as they come, the longest first."""
     from dem_cli.cli.words.run_counter import RunCounter
-    from dem_cli.kernels.compilation.machine_code import cache_is_cold
+    from dem_cli.kernels.compilation.cache_folder import cache_is_cold
     from dem_cli.pipeline.batches import usable_cores
     from dem_cli.sweep.pool import WorkerDeath, each_done
     from dem_cli.verify.case_selection import longest_first

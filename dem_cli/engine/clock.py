@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
 from dem_cli.interrupts import at_once
+from dem_cli.kernels.compilation.compile_time import Compilation
 from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
 
 if TYPE_CHECKING:
@@ -61,8 +62,6 @@ class Clock(Observer):
 
     def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
         """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
-        from dem_cli.kernels.compilation.machine_code import Compilation
-
         compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
         with compilation.heard():
             sim = make()

@@ -39,6 +39,7 @@ class HistorySettings:
     longest_look: float = 0.1  # s from one look to the next, at most
     rows: int = 200  # looks along the way: energies, collapse, whether all is well
     settling: int = 4_000_000  # steps to come to rest, at most
+    trifle: float = 1e-9  # of a weight × step: an impulse of landing that asks for no more sweeps of what is near
     blow_up: float = 0.2  # energy error over the largest energy from which a run is stopped
     inside: float = 1e-3  # of the smallest edge: blocks moved deeper into others than joints give when they close
     look: float = 0.1  # s of motion between two looks of one of many runs: collapse times are known to this

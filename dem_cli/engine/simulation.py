@@ -42,9 +42,10 @@ class Simulation:
     live_scale  live loads are multiplied by it inside, so that a multiplier is of the order of one
     """
 
-    LASTING = frozenset(
-        ("settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "_scene", "_loop")
-    )
+    LASTING = frozenset((
+        "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
+        "_loop", "_masses",
+    ))  # fmt: skip
 
     def __init__(
         self,
@@ -63,6 +64,7 @@ class Simulation:
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int] | None = None
+        self._masses: dict[float, np.ndarray] = {}  # inverse ones of joints that stay as they are, by their safety
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -156,6 +158,7 @@ class Simulation:
             self.tracking.tile(self.law.n_of_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
+        self._masses.clear()
         self.set_masses()
 
     def _in_tiles(self) -> bool:
@@ -168,16 +171,21 @@ class Simulation:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
         self.measured()
-        fictitious_masses(
-            self.model,
-            self.joints,
-            self.bodies,
-            self.shape,
-            self.safety,
-            self.loads.inverse_masses,
-            self.settings.relaxation.free_fall,
-            self.link_springs(),
-        )
+        if self.safety in self._masses:
+            self.loads.inverse_masses[:] = self._masses[self.safety]
+        else:
+            fictitious_masses(
+                self.model,
+                self.joints,
+                self.bodies,
+                self.shape,
+                self.safety,
+                self.loads.inverse_masses,
+                self.settings.relaxation.free_fall,
+                self.link_springs(),
+            )
+        if self.kinematics == "fixed" and not self.links:
+            self._masses[self.safety] = self.loads.inverse_masses.copy()
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 
     # -- links -------------------------------------------------------------------------------------
@@ -244,6 +252,8 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        threads = 1 if n_steps == 0 else self.threads
+        members = self.tracking.assemble(self.law.n_of_lanes, threads) if self.tiled else 1
         scene = (
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
@@ -252,7 +262,6 @@ class Simulation:
             loop = self._loop = self._loop or self._compiled().bound()
         else:
             self._scene, self._loop, loop = scene, None, self._compiled()
-        members = self.tracking.assemble(1 if n_steps == 0 else self.threads) if self.tiled else 1
         done: int = called_by_all(loop, (n_steps, mode, 1.0, *scene), members)
         return done
 

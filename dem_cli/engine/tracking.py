@@ -11,7 +11,7 @@ from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
 from dem_cli.engine.settings import DEFAULT, DetectionSettings
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.records import Bodies, Contacts
-from dem_cli.kernels.tiles.joint_tiles import tiled
+from dem_cli.kernels.tiles.joint_tiles import BLOCKS_OF_CHUNK, tiled
 from dem_cli.kernels.tiles.team import new_team
 from dem_cli.model.model import Model
 
@@ -54,16 +54,24 @@ class JointTracking:
         """Puts joints that do not move into tiles, for a law that reads so many numbers of a joint there."""
         joints = self.joints
         if isinstance(joints, FixedJoints):
-            n, d = self.model.n_blocks, self.model.dimension
-            self.joints = joints._replace(tiles=tiled(joints.blocks, joints.starts, n, d, n_numbers, threads))
+            n, d, members = self.model.n_blocks, self.model.dimension, self._of_use(threads)
+            self.joints = joints._replace(tiles=tiled(joints.blocks, joints.starts, n, d, n_numbers, members))
 
-    def assemble(self, threads: int) -> int:
-        """A team for the next call of the loop over tiles: of at most so many threads; returns how many."""
+    def _of_use(self, threads: int) -> int:
+        """How many of so many threads find work: one for each chunk of blocks but the first."""
+        return max(min(threads, (self.model.n_blocks - 1) // BLOCKS_OF_CHUNK), 1)
+
+    def assemble(self, n_numbers: int, threads: int) -> int:
+        """A team for the next call of the loop over tiles: of at most so many threads; returns how many.
+
+        Tiles are made anew where they have no room for them, as a run has that goes on with more than it began with.
+        """
         if not isinstance(self.joints, FixedJoints):
             return 1
-        tiles = self.joints.tiles
-        members = max(min(threads, len(tiles.books) - 1), 1)
-        tiles.team[:] = new_team(members)
+        members = self._of_use(threads)
+        if len(self.joints.tiles.controls) < members:
+            self.tile(n_numbers, members)
+        self.joints.tiles.team[:] = new_team(members)
         return members
 
     def _first(self, bodies: Bodies) -> JointArrays:

@@ -37,6 +37,7 @@ from dem_cli.kernels.records import (
     TRAVEL_LIMIT,
     UNBALANCED,
 )
+from dem_cli.kernels.vec import in_a_row
 
 
 @inline
@@ -198,6 +199,33 @@ def book(
     ledger[SUPPORT] += dt * support
 
 
+@inline
+def mobility(live_loads, inverse_masses):
+    """How fast the live load moves per unit of its multiplier and time, all blocks free."""
+    total = 0.0
+    for i in range(live_loads.size):
+        total += live_loads[i] * live_loads[i] * inverse_masses[i]
+    return total
+
+
+@inline
+def is_carried(velocities, inverse_masses):
+    """Whether a support moves."""
+    carried = False
+    for i in range(velocities.size):
+        carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
+    return carried
+
+
+@inline
+def largest_unbalanced(unbalanced, force_scales):
+    """The largest unbalanced force, over what it is measured by."""
+    largest = 0.0
+    for i in range(unbalanced.size):
+        largest = max(largest, abs(unbalanced[i]) * force_scales[i])
+    return largest
+
+
 def make_advance(
     contact_forces: Callable,
     drift: Callable,
@@ -218,21 +246,16 @@ def make_advance(
         like_rotation,
     ):  # fmt: skip
         """Advance by up to n_steps; returns the steps done (fewer when a new detection is due)."""
-        velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
-        previous = bodies.unbalanced.ravel()
-        dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
-        inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
-        speed_limits = loads.speed_limits.ravel()
+        velocities, forces = in_a_row(bodies.velocities), in_a_row(bodies.forces)
+        previous = in_a_row(bodies.unbalanced)
+        dead_loads, live_loads = in_a_row(loads.dead), in_a_row(loads.live)
+        inverse_masses, force_scales = in_a_row(loads.inverse_masses), in_a_row(loads.force_scales)
+        speed_limits = in_a_row(loads.speed_limits)
         guided = mode in (GUIDED, TILT_GUIDED)
         creeps = guided or mode in (CREEP, TILT_CREEP)
-        stiffness = 0.0
-        if creeps:
-            for i in range(live_loads.size):
-                stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
+        stiffness = mobility(live_loads, inverse_masses) if creeps else 0.0
         means, drags = bodies.means, bodies.drags
-        carried = False
-        for i in range(velocities.size):
-            carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
+        carried = is_carried(velocities, inverse_masses)
         mean_load = 0.0
         done = 0
         for _ in range(n_steps):
@@ -274,10 +297,7 @@ def make_advance(
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
                 break
-        largest = 0.0
-        for i in range(forces.size):
-            largest = max(largest, abs(previous[i]) * force_scales[i])
-        control[UNBALANCED] = largest
+        control[UNBALANCED] = largest_unbalanced(previous, force_scales)
         control[MEAN_LOAD] = mean_load / done
         return done
 

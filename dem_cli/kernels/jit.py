@@ -1,19 +1,31 @@
 """The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
 
-Numba is loaded when a kernel is first called (kernels/compilation/machine_code.py), half a second: what calls none, or
-calls them `uncompiled`, does without.
+Numba is loaded when a kernel is first compiled (kernels/compilation/machine_code.py), a third of a second: what was
+kept of an earlier process (kept_code.py), or is called `uncompiled`, does without.
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
 
-__all__ = ["CompiledKernel", "always_inline", "inline", "kernel", "literal_unroll", "named", "overload", "uncompiled"]
+from dem_cli.kernels.compilation.kept_code import OtherTypes, kept_kernel
+
+__all__ = [
+    "CompiledKernel",
+    "always_inline",
+    "built_in",
+    "inline",
+    "kernel",
+    "literal_unroll",
+    "named",
+    "overload",
+    "uncompiled",
+]
 
 Declaration = tuple[str, Callable, Any]  # name of a function in machine_code.py, and what it is given
 
@@ -32,6 +44,11 @@ class _Door:
                 self._tell(*declaration)
             else:
                 self.waiting.append(declaration)
+
+    def kept(self, function: Callable, arguments: tuple[Any, ...]) -> Callable | None:
+        """The function as machine code from an earlier process, for such arguments, without numba."""
+        with self.lock:
+            return kept_kernel(function, arguments)
 
     def compiled(self, function: Callable) -> Callable:
         """The function as machine code; loads numba."""
@@ -60,6 +77,7 @@ class CompiledKernel:
 
     def __init__(self, function: Callable) -> None:
         self.py_func = function
+        self._kept: list[Callable] = []  # for arguments of some types each
         self._machine_code: Any = None
 
     def __call__(self, *arguments: Any) -> Any:
@@ -67,6 +85,14 @@ class CompiledKernel:
         if _door.uncompiled:
             with np.errstate(all="ignore"):  # as compiled code does
                 return self.py_func(*arguments)
+        if self._machine_code is None:
+            for kept in self._kept:
+                with suppress(OtherTypes):
+                    return kept(*arguments)
+            found = _door.kept(self.py_func, arguments)
+            if found is not None:
+                self._kept.append(found)
+                return found(*arguments)
         return (self._machine_code or self._made())(*arguments)
 
     def bound(self) -> Callable:
@@ -74,7 +100,11 @@ class CompiledKernel:
 
         Numbers may be others of the same type; in the place of an array of another type it would read nonsense.
         """
-        overloads = [] if _door.uncompiled else list((self._machine_code or self._made()).overloads.values())
+        if _door.uncompiled:
+            return self
+        if self._machine_code is None and self._kept:
+            return self._kept[0] if len(self._kept) == 1 else self
+        overloads = list((self._machine_code or self._made()).overloads.values())
         return overloads[0].entry_point if len(overloads) == 1 else self
 
     def _made(self) -> Any:
@@ -125,6 +155,12 @@ def overload(function: Callable) -> Callable:
         return implementation
 
     return declared
+
+
+def built_in(function: Callable) -> Callable:
+    """For what compiled code has LLVM code for: kernels/compilation/views.py, by its name."""
+    _door.declare("declare_built_in", function, None)
+    return function
 
 
 def literal_unroll(links: tuple) -> tuple:

@@ -265,12 +265,16 @@ class Dampers(NamedTuple):
     first: int
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
     elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
-    rates: np.ndarray  # opening and sliding before the step [m/s]; in space where elements ask for it, (n_points, d)
-    gains: np.ndarray  # shares of their errors that impulses give up in one turn, (n_points, 2); in space what one turn
-    # reads, of the points that touch one behind another, columns as in spatial_dashpots.py, (n_points, 18)
-    packed: np.ndarray  # of space: the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    rates: np.ndarray  # opening and sliding before the step [m/s], where elements ask for it, (n_points, d)
+    gains: np.ndarray  # what a turn reads, of the points that touch one behind another, columns as in dashpots.py,
+    # (n_points, 16), in space as in spatial_dashpots.py, (n_points, 18)
+    packed: np.ndarray  # the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
     holders: np.ndarray  # and these the points of the rows, (n_points,)
-    shares: np.ndarray  # of the step in which the dashpot acts: a point may have met within it, (n_points,)
+    active: np.ndarray  # joints that have rows; the last entry is how many they are, (n_joints + 1,)
+    awake: np.ndarray  # those of them that are swept once more, (n_joints,)
+    met: np.ndarray  # 1: points of the joint have met in this step, (n_joints,) int8
+    stirred: np.ndarray  # last turn of this step in which others on a block notice its impulses, (n_blocks,) int8
+    trifles: np.ndarray  # impulses that nobody notices [N s]; infinite for supports, (n_blocks,)
     slips: np.ndarray  # slip path after the last step [m], (n_points,)
     states: np.ndarray  # 0: open, 1: sticking, 2: slipping, 3: closed from now on, (n_points,) int8
     masses: np.ndarray  # and moments of inertia in the plane; 0 of supports, and where inertia is a tensor (in

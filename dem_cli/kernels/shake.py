@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from dem_cli.kernels.advance import local_drag
 from dem_cli.kernels.dashpots import book_elements, book_supports
 from dem_cli.kernels.deformation.quadratic import bend, resist_bending
@@ -36,6 +38,7 @@ from dem_cli.kernels.records import (
 )
 from dem_cli.kernels.spatial_dashpots import meet, resist
 from dem_cli.kernels.spin import add_gyration, add_spin_powers, kick_spins, rotation
+from dem_cli.kernels.vec import shaped_as
 
 TURNS_OF_IMPACT = 6  # pairs of sweeps where points have met, which have no impulse of the step before to start from
 
@@ -51,16 +54,19 @@ def _kick(
     """
     n_dof, d = velocities.shape[1], len(like)
     keep, gain = (1.0 - 0.5 * rate * dt) / (1.0 + 0.5 * rate * dt), dt / (1.0 + 0.5 * rate * dt)
-    for block in range(velocities.shape[0]):
-        for k in range(n_dof):
-            i = block * n_dof + k
+    i = np.uint64(0)
+    for number in range(velocities.shape[0]):
+        block = np.uint64(number)
+        for dof in range(n_dof):
+            k = np.uint64(dof)
             before, inverse = velocities[block, k], inverse_masses[block, k]
-            total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if k < d else 0.0)
+            total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if dof < d else 0.0)
             drag = local_drag(total, 0.0, before, damp, 0.0)
             old[i], unbalanced[block, k], drags[i] = before, total, drag
             new = keep * before + gain * inverse * (total - drag)
             velocities[block, k] = new
             pulled[i] = new
+            i += np.uint64(1)
         kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, block, like_rotation)
 
 
@@ -76,12 +82,14 @@ def _book(
     """
     n_dof = velocities.shape[1]
     contact = external = local = drained = support = dashpots = 0.0
-    for block in range(velocities.shape[0]):
+    i = np.uint64(0)
+    for number in range(velocities.shape[0]):
+        block = np.uint64(number)
         drained, dashpots = add_spin_powers(
             drained, dashpots, velocities, old, pulled, shape, turns, block, like_rotation
         )  # fmt: skip
-        for k in range(n_dof):
-            i = block * n_dof + k
+        for dof in range(n_dof):
+            k = np.uint64(dof)
             before, after, force = old[i], velocities[block, k], forces[block, k]
             free = 1.0 if inverse_masses[block, k] > 0.0 else 0.0
             mean = 0.5 * (before + after)
@@ -93,6 +101,7 @@ def _book(
             drained += masses[block, k] * (before + pulled[i]) * mean
             dashpots += masses[block, k] * (after - pulled[i]) * mean
             pulled[i] = after
+            i += np.uint64(1)
     ledger[CONTACT] += dt * contact
     ledger[EXTERNAL] += dt * external
     ledger[DAMPING] += dt * local
@@ -187,7 +196,7 @@ def make_shake(
                 if dampers.elements.shape[0] > 0:
                     book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
                 if n_moving > 0:
-                    old = means.reshape(velocities.shape)
+                    old = shaped_as(means, velocities)
                     book_supports(
                         joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip

@@ -12,14 +12,19 @@ import numpy as np
 from dem_cli.kernels.dashpots import (
     OPEN,
     SLIPS,
+    begin_joint,
     closed_share,
+    end_joint,
     forget,
     least_of,
     meet_in_plane,
     pull,
     resist_in_plane,
+    stir,
     touch,
+    waken,
 )
+from dem_cli.kernels.dashpots import WIDTH as PLANAR_WIDTH
 from dem_cli.kernels.deformation.strain_dashpots import (
     give_pushes,
     mobility_of,
@@ -30,12 +35,12 @@ from dem_cli.kernels.deformation.strain_dashpots import (
 )
 from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, spun, sweep
-from dem_cli.kernels.vec import add_at, axpy, components, compose, dot, load, load_frame, scale, store
+from dem_cli.kernels.vec import add_at, axpy, components, compose, dot, load, load_frame, norm, scale, store
 
 # Columns of Dampers.gains: n, place, J, S (xx xy xz yy yz zz), C⁻¹ = EVENLY + ACROSS n nᵀ, least J·n.
 NORMAL, PLACE, IMPULSE, GAIN, EVENLY, ACROSS, LEAST = 0, 3, 6, 9, 15, 16, 17
 WIDTH = 18
-GAINS = {2: 2, 3: WIDTH}  # columns by dimension
+GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
 
 def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
@@ -55,7 +60,8 @@ def _meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rota
 def resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """The impulses of all dashpots on the velocities after the kick, from those of the step before.
 
-    turns: pairs of sweeps, to and fro. One is enough where the step before is a good guess.
+    turns: pairs of sweeps, to and fro, at most. One over all joints is enough where the step before is a good guess;
+    those after it are over joints of blocks that the one before has stirred (`stir`), beginning where points have met.
     """
     found = resist_in_plane if len(like) == 2 else resist_in_space
     found(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
@@ -145,18 +151,16 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
-    viscosity, rates, rows, packed, holders = (
-        dampers.viscosity, dampers.rates, dampers.gains, dampers.packed, dampers.holders
-    )  # fmt: skip
+    viscosity, rates, rows, holders = dampers.viscosity, dampers.rates, dampers.gains, dampers.holders
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     pushes[:] = 0.0
     motions, lifts = dampers.motions, dampers.lifts
-    with_elements, n_met, n_rows = dampers.elements.shape[0] > 0, 0, 0
+    with_elements, n_met, n_rows, n_active = dampers.elements.shape[0] > 0, 0, 0, 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         half, masses = 0.5 * viscosity[joint] * dt, inverse_masses[a, 0] + inverse_masses[b, 0]
-        packed[joint] = n_rows
+        begin_joint(dampers, joint, n_rows)
         mobilities = (load_mobility(bodies.mobilities, a, like), load_mobility(bodies.mobilities, b, like))
         xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
@@ -181,7 +185,9 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 opening, sliding = rates_at(frame, arms[0], arms[1], moved, spin_a, spin_b)
                 rates[point, 0] = opening
                 store(rates, point, 1, sliding)
-                n_met += met
+                if met:
+                    n_met += 1
+                    dampers.met[joint] = 1
                 if met and opening * dt < 0.0:
                     closed = closed_share(contacts.gaps[point], opening, dt)
                     share = 0.5 + closed
@@ -211,24 +217,23 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             add_at(pushes, b, 0, pushed, 1.0)
             add_at(pushes, a, 3, turned_a, -1.0)
             add_at(pushes, b, 3, turned_b, 1.0)
-    packed[blocks.shape[0]] = n_rows
+        n_active = end_joint(dampers, joint, n_rows, n_active)
+    dampers.packed[blocks.shape[0]], dampers.active[blocks.shape[0]] = n_rows, n_active
     return n_met
 
 
 @inline
-def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards, last, like, like_rotation):
-    """One sweep over all impulses; last: which are then kept with the points."""
+def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, backwards, like, like_rotation):
+    """One sweep over the impulses of n joints; backwards: which are then kept with the points, too."""
     blocks, frames, positions, velocities = joints.blocks, joints.frames, bodies.positions, bodies.velocities
     rows, packed, holders, memory, first = (
         dampers.gains, dampers.packed, dampers.holders, contacts.memory, dampers.first
     )  # fmt: skip
-    n, motions = blocks.shape[0], dampers.motions
+    motions = dampers.motions
     for i in range(n):
-        number = n - 1 - i if backwards else i
+        number = swept[n - 1 - i if backwards else i]
         joint = np.uint64(number)
-        low, high = packed[joint], packed[number + 1]
-        if low == high:
-            continue
+        low, high, change = packed[joint], packed[number + 1], 0.0
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
         mobility_a = load_mobility(bodies.mobilities, a, like)
@@ -246,11 +251,12 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards
             new = given_up(rows, row, normal, impulse, rate)
             store(rows, row, IMPULSE, new)
             gain = axpy(-1.0, impulse, new)
+            change = max(change, norm(gain))
             va, vb = axpy(-mass_a, gain, va), axpy(mass_b, gain, vb)
             push_modes(dampers.lifts, velocities, holders[row], a, b, gain)
             spin_a = axpy(-1.0, spun(mobility_a, moment(arm_a, gain)), spin_a)
             spin_b = axpy(1.0, spun(mobility_b, moment(arm_b, gain)), spin_b)
-            if last:
+            if backwards:
                 point = np.uint64(holders[row])
                 push, along = components(load_frame(frames, point, like), new)
                 memory[point, first] = max(push, rows[row, LEAST])
@@ -259,6 +265,7 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, backwards
         store(velocities, a, 3, spin_a)
         store(velocities, b, 0, vb)
         store(velocities, b, 3, spin_b)
+        stir(dampers, joint, a, b, turn, change)
 
 
 @inline
@@ -279,10 +286,20 @@ def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns
             velocities[block, k] += old[block * n_dof + k]
         add_at(velocities, block, 3, turning, 1.0)
         give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
-    for turn in range(turns):
-        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, False, False, like, like_rotation)
-        last = turn == turns - 1
-        _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, True, last, like, like_rotation)
+    dampers.stirred[:] = 0
+    swept, n_active = dampers.active, dampers.active[-1]
+    n = n_active
+    for turn in range(1, turns + 1):
+        if turn > 1:
+            swept, n = dampers.awake, waken(joints, dampers, n_active, turn)
+        if n == 0:
+            break
+        _sweep_in_space(
+            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, False, like, like_rotation
+        )  # fmt: skip
+        _sweep_in_space(
+            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, True, like, like_rotation
+        )  # fmt: skip
     for block in range(velocities.shape[0]):
         for k in range(n_dof):
             velocities[block, k] -= old[block * n_dof + k]

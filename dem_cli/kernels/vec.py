@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import always_inline, overload
+from dem_cli.kernels.jit import always_inline, built_in, overload
 
 
 def load(array, row, start, like):
@@ -242,3 +242,15 @@ def _norm(x):
     if len(x) == 1:
         return lambda x: abs(x[0])
     return lambda x: math.sqrt(dot(x, x))
+
+
+@built_in
+def in_a_row(array):
+    """All numbers of an array in C order, (n,), where they are."""
+    return array.reshape(-1)
+
+
+@built_in
+def shaped_as(array, like):
+    """The numbers of an array, where they are, in the shape of another one with as many."""
+    return array.reshape(like.shape)

@@ -15,11 +15,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix, vstack
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse import vstack
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
+from dem_cli.limit.newton_matrix import Factors, PointRows, newton_matrix
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.limit.slip_cones import SlipCones
 from dem_cli.limit.slip_pairs import SlipPairs
@@ -92,26 +92,16 @@ class Elastic:
         self.live_scale = float(np.abs(self.dead).sum() / np.abs(live).sum()) if largest > 0.0 else 1.0
         self.live = live * self.live_scale
         self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
+        self.lightest = min(1.0, float(self.own.min(initial=1.0))) ** 2  # square of the weight of the lightest block
         self.factorisations = 0
-        self.order = np.arange(len(self.columns))
-        self.permutation = "MMD_AT_PLUS_A"
-        rows = relative_motion(joints, d)
-        self._pattern(rows, structure, n_dof)
-        self._reorder(rows, structure, n_dof)
-
-    def _reorder(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
-        """Degrees of freedom in an order that keeps the factors sparse, found once for all factorisations."""
-        if not len(self.columns) or not self.n_points:
-            return
-        lu = self.elastic()
-        self.order = order = np.argsort(lu.perm_c)
+        elastic = [self.kn, *self.slips.elastic(self.ks)]
+        self.matrix = newton_matrix(self._points(structure), elastic, settings.path)
+        self.order = order = self.matrix.order
         self.bn, self.bt = self.bn[:, order].tocsr(), self.bt[:, order].tocsr()
         self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
         self.columns, self.dead, self.live, self.own = (
             values[order] for values in (self.columns, self.dead, self.live, self.own)
         )
-        self._pattern(rows, structure, n_dof)
-        self.permutation = "NATURAL"
 
     def displacements(self, scaled: np.ndarray) -> np.ndarray:
         """Displacements of the free degrees of freedom as the structure numbers them [m, rad], (n_free,)."""
@@ -124,51 +114,24 @@ class Elastic:
         """Number of contact points."""
         return len(self.kn)
 
-    def _pattern(self, rows: np.ndarray, structure: Structure, n_dof: int) -> None:
-        """Where the entries of every point go in the matrix, and what they are made of."""
-        dofs = free_columns(structure.model, structure.joints).reshape(self.n_points, 2 * n_dof)
-        place = np.empty_like(self.order)
-        place[self.order] = np.arange(len(place))
-        dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)])
-        scale = np.where(dofs < 0, 0.0, self.columns[np.maximum(dofs, 0)])
-        along = [rows[:, k].reshape(self.n_points, -1) * scale for k in range(rows.shape[1])]
-        self.outer = []
-        for first, second in ((0, 0), *self.slips.products_of_rows):
-            outer = np.einsum("pi,pj->pij", along[first], along[second])
-            if 0 < first < second:  # of two tangents, either way round
-                outer = outer + outer.swapaxes(1, 2)
-            self.outer.append(outer.reshape(self.n_points, -1))
-        self.work = np.empty((2, *self.outer[0].shape))
-        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
-        used, n = (i >= 0) & (j >= 0), len(self.columns)
-        own = np.arange(n) * (n + 1)  # the diagonal is there even of what restraints hold
-        keys = np.unique(np.concatenate([j[used].astype(np.int64) * n + i[used], own]))
-        place = np.searchsorted(keys, j[used].astype(np.int64) * n + i[used])
-        self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
-        self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
-        self.place[used.ravel()] = place
-        self.diagonal = np.flatnonzero(self.indices == keys // n)
+    def _points(self, structure: Structure) -> PointRows:
+        """Motions at every point by scaled degrees of freedom."""
+        columns = free_columns(structure.model, structure.joints)
+        scale = np.where(columns < 0, 0.0, np.append(self.columns, 0.0)[columns])
+        rows = relative_motion(structure.joints, self.dimension) * scale[:, None]
+        return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns))
 
-    def elastic(self, share: np.ndarray | float = 1.0) -> SuperLU:
+    def elastic(self, share: np.ndarray | float = 1.0) -> Factors:
         """LU of the structure while nothing slips; share: of the stiffness of every point."""
         return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
 
-    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> SuperLU:
+    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> Factors:
         """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
 
-        Raises RuntimeError where it is singular.
+        Factors of the call before are lost. Raises RuntimeError where it is singular.
         """
         self.factorisations += 1
-        values, more = self.work
-        np.multiply(stiff_n[:, None], self.outer[0], out=values)
-        for factor, outer in zip(tangential, self.outer[1:], strict=True):
-            values += np.multiply(factor[:, None], outer, out=more)
-        data = np.bincount(self.place, values.ravel(), len(self.indices) + 1)[:-1]
-        path = self.settings.path
-        data[self.diagonal] += path.singular * np.abs(data[self.diagonal]).mean()
-        n = len(self.columns)
-        matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
-        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=path.pivot, options={"SymmetricMode": True})
+        return self.matrix.factorised([stiff_n, *tangential])
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
         """Unbalanced forces, (n_free,)."""

@@ -1,4 +1,7 @@
-"""Datasets of an HDF5 group that grow row by row; handles are kept: opening one costs more than a row."""
+"""Datasets of an HDF5 group that grow row by row.
+
+Handles are kept: opening one costs more than a row. Rows wait for `write_out`: HDF5 takes as long for one as for many.
+"""
 
 from __future__ import annotations
 
@@ -33,17 +36,27 @@ class GrowingDataset:
         chunk = max(1, min(n_rows, _CHUNK_BYTES // row_bytes))
         self.data = data = described_dataset(group, name, (0, *shape), dtype, said, (chunk, *width))
         self.id, self.shape, self.dtype, self.length = data.id, shape, dtype, 0
+        self._waiting: list[np.ndarray] = []
+        self._written = 0
 
     def append(self, rows: np.ndarray) -> int:
         """Add rows; returns the length that there was before."""
         start = self.length
         self.length = start + len(rows)
         if len(rows):
+            self._waiting.append(np.array(rows, dtype=self.dtype, order="C"))  # which may change afterwards
+        return start
+
+    def write_out(self) -> None:
+        """What waits becomes part of the file."""
+        if self._waiting:
+            rows = self._waiting[0] if len(self._waiting) == 1 else np.concatenate(self._waiting)
+            self._waiting.clear()
             self.id.set_extent((self.length, *self.shape))
             space = self.id.get_space()
-            space.select_hyperslab((start, *(0 for _ in self.shape)), rows.shape)
-            self.id.write(h5s.create_simple(rows.shape), space, np.ascontiguousarray(rows, dtype=self.dtype))
-        return start
+            space.select_hyperslab((self._written, *(0 for _ in self.shape)), rows.shape)
+            self.id.write(h5s.create_simple(rows.shape), space, rows)
+            self._written = self.length
 
 
 class GrowingGroup:
@@ -66,6 +79,11 @@ class GrowingGroup:
             column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, n_rows, said)
             self._columns[name] = column
         return column.append(rows)
+
+    def write_out(self) -> None:
+        """What waits becomes part of the file."""
+        for column in self._columns.values():
+            column.write_out()
 
     def append_one(self, name: str, value: float, dtype: type = np.int64) -> int:
         """Add a single number."""

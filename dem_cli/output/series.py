@@ -94,6 +94,7 @@ class SeriesWriter:
             if self.names:
                 self._columns.append("monitors", monitors)
             self._columns.append("time", times)  # last: it counts
+            self._columns.write_out()
 
     def write_csv(self, path: Path) -> None:
         """All of it as text, one line per sample."""

@@ -6,6 +6,7 @@ blocks.vtkhdf, for those who open results.h5 itself.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -74,12 +75,14 @@ class ResultWriter:
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
+        self.patience, self._on_disk = 0.0, time.monotonic()  # s that frames may wait before they are on disk
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
         self._files: list[Hdf5File] = []
         self._joints_of: JointsOf | None = None
         self._joints: FollowedJoints | None = None
         self._links: GrowingGroup | None = None
+        self._joint_states: GrowingGroup | None = None
         self._vtk: ParaViewFiles | None = None
         self._series: SeriesWriter | None = None
         self._guarded(lambda: self._start(case_text, provenance))
@@ -115,7 +118,7 @@ class ResultWriter:
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
-        """Keep a snapshot; everything up to it is on disk when this returns."""
+        """Keep a snapshot; everything up to it is on disk when this returns, or waits until the next one (patience)."""
         self._guarded(lambda: self._frame(frame))
         self.last_frame = frame
 
@@ -167,6 +170,7 @@ class ResultWriter:
 
         def finish() -> None:
             self._flush_rows()
+            self._write_out()
             if self._series is not None:
                 self._series.write_csv(self.folder / HISTORY_TABLE)
             self.dem.attrs["status"] = str(summary["status"])
@@ -190,8 +194,15 @@ class ResultWriter:
 
     def _flush(self) -> None:
         self._flush_rows()
+        self._write_out()
         for file in self._files:
             file.flush()
+        self._on_disk = time.monotonic()
+
+    def _write_out(self) -> None:
+        for each in (self._frames, self._contacts, self._history, self._joint_states, self._links, self._vtk):
+            if each is not None:
+                each.write_out()
 
     def _flush_rows(self) -> None:
         rows, self._rows = self._rows, []
@@ -206,13 +217,14 @@ class ResultWriter:
             assert self._vtk is not None
         self._store_frame(frame)
         now = None
-        if self._joints is not None:
+        if self._joints is not None and self._joint_states is not None:
             now = self._joints.at(frame.positions, frame.orientations, frame.contacts)
             for name, values in now.states._asdict().items():
                 self._joint_states.append(name, values[np.newaxis])
         self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
         self.n_frames += 1
-        self._flush()
+        if time.monotonic() - self._on_disk >= self.patience:
+            self._flush()
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""

@@ -35,6 +35,7 @@ class SolverOutcome(Protocol):
 
 
 ONE_OF_MANY = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
+PATIENCE = 1.0  # s that frames wait before they are on disk: what a kill may cost of them
 Solve = Callable[["Case", "Model", "Observer"], SolverOutcome]
 RunOutcome = tuple[dict[str, Any], Path]  # the summary, and the folder with the results
 
@@ -103,6 +104,7 @@ def execute(
     ):
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
+        writer.patience = PATIENCE
         writer.follow(joints_of)
         options, recorder = options or BatchOptions(), Recorder(writer, listener)
         with (
@@ -110,10 +112,12 @@ def execute(
             loaded.located(),
             batch_of(case, text, folder, options, listener) as batch,
             stages_of(case, text, folder, options, recorder) as checkpoints,
-            crew_of(1 if many(case) else options.threads or 1),
+            crew_of(1 if many(case) else options.threads or 1) as crew,
         ):
             found = solved(solve or load_solver(batch), case, model, recorder)
             listener.solved()
+            if crew.used < crew.wanted:
+                listener.threads_without_work(crew.used, crew.wanted)
             if batch is not None:
                 found = with_names(found, names, quantities)
             summary = completed(found | writer.measured(found), loaded, model, started)

@@ -14,6 +14,9 @@ class RunListener:
     def solved(self) -> None:
         """The solver has ended; its results are being completed."""
 
+    def threads_without_work(self, used: int, wanted: int) -> None:
+        """Fewer threads stepped the structure than were wanted."""
+
     def written(self, folder: Path) -> None:
         """All files of a run that nobody interrupted are in `folder`, which is about to get its final name; pictures
         may join them.

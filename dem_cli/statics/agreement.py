@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.statics.failure_bracket import FailureLoad
 from dem_cli.statics.warm_start import CURVE
+from dem_cli.statics.warm_start import PATH as AT_PATH
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
 FROM_CURVE = "displacement control"
@@ -21,7 +22,9 @@ LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid bl
 class History(NamedTuple):
     """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
 
-    method: str  # RAISED, FROM_CURVE, IN_LARGE_STEPS, PATH, CREEP or LIMIT
+    method: (
+        str  # RAISED, FROM_CURVE, IN_LARGE_STEPS, PATH, CREEP or LIMIT; PATH as well where a search began at its end
+    )
     load: float
     finished: bool  # False: at least this load
 
@@ -40,13 +43,14 @@ def unique(search: FailureLoad, resolution: float) -> bool:
 
 def histories(search: FailureLoad) -> list[History]:
     """All ways to failure that were tried, that of the answer first."""
-    way = FROM_CURVE if search.start.get("kind") == CURVE else RAISED
+    way = {CURVE: FROM_CURVE, AT_PATH: PATH}.get(str(search.start.get("kind")), RAISED)
     found = [] if search.low is None else [History(way, search.low, search.found and not search.wide)]
     if search.earlier is not None:
         found.append(History(IN_LARGE_STEPS, search.earlier[0], True))
     limits = search.limits
-    if limits is not None and limits.followed and limits.path is not None and limits.path.load is not None:
-        found.append(History(PATH, limits.path.load, limits.path.finished))
+    path = limits.path if way != PATH and limits is not None and limits.followed else None
+    if path is not None and path.load is not None:
+        found.append(History(PATH, path.load, path.finished))
     if limits is not None and search.bound is not None and not limits.slides:
         found.append(History(LIMIT, search.bound, True))
     if search.crept_beyond and search.crept is not None:
@@ -60,8 +64,8 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
         return None
     low, high = search.carried, search.high
     margin = resolution * max(abs(low), abs(high))
-    others = histories(search)[1:]
-    if any(one.method == PATH and one.finished and low - margin <= one.load <= high + margin for one in others):
+    first, *others = found = histories(search)
+    if any(one.method == PATH and one.finished and low - margin <= one.load <= high + margin for one in found):
         # Where joints lock because they dilate, nothing slides in the mechanism of the bound, far above any history.
         others = [one for one in others if one.method != LIMIT]
     apart = [other for other in others if other.load > high + margin or (other.finished and other.load < low - margin)]
@@ -69,7 +73,8 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
         return None
     loads = [low, *(other.load for other in apart)]
     named = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
-    why = f"{low:.5g} raised from gravity in steps, {named}"
+    way = "from the end of the zero-dilation path" if first.method == PATH else "raised from gravity in steps"
+    why = f"{low:.5g} {way}, {named}"
     return {"lowest": float(min(loads)), "highest": float(max(loads)), "why": why}
 
 
@@ -85,6 +90,14 @@ _BY = {
 }
 
 
+def _way(search: FailureLoad) -> str:
+    """From where, in words."""
+    if search.start.get("kind") != AT_PATH:
+        return "gravity"
+    path = search.limits.path if search.limits is not None else None
+    return "gravity by a smoothed path" if path is not None and path.smoothing else "the zero-dilation path"
+
+
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
     """Words of warning where histories differ, or where the bracket is wider than asked for."""
     said = []
@@ -93,7 +106,7 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
         said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
     if search.found and search.wide and search.width is not None:
         said.append(
-            f"reached from gravity: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket of "
-            f"{100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
+            f"reached from {_way(search)}: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
+            f"of {100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
         )
     return said

@@ -15,6 +15,7 @@ from dem_cli.cli.words import console
 from dem_cli.output.folder import OutputFolder
 from dem_cli.output.reader import read
 from dem_cli.output.summary import exit_code
+from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.monitor_names import monitor_names
 
 
@@ -127,6 +128,14 @@ def test_a_picture_that_cannot_be_drawn_costs_no_results(tmp_path, monkeypatch, 
     summary, folder = run(tmp_path, solver(), plot=True)
     assert (summary["status"], (folder / "results.h5").is_file()) == ("ok", True)
     assert "no pictures: internal error: ZeroDivisionError: in a picture" in capsys.readouterr().err
+
+
+def test_threads_without_work_are_said(tmp_path, capsys):
+    summary, _ = run(tmp_path, solver(), options=BatchOptions(threads=2))
+    assert "threads" not in json.dumps(summary)
+    assert "1 of 2 threads had work: several step a structure where" in capsys.readouterr().err
+    run(tmp_path, solver(), options=BatchOptions(threads=1))
+    assert "threads" not in capsys.readouterr().err
 
 
 def test_monitor_names_differ(tmp_path):

@@ -13,6 +13,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 IMPORT_NAMES = {  # distribution: how it is imported
     "vtk": "vtkmodules", "box2d": "Box2D", "pillow": "PIL", "mujoco-core": "mujoco",
 }  # fmt: skip
+OF_OTHERS = {"llvmlite"}  # numba names the one version of it that it works with
 TOOLS = {"mypy", "pytest-timeout", "pytest-xdist", "ruff", "furo", "myst-parser", "sphinx"}  # run, not imported
 EXTRA_OF = {  # may be absent
     "pymunk": "bench", "box2d": "bench", "mujoco-core": "bench",
@@ -37,7 +38,7 @@ def imported(*folders: str) -> set[str]:
                     found |= {alias.name.split(".")[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and node.module:
                     found.add(node.module.split(".")[0])
-    return found - set(sys.stdlib_module_names) - ours
+    return found - set(sys.stdlib_module_names) - ours - OF_OTHERS
 
 
 def modules(distributions: set[str]) -> set[str]:

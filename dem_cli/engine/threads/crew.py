@@ -9,28 +9,40 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
 
-_wanted: ContextVar[int] = ContextVar("threads", default=1)
+
+@dataclass
+class Crew:
+    """Threads that simulations may step with, and the most that one was stepped with so far."""
+
+    wanted: int
+    used: int = 1
+
+
+_crew: ContextVar[Crew | None] = ContextVar("crew", default=None)
 
 
 @contextmanager
-def crew_of(threads: int) -> Iterator[None]:
+def crew_of(threads: int) -> Iterator[Crew]:
     """Simulations that are made inside may step with so many threads."""
-    token = _wanted.set(threads)
+    crew = Crew(threads)
+    token = _crew.set(crew)
     try:
-        yield
+        yield crew
     finally:
-        _wanted.reset(token)
+        _crew.reset(token)
 
 
 def threads_wanted() -> int:
     """How many threads a simulation may use."""
-    return _wanted.get()
+    crew = _crew.get()
+    return crew.wanted if crew is not None else 1
 
 
 def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> Any:
@@ -42,6 +54,8 @@ def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> A
         return loop(*arguments)
     from concurrent.futures import wait
 
+    if (crew := _crew.get()) is not None:
+        crew.used = max(crew.used, members)
     pool = _pool(os.getpid(), members)
     calls: list[Future] = []
     try:

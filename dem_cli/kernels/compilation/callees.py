@@ -16,11 +16,13 @@ from numba.core.compiler_machinery import FunctionPass, PassManager, register_pa
 from numba.core.typed_passes import (
     AnnotateTypes,
     DumpParforDiagnostics,
+    NativeLowering,
     NopythonRewrites,
     NoPythonSupportedFeatureValidation,
 )
 from numba.core.untyped_passes import InlineClosureLikes, WithLifting
 
+from dem_cli.kernels.compilation.entries import KernelLowering
 from dem_cli.kernels.compilation.references import pass_records_by_reference
 from dem_cli.kernels.compilation.shortcuts import take_shortcuts
 
@@ -116,9 +118,17 @@ class CalleeCompiler(Compiler):
 
 
 class KernelCompiler(CalleeCompiler):
-    """The same for kernels."""
+    """The same for kernels, which get an entry."""
 
     library = KernelPass
+
+    def define_pipelines(self) -> list[PassManager]:
+        """One of them."""
+        (passes,) = super().define_pipelines()
+        swapped = [(KernelLowering if step is NativeLowering else step, word) for step, word in passes.passes]
+        passes.passes = swapped
+        passes.finalize()
+        return [passes]
 
 
 TRIED = "0.68."  # numba
@@ -126,6 +136,6 @@ CALLEE: dict[str, Any] = {}  # options of numba's `jit`
 KERNEL: dict[str, Any] = {}
 if numba.__version__.startswith(TRIED):
     CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}
-    KERNEL = {"pipeline_class": KernelCompiler, "no_cfunc_wrapper": True}
+    KERNEL = {"pipeline_class": KernelCompiler}
     take_shortcuts(CalleeCompiler)
     pass_records_by_reference()

@@ -10,7 +10,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.advance import along_live_load, book, carry, driven_flow, kick, powers, steered_flow, steering
+from dem_cli.kernels.advance import (
+    along_live_load,
+    book,
+    carry,
+    driven_flow,
+    is_carried,
+    kick,
+    largest_unbalanced,
+    mobility,
+    powers,
+    steered_flow,
+    steering,
+)
 from dem_cli.kernels.jit import inline, kernel, named
 from dem_cli.kernels.records import (
     CREEP,
@@ -32,7 +44,7 @@ from dem_cli.kernels.records import (
 from dem_cli.kernels.tiles.joint_tiles import BLOCKS_OF_CHUNK, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.team import join, wait
 from dem_cli.kernels.tiles.tiled_forces import TiledForces, gather
-from dem_cli.kernels.vec import axpy, load, store
+from dem_cli.kernels.vec import axpy, in_a_row, load, store
 
 # Columns of `books` behind those of the ledger.
 ALONG, POWER, SPEED, FORCE, FLOW = N_LEDGER, N_LEDGER + 1, N_LEDGER + 2, N_LEDGER + 3, N_LEDGER + 4
@@ -128,22 +140,18 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         tiles = joints.tiles
         books, n_tiles, n_blocks = tiles.books, tiles.slots.size - 1, bodies.velocities.shape[0]
         n_chunks, of_chunk = books.shape[0], BLOCKS_OF_CHUNK * bodies.velocities.shape[1]
-        velocities, forces = bodies.velocities.ravel(), bodies.forces.ravel()
-        previous = bodies.unbalanced.ravel()
-        dead_loads, live_loads = loads.dead.ravel(), loads.live.ravel()
-        inverse_masses, force_scales = loads.inverse_masses.ravel(), loads.force_scales.ravel()
+        velocities, forces = in_a_row(bodies.velocities), in_a_row(bodies.forces)
+        previous = in_a_row(bodies.unbalanced)
+        dead_loads, live_loads = in_a_row(loads.dead), in_a_row(loads.live)
+        inverse_masses, force_scales = in_a_row(loads.inverse_masses), in_a_row(loads.force_scales)
         n_dof = bodies.velocities.shape[1]
-        flat = (velocities, forces, previous, dead_loads, live_loads, inverse_masses, loads.speed_limits.ravel())
+        flat = (velocities, forces, previous, dead_loads, live_loads, inverse_masses, in_a_row(loads.speed_limits))
         guided = mode in (GUIDED, TILT_GUIDED)
         creeps = guided or mode in (CREEP, TILT_CREEP)
-        stiffness = 0.0
-        if creeps:
-            for i in range(live_loads.size):
-                stiffness += live_loads[i] * live_loads[i] * inverse_masses[i]
-        carried, free = False, True
+        stiffness = mobility(live_loads, inverse_masses) if creeps else 0.0
+        carried, free = is_carried(velocities, inverse_masses), True
         for i in range(velocities.size):
             free = free and flat[6][i] == np.inf
-            carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
         member, members = join(tiles.team)
         met = 0
         control = tiles.controls[member]
@@ -260,10 +268,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                 ledger[FRICTION] += steps_work[part]
             for k in range(N_CONTROL):
                 common[k] = control[k]
-            largest = 0.0
-            for i in range(previous.size):
-                largest = max(largest, abs(previous[i]) * force_scales[i])
-            common[UNBALANCED] = largest
+            common[UNBALANCED] = largest_unbalanced(previous, force_scales)
             common[MEAN_LOAD] = mean_load / n_steps
         return n_steps
 

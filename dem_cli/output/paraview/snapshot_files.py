@@ -84,6 +84,12 @@ class ParaViewFiles:
             numbers = {"link": np.arange(len(links.starts) - 1, dtype=np.int32)}
             self.links = GridSeries(opened(LINKS), lines(links.starts), numbers, declared(LINK_FIELDS | STEP_FIELDS, d))
 
+    def write_out(self) -> None:
+        """What waits becomes part of the files."""
+        for series in (self.blocks, self.points, self.joints, self.links):
+            if series is not None:
+                series.write_out()
+
     def add(self, value: float, frame: Frame, joints: JointsNow | None) -> None:
         """Append a frame; value: what ParaView counts it by."""
         model, steps = self.model, step_fields(frame)

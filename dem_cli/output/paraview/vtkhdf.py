@@ -57,6 +57,10 @@ class _Series:
         self.columns.append_one("Steps/Values", value, np.float64)
         self.columns.append_one("Steps/NumberOfParts", 1)
         self.n_steps += 1
+
+    def write_out(self) -> None:
+        """What waits becomes part of the file."""
+        self.columns.write_out()
         self.root["Steps"].attrs["NSteps"] = self.n_steps
 
 
@@ -67,8 +71,8 @@ class GridSeries(_Series):
         """fields: of the cells, the same in all steps."""
         super().__init__(file, "UnstructuredGrid", declared)
         root = self.root
-        self.static = tuple(fields)
-        n_points, n_cells = int(cells.starts[-1]), len(cells.types)
+        self.static, self.n_cells = tuple(fields), len(cells.types)
+        n_points, n_cells = int(cells.starts[-1]), self.n_cells
         for name, count in (("Points", n_points), ("Cells", n_cells), ("ConnectivityIds", n_points)):
             root[f"NumberOf{name}"] = np.array([count], dtype=np.int64)
         root["Connectivity"], root["Offsets"], root["Types"] = cells.corners, cells.starts, cells.types
@@ -87,7 +91,7 @@ class GridSeries(_Series):
         """Append a step; the cell fields of the constructor are the same in all."""
         columns = self.columns
         columns.append_one("Steps/PointOffsets", columns.append("Points", points))
-        columns.append_one("Steps/CellSteps", self.n_steps * (len(self.root["Types"]) if cell_fields else 0))
+        columns.append_one("Steps/CellSteps", self.n_steps * (self.n_cells if cell_fields else 0))
         columns.append_one(_PARTS, 0)
         self._append_fields("PointData", point_fields)
         self._append_fields("CellData", cell_fields)

@@ -6,7 +6,7 @@ import numba
 import pytest
 
 from dem_cli.engine.clock import Clock
-from dem_cli.kernels.compilation.machine_code import Compilation
+from dem_cli.kernels.compilation.compile_time import Compilation
 from dem_cli.output.record import Observer
 
 

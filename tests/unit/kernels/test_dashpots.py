@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dem_cli.kernels.dashpots import SLIPS, STARTS, STICKS
+from dem_cli.kernels.dashpots import OPEN, SLIPS, STARTS, STICKS
 from dem_cli.kernels.spatial_dashpots import LEAST, WIDTH, given_up, meet, put_gains, resist
 
 RANDOM = np.random.default_rng(5)
@@ -44,8 +44,9 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     )  # fmt: skip
     dampers = SimpleNamespace(
         first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
-        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int), shares=np.ones(n),
-        slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
+        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int),
+        active=np.zeros(3, int), awake=np.zeros(2, int), met=np.zeros(2, np.int8), stirred=np.zeros(3, np.int8),
+        trifles=np.zeros(3), slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
         motions=np.zeros(0), lifts=np.zeros(0), strained=None,
     )  # fmt: skip
     return joints, bodies, contacts, inverse, dampers
@@ -76,11 +77,14 @@ LIKE = (0.0, 0.0, 0.0)
 
 
 def step(joints, bodies, contacts, inverse, dampers, turns: int, kick: np.ndarray, dt: float = 1e-2) -> None:
-    """What a step does: rates before, velocities after the kick, dashpots."""
-    meet(joints, contacts, bodies, inverse, dampers, dt, LIKE, LIKE)
-    bodies.means = bodies.velocities.ravel().copy()
-    bodies.velocities += kick
-    resist(joints, contacts, bodies, inverse, dampers, dt, turns, LIKE, LIKE)
+    """What a step does: rates before, velocities after the kick, dashpots; so often, from impulses found before."""
+    before, slips = bodies.velocities.copy(), dampers.slips.copy()
+    for _ in range(turns):
+        bodies.velocities[:], dampers.slips[:] = before, slips
+        meet(joints, contacts, bodies, inverse, dampers, dt, LIKE, LIKE)
+        bodies.means = bodies.velocities.ravel().copy()
+        bodies.velocities += kick
+        resist(joints, contacts, bodies, inverse, dampers, dt, 1, LIKE, LIKE)
 
 
 def exact(joints, bodies, inverse, before: np.ndarray, kicked: np.ndarray, viscosity: float = 1.0):
@@ -150,6 +154,35 @@ def test_points_that_slip_have_no_dashpot_along_the_joint():
     assert (dampers.states[::2] == SLIPS).all()
     assert (contacts.memory[::2, 1:] == 0.0).all()
     assert (np.abs(contacts.memory[1::2, 1:]) > 0.0).all()
+
+
+def test_turns_go_on_where_points_have_met():
+    """From no impulse at all: six turns are those over all joints; nothing is stirred where trifles are large."""
+    found = []
+    for trifle in (0.0, np.inf):
+        joints, bodies, contacts, inverse, dampers = scene(viscosity=0.05)
+        contacts.gaps[:] = -1.0
+        dampers.states[:] = OPEN
+        dampers.trifles[:] = np.inf, trifle, trifle
+        meet(joints, contacts, bodies, inverse, dampers, 1e-2, LIKE, LIKE)
+        assert dampers.met.all()
+        bodies.means = bodies.velocities.ravel().copy()
+        resist(joints, contacts, bodies, inverse, dampers, 1e-2, 6, LIKE, LIKE)
+        found.append((contacts.memory.copy(), dampers.stirred.tolist()))
+    joints, bodies, contacts, inverse, dampers = scene(viscosity=0.05)
+    contacts.gaps[:] = -1.0
+    before = bodies.velocities.copy()
+    for turn in range(6):
+        dampers.states[:] = OPEN
+        bodies.velocities[:] = before
+        meet(joints, contacts, bodies, inverse, dampers, 1e-2, LIKE, LIKE)
+        bodies.means = before.ravel().copy()
+        resist(joints, contacts, bodies, inverse, dampers, 1e-2, 1, LIKE, LIKE)
+        if turn == 0:
+            assert (found[1][0] == contacts.memory).all()
+    assert found[0][1][1:] == [6, 6]
+    assert found[1][1] == [0, 0, 0]
+    assert found[0][0] == pytest.approx(contacts.memory, rel=1e-9, abs=1e-9)
 
 
 def test_open_slots_hold_nothing():

@@ -14,6 +14,7 @@ from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.threads.crew import called_by_all, crew_of
 from dem_cli.kernels import records as slot
+from dem_cli.output.resume.kept_objects import decoded, encoded
 
 WAYS = {"fire": slot.FIRE, "hold": slot.HOLD_LOAD, "creep": slot.CREEP, "guided": slot.GUIDED}
 
@@ -92,6 +93,24 @@ def test_any_number_of_threads_finds_the_same_bits():
             found[threads] += state(sim)
     assert_same(found[2], found[1])
     assert_same(found[3], found[1])
+
+
+def test_a_run_goes_on_with_other_threads():
+    """It takes the number that it is resumed with, as far as these have work: three chunks of blocks but the first."""
+    begun = {threads: pushed(40, 40, threads) for threads in (1, 3)}
+    for sim in begun.values():
+        sim.advance(12, slot.FIRE)
+    ended = {}
+    for before, after, used in ((1, 10**9, 3), (3, 1, 1)):
+        ended[used] = pushed(40, 40, after)
+        decoded(encoded([begun[before]], None), [ended[used]])
+        with crew_of(after) as crew:
+            ended[used].advance(12, slot.FIRE)
+        assert crew.used == used
+    begun[1].advance(12, slot.FIRE)
+    assert len(ended[3].joints.tiles.controls) == 3
+    assert_same(state(ended[3]), state(begun[1]))
+    assert_same(state(ended[1]), state(begun[1]))
 
 
 def test_few_points_are_no_tiles():

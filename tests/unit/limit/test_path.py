@@ -175,6 +175,30 @@ def test_increments_grow_again_after_one_that_failed(monkeypatch):
     assert path.load == pytest.approx(0.645963, rel=1e-4)
 
 
+RUBBLE = """
+[materials.stone]
+density = 2140.0
+[joints.dry]
+friction = 0.6
+[[structure]]
+kind = "voronoi-wall"
+cells = 70
+relax = 6
+size = [2.6, 2.9]
+seed = 8
+[analysis]
+kind = "pushover"
+"""
+
+
+def test_no_leap_over_a_failure_while_shorter_increments_lead_on(tmp_path):
+    """Rubble fails at 0.055; the first increment is hard, one of 2.2 times leads to a branch up to 0.09."""
+    (tmp_path / "rubble.toml").write_text(RUBBLE)
+    path = trace(*ingredients(tmp_path / "rubble.toml"))
+    assert path.status == OK
+    assert path.load == pytest.approx(0.05497, rel=1e-3)
+
+
 def test_light_blocks_on_heavy_ones():
     """Each of two towers tilts at w/h of itself, the weights of which differ by 1e6."""
     heavy, light = tower(2), tower(2)
@@ -193,3 +217,15 @@ def testapart():
     one, two = apart(np.array([-3.0, 0.0, 1e8, -1e8]), 0.25)
     assert one - two == pytest.approx([-3.0, 0.0, 1e8, -1e8])
     assert one * two == pytest.approx(0.25)
+
+
+def test_a_smoothed_path_ends_near_the_load_of_the_exact_one():
+    structure, friction = ingredients(CASES / "wall_3.toml")
+    exact, smoothed = trace(structure, friction), trace(structure, friction, settings=DEFAULT_LIMIT.smoothed())
+    assert exact.smoothing == 0.0 < smoothed.smoothing == smoothed.summary()["smoothing"]
+    assert "smoothing" not in exact.summary()
+    assert smoothed.finished
+    assert smoothed.load == pytest.approx(exact.load, rel=2e-3)
+    reactions = np.column_stack([smoothed.normal, smoothed.shear]).ravel()
+    assert np.abs(structure.imbalance(reactions, smoothed.load)).max() < 1e-6
+    assert (np.abs(smoothed.shear[:, 0]) <= friction * smoothed.normal * (1.0 + 1e-6)).all()

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import load_range
+from dem_cli.statics.agreement import CREEP, PATH, histories, load_range
 
 RESOLUTION = 0.002
 
@@ -34,3 +34,15 @@ def test_bound_without_sliding_counts_where_no_path_agrees(path, finished):
 def test_path_that_ends_elsewhere_is_said():
     found = load_range(search(0.34, slides=True), RESOLUTION)
     assert (found["lowest"], found["highest"]) == (0.34, 0.36)
+
+
+def test_path_that_a_search_began_at_is_no_second_history():
+    begun_there = search(0.3602, slides=True)
+    begun_there.start = {"kind": "path"}
+    assert [(one.method, one.load) for one in histories(begun_there)] == [(PATH, 0.36)]
+    assert load_range(begun_there, RESOLUTION) is None
+    begun_there.crept_beyond, begun_there.crept, begun_there.scale = True, 0.4, 1.0
+    assert [one.method for one in histories(begun_there)] == [PATH, CREEP]
+    assert load_range(begun_there, RESOLUTION)["why"].startswith(
+        "0.36 from the end of the zero-dilation path, at least 0.4"
+    )

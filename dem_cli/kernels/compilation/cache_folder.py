@@ -1,0 +1,90 @@
+"""Cache folder of compiled kernels, named by what their machine code depends on; found without loading numba.
+
+It carries the hash of all sources of kernels and laws, because numba looks only at the file of the decorated function:
+a callee edited elsewhere, or a reordered record, would otherwise go on running old machine code.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any
+
+__all__ = ["cache_folder", "cache_is_cold", "fingerprint"]
+
+_ROOT = Path(__file__).resolve().parents[2]
+
+
+def _compiler() -> bytes:
+    """What says which numba and LLVM there are."""
+    found = b""
+    for package in ("numba", "llvmlite"):
+        spec = find_spec(package)
+        origin = Path(spec.origin) if spec is not None and spec.origin is not None else None
+        if origin is None:
+            raise ModuleNotFoundError(f"No module named '{package}'", name=package)
+        found += (origin.parent / "_version.py").read_bytes()
+    return found
+
+
+def _source_hash() -> str:
+    digest = hashlib.sha256(_compiler() + platform.python_version().encode())
+    for folder in ("kernels", "laws", "links"):
+        for source in sorted((_ROOT / folder).rglob("*.py")):
+            digest.update(source.name.encode())
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+@cache
+def _place(home: str, source_hash: str) -> Path:
+    folder = Path(home) / "dem-cli" / source_hash
+    if _writable(folder):
+        return folder
+    uid = os.getuid() if hasattr(os, "getuid") else 0
+    return Path(tempfile.gettempdir()) / f"dem-cli-{uid}" / folder.name
+
+
+_source_hash_of_process = cache(_source_hash)
+
+
+def cache_folder() -> Path:
+    """Where compiled code is kept: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
+    home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
+    return _place(str(home), _source_hash_of_process())
+
+
+def cache_is_cold() -> bool:
+    """True where nothing was compiled yet for these sources."""
+    return next(cache_folder().rglob("*.nbi"), None) is None
+
+
+def fingerprint(function: Callable) -> str:
+    """Of what a kernel is made of: its code, what it closes over, and so on; the same in every process."""
+    return hashlib.sha256(repr(_made_of(function)).encode()).hexdigest()
+
+
+def _made_of(part: Any) -> object:
+    """What tells a function, its code or a value in a closure from others."""
+    if isinstance(part, FunctionType):
+        held = tuple(_made_of(cell.cell_contents) for cell in part.__closure__ or ())
+        return part.__module__, part.__qualname__, _made_of(part.__code__), held
+    if isinstance(part, CodeType):
+        return part.co_code, part.co_names, tuple(map(_made_of, part.co_consts))
+    return _made_of(part.py_func) if hasattr(part, "py_func") else repr(part)

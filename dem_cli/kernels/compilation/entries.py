@@ -1,0 +1,143 @@
+"""Entries of kernels: functions by which compiled kernels are called without numba, and what of them may be kept.
+
+An entry takes one address, that of a frame: a word for errors, then the arguments as numba lays them out, one after the
+other. It is compiled with its kernel, into the same object code, which kept_code.py keeps and calls.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba.core import types
+from numba.core.compiler_machinery import register_pass
+from numba.core.lowering import Lower
+from numba.core.typed_passes import NativeLowering
+from numba.np import numpy_support
+
+from dem_cli.kernels.compilation.kept_code import Header, keep, may_be_kept, words_of_kind
+from dem_cli.kernels.compilation.references import Record
+
+__all__ = ["KernelLowering", "keep_compiled"]
+
+_WORD = 8  # bytes
+_RESULTS = {types.int64: "i", types.float64: "d", types.none: ""}
+_OF_PYTHON = re.compile(r"(NRT_|numba_|Py|_Py|\.numba)")  # names of what only numba and Python have
+_NEVER_DONE = {"NRT_incref", "NRT_decref", "NRT_MemInfo_call_dtor"}  # to arrays whose memory somebody else counts
+_NAMES = re.compile(r'@"?([\w.$]+)"?')
+
+
+def kind_of_type(kind: types.Type) -> str | None:
+    """As `kept_code.kind_of` says it of a value; None where there is no such value."""
+    if isinstance(kind, types.Array):
+        if kind.layout != "C" or not kind.aligned:
+            return None
+        return f"{numpy_support.as_dtype(kind.dtype).str}{kind.ndim}{'' if kind.mutable else 'r'}"
+    if kind in (types.int64, types.float64):
+        return _RESULTS[kind]
+    if isinstance(kind, Record):
+        members = [kind_of_type(each) for each in kind.types.values()]
+        word = kind.name.rpartition("_")[0]
+        return None if None in members else f"{word}[{' '.join(map(str, members))}]"
+    if isinstance(kind, types.UniTuple | types.Tuple):
+        members = [kind_of_type(each) for each in kind.types]
+        return None if None in members else f"({' '.join(map(str, members))})"
+    return None
+
+
+def _kinds(of: Any) -> list[str]:
+    """Of the arguments of a function; empty where its code is not kept."""
+    kinds = [kind_of_type(each) for each in of.argtypes]
+    return [] if None in kinds or of.restype not in _RESULTS or not may_be_kept() else [str(kind) for kind in kinds]
+
+
+class KernelLower(Lower):
+    """Lowering of a kernel, which gets an entry in the place of numba's own function for C."""
+
+    def create_cfunc_wrapper(self) -> None:
+        """Adds the entry."""
+        of, context = self.fndesc, self.context
+        kinds = _kinds(of)
+        if not kinds:
+            return
+        module = context.create_module("entry")
+        kernel = ir.Function(module, context.call_conv.get_function_type(of.restype, of.argtypes), of.llvm_func_name)
+        result = context.get_value_type(of.restype) if _RESULTS[of.restype] else ir.VoidType()
+        entry = ir.Function(module, ir.FunctionType(result, [ir.IntType(64).as_pointer()]), of.llvm_cfunc_wrapper_name)
+        builder = ir.IRBuilder(entry.append_basic_block("entry"))
+        (frame,), here, values = entry.args, 1, []
+        for argument, kind in zip(of.argtypes, kinds, strict=True):
+            like = context.get_value_type(argument)
+            assert context.get_abi_sizeof(like) == _WORD * words_of_kind(kind), argument
+            place = builder.bitcast(builder.gep(frame, [ir.Constant(ir.IntType(64), here)]), like.as_pointer())
+            values.append(builder.load(place))
+            here += words_of_kind(kind)
+        status, found = context.call_conv.call_function(
+            builder, kernel, of.restype, of.argtypes, values, attrs=("noinline",)
+        )
+        builder.store(builder.sext(status.code, ir.IntType(64)), frame)
+        builder.ret(found) if _RESULTS[of.restype] else builder.ret_void()
+        self.library.add_ir_module(module)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class KernelLowering(NativeLowering):
+    """Numba's own, with an entry."""
+
+    _name = "kernel_lowering"
+
+    @property
+    def lowering_class(self) -> type[Lower]:
+        """What lowers."""
+        return KernelLower
+
+
+def keep_compiled(function: Callable, compiled: Any) -> None:
+    """Keeps what numba has just compiled, if it can run without numba: it neither allocates nor raises."""
+    of, library = compiled.fndesc, compiled.library
+    kinds, entry = _kinds(of), of.llvm_cfunc_wrapper_name
+    if not kinds:
+        return
+    code = library._get_compiled_object()
+    undefined = _undefined(code)
+    called = _called(str(library._final_module), entry) - _NEVER_DONE
+    needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))
+    if entry in called and not any(_OF_PYTHON.match(name) for name in called):
+        header = Header(kinds, _RESULTS[of.restype], entry, needed, sorted(undefined - set(needed)), 0)
+        keep(function, header, code)
+
+
+def _called(text: str, entry: str) -> set[str]:
+    """Names of all that a function names, and what that names, in the text of an LLVM module."""
+    bodies: dict[str, set[str]] = {}
+    for part in re.split(r"^define ", text, flags=re.MULTILINE)[1:]:
+        name, *names = _NAMES.findall(part[: part.find("\n}")])
+        bodies[name] = set(names)
+    found, waiting = set(), [entry] if entry in bodies else []
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += bodies.get(name, ())
+    return found
+
+
+def _undefined(code: bytes) -> set[str]:
+    """Names that object code asks others for: symbols of no section in an ELF file of 64 bits."""
+    assert (code[:5], sys.byteorder) == (b"\x7fELF\x02", "little")
+    (sections,), (size, count) = struct.unpack_from("<Q", code, 40), struct.unpack_from("<HH", code, 58)
+    table = [struct.unpack_from("<IIQQQQIIQQ", code, sections + size * k) for k in range(count)]
+    found = set()
+    for _, kind, _, _, offset, length, link, _, _, each in table:
+        if kind != 2:  # symbols
+            continue
+        names = table[link][4]
+        for place in range(offset + each, offset + length, each):  # the first one is none
+            name, _, _, section = struct.unpack_from("<IBBH", code, place)
+            if section == 0:
+                found.add(code[names + name : code.index(b"\0", names + name)].decode())
+    return found

@@ -1,0 +1,223 @@
+"""Compiled LU factorisation in dense fronts, and solution with the factors (pattern: limit/fronts.py).
+
+No rows are exchanged: a matrix of joints has its large numbers on the diagonal. The numbers of a front are its square,
+the strip below, transposed, and the strip beside, all by rows, so that every inner loop runs along a row.
+"""
+
+from __future__ import annotations
+
+from dem_cli.kernels.jit import inline, kernel
+
+
+@kernel
+def assemble(values, parts, rows, factors, pairs, pushed):
+    """The matrix Σ f rowᵢᵀ rowⱼ of all points into its fronts.
+
+    parts (n_points, 2, 2, 3): limit.fronts.parts_of; rows (n_points, d, 2, n_dof): motion of b against a;
+    factors (n_pairs, n_points) of the pairs (i, j) of directions; pushed: room, (d, 2, n_dof).
+    """
+    values[:] = 0.0
+    for p in range(len(rows)):
+        pushed[:] = 0.0
+        for k in range(len(pairs)):
+            _add_scaled(pushed[pairs[k, 0]], factors[k, p], rows[p, pairs[k, 1]])
+        for a in range(2):
+            for b in range(2):
+                if parts[p, a, b, 0] >= 0:
+                    _add_part(values, parts[p, a, b], rows[p, :, a], pushed[:, b])
+
+
+@inline
+def _add_scaled(total, factor, row):
+    for a in range(2):
+        for e in range(row.shape[1]):
+            total[a, e] += factor * row[a, e]
+
+
+@inline
+def _add_part(values, part, left, right):
+    """What one point adds to the part of two blocks."""
+    d, n_dof = left.shape
+    for e in range(n_dof):
+        at = part[0] + e * part[1]
+        for h in range(n_dof):
+            value = 0.0
+            for i in range(d):
+                value += left[i, e] * right[i, h]
+            values[at + h * part[2]] += value
+
+
+@kernel
+def add_to_diagonal(values, diagonal, share):
+    """A share of the mean of its diagonal to a matrix in fronts; diagonal: where that is."""
+    total = 0.0
+    for i in range(diagonal.size):
+        total += abs(values[diagonal[i]])
+    for i in range(diagonal.size):
+        values[diagonal[i]] += share * total / diagonal.size
+
+
+@kernel
+def factorise(values, fronts, update):
+    """LU of a matrix in `limit.fronts.Fronts`, in its place; True where no pivot is nothing. update: room."""
+    for front in range(len(fronts.start) - 1):
+        own, left = _sizes(fronts, front)
+        at = fronts.start[front]
+        square, below = values[at : at + own * own], values[at + own * own : at + own * (own + left)]
+        beside = values[at + own * (own + left) : at + own * (own + 2 * left)]
+        for k in range(own):
+            if square[k * own + k] == 0.0:
+                return False
+            _eliminate(square, below, beside, own, left, k)
+        _multiply(below, beside, own, left, update)
+        for run in range(fronts.runs.first[front], fronts.runs.first[front + 1]):
+            _subtract_beside(values, fronts, run, left, update)
+            _subtract_below(values, fronts, run, left, update)
+    return True
+
+
+@inline
+def _sizes(fronts, front):
+    """Degrees of freedom of a front, and those it leaves behind."""
+    own = fronts.first[front + 1] - fronts.first[front]
+    left = fronts.row_start[front + 1] - fronts.row_start[front]
+    return own * fronts.n_dof, left * fronts.n_dof
+
+
+@inline
+def _eliminate(square, below, beside, own, left, k):
+    """One column of a front."""
+    inverse = 1.0 / square[k * own + k]
+    across, beyond = square[k * own + k + 1 : k * own + own], beside[k * left : k * left + left]
+    lower = below[k * left : k * left + left]
+    for j in range(left):
+        lower[j] *= inverse
+    for i in range(k + 1, own):
+        share, upper = square[i * own + k] * inverse, across[i - k - 1]
+        square[i * own + k] = share
+        if share != 0.0:
+            row, strip = square[i * own + k + 1 : i * own + own], beside[i * left : i * left + left]
+            for j in range(own - k - 1):
+                row[j] -= share * across[j]
+            for j in range(left):
+                strip[j] -= share * beyond[j]
+        if upper != 0.0:
+            strip = below[i * left : i * left + left]
+            for j in range(left):
+                strip[j] -= upper * lower[j]
+
+
+@inline
+def _multiply(below, beside, own, left, update):
+    """Strip below × strip beside, (left, left), three rows and three columns of the front at a time."""
+    for i in range(0, left, 3):
+        one, two = update[i * left : (i + 1) * left], update[(i + 1) * left : (i + 2) * left]
+        three = update[(i + 2) * left : (i + 3) * left]
+        for j in range(left):
+            one[j] = 0.0
+            two[j] = 0.0
+            three[j] = 0.0
+        for k in range(0, own, 3):
+            at = k * left + i
+            a0, a1, a2 = below[at], below[at + left], below[at + 2 * left]
+            b0, b1, b2 = below[at + 1], below[at + 1 + left], below[at + 1 + 2 * left]
+            c0, c1, c2 = below[at + 2], below[at + 2 + left], below[at + 2 + 2 * left]
+            u = beside[k * left : (k + 1) * left]
+            v, w = beside[(k + 1) * left : (k + 2) * left], beside[(k + 2) * left : (k + 3) * left]
+            for j in range(left):
+                x, y, z = u[j], v[j], w[j]
+                one[j] += a0 * x + a1 * y + a2 * z
+                two[j] += b0 * x + b1 * y + b2 * z
+                three[j] += c0 * x + c1 * y + c2 * z
+
+
+@inline
+def _subtract_beside(values, fronts, run, left, update):
+    """What a front changes in the square of a later one and in its strip beside."""
+    runs, n_dof = fronts.runs, fronts.n_dof
+    own, deep = _sizes(fronts, runs.into[run])
+    at, begin, count = fronts.start[runs.into[run]], runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
+    beside = at + own * (own + deep) - own
+    where = runs.places[runs.place_start[run] : runs.place_start[run + 1]]
+    for i in range(count * n_dof):
+        row = where[i // n_dof] * n_dof + i % n_dof
+        given = update[(begin + i) * left + begin : (begin + i + 1) * left]
+        for j in range(len(where)):
+            to = where[j] * n_dof + (at + row * own if j < count else beside + row * deep)
+            for k in range(n_dof):
+                values[to + k] -= given[j * n_dof + k]
+
+
+@inline
+def _subtract_below(values, fronts, run, left, update):
+    """The same in its strip below, which is transposed."""
+    runs, n_dof = fronts.runs, fronts.n_dof
+    own, deep = _sizes(fronts, runs.into[run])
+    begin, count = runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
+    below = fronts.start[runs.into[run]] + own * own - own
+    where = runs.places[runs.place_start[run] : runs.place_start[run + 1]]
+    for i in range(count * n_dof, len(where) * n_dof):
+        at = below + where[i // n_dof] * n_dof + i % n_dof
+        given = update[(begin + i) * left + begin : (begin + i) * left + begin + count * n_dof]
+        for j in range(count):
+            for k in range(n_dof):
+                values[at + (where[j] * n_dof + k) * deep] -= given[j * n_dof + k]
+
+
+@kernel
+def solve_in_fronts(values, fronts, x, room):
+    """x becomes the solution with x on the right; room: (widest,)."""
+    n_fronts = len(fronts.start) - 1
+    for front in range(n_fronts):
+        _forward(values, fronts, front, x, room)
+    for front in range(n_fronts - 1, -1, -1):
+        _backward(values, fronts, front, x, room)
+
+
+@inline
+def _forward(values, fronts, front, x, room):
+    n_dof = fronts.n_dof
+    own, left = _sizes(fronts, front)
+    at, begin = fronts.start[front], fronts.first[front] * n_dof
+    square, below = values[at : at + own * own], values[at + own * own : at + own * (own + left)]
+    y, taken = x[begin : begin + own], room[:left]
+    for k in range(own):
+        for i in range(k + 1, own):
+            y[i] -= square[i * own + k] * y[k]
+    for j in range(left):
+        taken[j] = 0.0
+    for k in range(0, own, 3):
+        u, v = below[k * left : (k + 1) * left], below[(k + 1) * left : (k + 2) * left]
+        w, a, b, c = below[(k + 2) * left : (k + 3) * left], y[k], y[k + 1], y[k + 2]
+        for j in range(left):
+            taken[j] += u[j] * a + v[j] * b + w[j] * c
+    for i in range(left // n_dof):
+        to = fronts.row[fronts.row_start[front] + i] * n_dof
+        for k in range(n_dof):
+            x[to + k] -= taken[i * n_dof + k]
+
+
+@inline
+def _backward(values, fronts, front, x, room):
+    n_dof = fronts.n_dof
+    own, left = _sizes(fronts, front)
+    at, begin = fronts.start[front], fronts.first[front] * n_dof
+    square, beside = values[at : at + own * own], values[at + own * (own + left) : at + own * (own + 2 * left)]
+    y, known = x[begin : begin + own], room[:left]
+    for i in range(left // n_dof):
+        come = fronts.row[fronts.row_start[front] + i] * n_dof
+        for k in range(n_dof):
+            known[i * n_dof + k] = x[come + k]
+    for k in range(0, own, 3):
+        u, v = beside[k * left : (k + 1) * left], beside[(k + 1) * left : (k + 2) * left]
+        w, a, b, c = beside[(k + 2) * left : (k + 3) * left], y[k], y[k + 1], y[k + 2]
+        for j in range(left):
+            a -= u[j] * known[j]
+            b -= v[j] * known[j]
+            c -= w[j] * known[j]
+        y[k], y[k + 1], y[k + 2] = a, b, c
+    for k in range(own - 1, -1, -1):
+        value = y[k]
+        for j in range(k + 1, own):
+            value -= square[k * own + j] * y[j]
+        y[k] = value / square[k * own + k]

@@ -1,0 +1,158 @@
+"""Newton's matrix of elastic, frictional joints, Σ f rowᵢᵀ rowⱼ over all points, factorised again and again.
+
+Its pattern is that of blocks that touch and stays, so that order and fill are found once. Two ways, one contract:
+SuperLU, and from some hundred degrees of freedom on dense fronts in compiled code (limit/fronts.py), which take a third
+of its time, and half a second to load.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import SuperLU, splu
+
+from dem_cli.limit.settings import PathSettings
+
+
+class PointRows(NamedTuple):
+    """Motions of b against a at every point, and which of their products make the matrix."""
+
+    rows: np.ndarray  # (n_points, d directions, 2 blocks, n_dof), nothing where held
+    columns: np.ndarray  # degrees of freedom, −1: held, (n_points, 2 blocks, n_dof)
+    products: tuple[tuple[int, int], ...]  # directions; of two different tangents either way round
+    n_columns: int  # degrees of freedom in all
+
+    @property
+    def n_dof(self) -> int:
+        """Degrees of freedom of a block."""
+        return self.columns.shape[2]
+
+
+class Factors(Protocol):
+    """LU factors of one matrix."""
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """The solution, (n_columns,)."""
+
+
+class NewtonMatrix(Protocol):
+    """The matrix of one structure; degrees of freedom are those of `order`, one after the other."""
+
+    order: np.ndarray
+
+    def factorised(self, factors: list[np.ndarray]) -> Factors:
+        """LU factors of the matrix whose products have these factors; those of the last call are lost.
+
+        Raises RuntimeError where it is singular.
+        """
+
+
+def newton_matrix(points: PointRows, elastic: list[np.ndarray], settings: PathSettings) -> NewtonMatrix:
+    """The matrix of a structure; elastic: factors of its products while nothing slips."""
+    if not len(points.rows) or points.n_columns < settings.in_fronts:
+        return SparseMatrix(points, elastic, settings)
+    return FrontMatrix(points, settings)
+
+
+class SparseMatrix:
+    """By SuperLU, degrees of freedom in the order of minimum degree."""
+
+    def __init__(self, points: PointRows, elastic: list[np.ndarray], settings: PathSettings) -> None:
+        self.settings, self.order = settings, np.arange(points.n_columns)
+        self._pattern(points)
+        self.permutation = "MMD_AT_PLUS_A"
+        if points.n_columns and len(points.rows):
+            self.order = np.argsort(self.factorised(elastic).perm_c)
+            self._pattern(points)
+            self.permutation = "NATURAL"
+
+    def _pattern(self, points: PointRows) -> None:
+        """Where the entries of every point go, and what they are made of."""
+        n_points, n = len(points.rows), points.n_columns
+        place = np.empty_like(self.order)
+        place[self.order] = np.arange(n)
+        dofs = points.columns.reshape(n_points, -1)
+        dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)]) if n else dofs
+        along = [points.rows[:, k].reshape(n_points, -1) for k in range(points.rows.shape[1])]
+        self.outer = []
+        for first, second in points.products:
+            outer = np.einsum("pi,pj->pij", along[first], along[second])
+            if 0 < first < second:  # of two tangents, either way round
+                outer = outer + outer.swapaxes(1, 2)
+            self.outer.append(outer.reshape(n_points, -1))
+        self.work = np.empty((2, *self.outer[0].shape))
+        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+        used = (i >= 0) & (j >= 0)
+        own = np.arange(n) * (n + 1)  # the diagonal is there even of what restraints hold
+        keys = np.unique(np.concatenate([j[used].astype(np.int64) * n + i[used], own]))
+        place = np.searchsorted(keys, j[used].astype(np.int64) * n + i[used])
+        self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
+        self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
+        self.place[used.ravel()] = place
+        self.diagonal = np.flatnonzero(self.indices == keys // n)
+
+    def factorised(self, factors: list[np.ndarray]) -> SuperLU:
+        """As NewtonMatrix has it."""
+        values, more = self.work
+        np.multiply(factors[0][:, None], self.outer[0], out=values)
+        for factor, outer in zip(factors[1:], self.outer[1:], strict=True):
+            values += np.multiply(factor[:, None], outer, out=more)
+        data = np.bincount(self.place, values.ravel(), len(self.indices) + 1)[:-1]
+        data[self.diagonal] += self.settings.singular * np.abs(data[self.diagonal]).mean()
+        n = len(self.order)
+        matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
+        options = {"SymmetricMode": True}
+        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=self.settings.pivot, options=options)
+
+
+class FrontMatrix:
+    """In dense fronts; no rows are exchanged."""
+
+    def __init__(self, points: PointRows, settings: PathSettings) -> None:
+        from dem_cli.limit.fronts import fronts_of, parts_of
+
+        n_dof = points.n_dof
+        blocks = points.columns.max(axis=2) // n_dof  # −1: fixed
+        blocks = np.where((points.columns >= 0).any(axis=2), blocks, -1)
+        touching = np.unique(np.sort(blocks[(blocks >= 0).all(axis=1)], axis=1), axis=0)
+        self.settings = settings
+        self.fronts = fronts = fronts_of(touching, points.n_columns // n_dof, n_dof)
+        self.order = (fronts.order[:, None] * n_dof + np.arange(n_dof)).ravel()
+        both = np.stack([np.repeat(blocks, 2, axis=1), np.tile(blocks, 2)], axis=2)
+        self.parts = parts_of(fronts, both.reshape(-1, 2)).reshape(-1, 2, 2, 3)
+        first, row, column = parts_of(fronts, np.repeat(np.arange(len(fronts.order)), 2).reshape(-1, 2)).T
+        self.diagonal = (first[:, None] + (row + column)[:, None] * np.arange(n_dof)).ravel()
+        self.rows = np.ascontiguousarray(points.rows)
+        pairs = [(pair, k) for k, pair in enumerate(points.products)]
+        pairs += [((j, i), k) for (i, j), k in pairs if 0 < i < j]  # of two tangents, either way round
+        self.pairs, self.of_pair = np.array([pair for pair, _ in pairs]), [k for _, k in pairs]
+        self.values = np.empty(int(fronts.start[-1]))
+        self.room = np.empty(max(fronts.widest**2, 1))
+        self.pushed = np.empty(self.rows.shape[1:])
+
+    def factorised(self, factors: list[np.ndarray]) -> FrontFactors:
+        """As NewtonMatrix has it."""
+        from dem_cli.limit.front_factors import add_to_diagonal, assemble, factorise
+
+        fronts, values = self.fronts, self.values
+        assemble(values, self.parts, self.rows, np.stack([factors[k] for k in self.of_pair]), self.pairs, self.pushed)
+        add_to_diagonal(values, self.diagonal, self.settings.singular)
+        if not factorise(values, fronts, self.room):
+            raise RuntimeError("a pivot is nothing: the matrix is singular")
+        return FrontFactors(self)
+
+
+class FrontFactors(NamedTuple):
+    """LU factors in fronts."""
+
+    matrix: FrontMatrix
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """As Factors has it."""
+        from dem_cli.limit.front_factors import solve_in_fronts
+
+        found = right.copy()
+        solve_in_fronts(self.matrix.values, self.matrix.fronts, found, self.matrix.room)
+        return found

@@ -1,0 +1,66 @@
+"""Dense fronts and SuperLU solve the same equations; fronts of any pattern of blocks, fixed and held ones too."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dem_cli.limit.newton_matrix import FrontMatrix, PointRows, SparseMatrix, newton_matrix
+from dem_cli.limit.settings import PathSettings
+
+SETTINGS = PathSettings()
+TANGENTS = {2: ((1, 1), (1, 0)), 3: ((1, 1), (2, 2), (1, 2), (1, 0), (2, 0))}
+
+
+def points(dimension, n_blocks, n_points, seed):
+    """Points between random blocks, of which the last are fixed; two motions of the first block are held."""
+    rng, n_dof = np.random.default_rng(seed), {2: 3, 3: 6}[dimension]
+    blocks = rng.integers(0, n_blocks + 2, (n_points, 2))
+    blocks[:, 1] = np.where(blocks[:, 0] == blocks[:, 1], (blocks[:, 1] + 1) % (n_blocks + 2), blocks[:, 1])
+    columns = np.where(blocks < n_blocks, blocks * n_dof, -1)[:, :, None]
+    columns = np.where(columns >= 0, columns + np.arange(n_dof), -1)
+    columns[columns < 2] = -1
+    rows = rng.normal(size=(n_points, dimension, 2, n_dof)) * (columns >= 0)[:, None]
+    return PointRows(rows, columns, ((0, 0), *TANGENTS[dimension]), n_blocks * n_dof)
+
+
+def factors(made, seed):
+    """Of the products, those of a normal or a tangent by itself positive and far apart."""
+    rng = np.random.default_rng(seed)
+    found = [10.0 ** rng.uniform(-6.0, 0.0, len(made.rows)) for _ in made.products]
+    return [one if i == j else 0.1 * one for one, (i, j) in zip(found, made.products, strict=True)]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(("n_blocks", "n_points"), [(1, 4), (12, 60), (40, 160), (90, 700)])
+def test_both_ways_solve_the_same_equations(dimension, n_blocks, n_points):
+    made = points(dimension, n_blocks, n_points, n_blocks)
+    right = np.random.default_rng(1).normal(size=made.n_columns)
+    right[:2] = 0.0  # held
+    stiff, elastic = factors(made, 2), factors(made, 3)
+    dense = np.zeros((made.n_columns + 1, made.n_columns + 1))
+    for (i, j), given in zip(made.products, stiff, strict=True):
+        for a, b in ((i, j), (j, i)) if 0 < i < j else ((i, j),):
+            for p, factor in enumerate(given):
+                to = made.columns[p].ravel()
+                dense[np.ix_(to, to)] += factor * np.outer(made.rows[p, a].ravel(), made.rows[p, b].ravel())
+    for matrix in (FrontMatrix(made, SETTINGS), SparseMatrix(made, elastic, SETTINGS)):
+        matrix.factorised(elastic)
+        found = np.zeros(made.n_columns + 1)
+        found[matrix.order] = matrix.factorised(stiff).solve(right[matrix.order])
+        touched = np.append(np.abs(dense[:-1, :-1]).sum(axis=1) > 0.0, False)
+        off = (dense @ found)[touched] - np.append(right, 0.0)[touched]
+        assert np.abs(off).max() < 1e-6 * np.abs(right).max()
+        assert (found[:2] == 0.0).all()
+
+
+def test_fronts_are_those_of_larger_structures():
+    made = points(2, 12, 20, 0)
+    assert isinstance(newton_matrix(made, factors(made, 0), SETTINGS), SparseMatrix)
+    assert isinstance(newton_matrix(made, factors(made, 0), replace(SETTINGS, in_fronts=36)), FrontMatrix)
+
+
+def test_a_matrix_without_anything_is_singular():
+    made = points(2, 12, 20, 0)
+    with pytest.raises(RuntimeError, match="singular"):
+        FrontMatrix(made, SETTINGS).factorised([0.0 * one for one in factors(made, 0)])
