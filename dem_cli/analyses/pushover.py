@@ -159,7 +159,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     Where it ends elsewhere, or nowhere, the load is raised again in small steps, up to so many blocks.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
-    if not search.found or search.limits is None or unique(search, resolution) or load_search.too_large():
+    if not search.found or search.limits is None or unique(search, resolution) or search.limits.too_large:
         return
     path = search.limits.path
     if path is None:
@@ -168,7 +168,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
         near = abs(path.load - search.carried) <= resolution * path.load
         if near or load_range(search, resolution) is None:
             return
-    if load_search.largest() > job.settings.warm_start.repeated:
+    if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")
     elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
         load_search.run_again_in_small_steps(search.carried)

@@ -92,6 +92,7 @@ class Elastic:
         self.live_scale = float(np.abs(self.dead).sum() / np.abs(live).sum()) if largest > 0.0 else 1.0
         self.live = live * self.live_scale
         self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
+        self.lightest = min(1.0, float(self.own.min(initial=1.0))) ** 2  # square of the weight of the lightest block
         self.factorisations = 0
         elastic = [self.kn, *self.slips.elastic(self.ks)]
         self.matrix = newton_matrix(self._points(structure), elastic, settings.path)

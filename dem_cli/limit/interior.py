@@ -69,8 +69,7 @@ class Increment:
     ):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
         self.settings = problem.settings.of_increment(problem.dimension)
-        self.lightest = min(1.0, float(problem.own.min(initial=1.0))) ** 2
-        self.end = (self.settings.end if end is None else end) * self.lightest
+        self.end = (self.settings.end if end is None else end) * problem.lightest
         self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
@@ -108,7 +107,7 @@ class Increment:
         """What was solved with smaller products, down to the end that is set; None where that fails."""
         if self.last is None:
             return None
-        self.end = self.settings.end * self.lightest
+        self.end = self.settings.end * self.problem.lightest
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return self._solved(self.last.copy(), None, 0, lambda: False, 0.0)
 

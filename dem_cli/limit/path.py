@@ -42,6 +42,7 @@ class Path:
     live_displacements: list[float] = field(default_factory=list)  # live loads × displacements since before gravity [J]
     highest: int = 0  # increment at which the load was highest: the state is that
     factorisations: int = 0
+    smoothing: float = 0.0  # products that were left on the way, over the square of the largest normal force
 
     @property
     def state(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
@@ -73,6 +74,7 @@ class Path:
             "displacement": self.reached[self.highest] if self.reached else None,
             "final_load": self.loads[-1] if self.loads else None,
             "factorisations": self.factorisations,
+            **({"smoothing": self.smoothing} if self.smoothing else {}),
         }
 
 
@@ -97,9 +99,11 @@ def trace(
         raise UsageError(NO_LINKS)
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
-    longest = settings.longest_path(structure.model.dimension) * max(problem.n_points, 1)
-    most = min(settings.path.effort, longest) if effort is None else effort
-    path = Path(FALLS)
+    points = max(problem.n_points, 1)
+    longest = settings.longest_path(structure.model.dimension) * points
+    affordable = settings.path.smoothed_effort / points**0.5 if settings.path.smoothing else settings.path.effort
+    most = min(affordable, longest) if effort is None else effort
+    path = Path(FALLS, smoothing=settings.path.smoothing)
 
     def spent() -> bool:
         return problem.factorisations * problem.n_points > most
@@ -162,11 +166,15 @@ class Walk:
         length = share * self.share * longest
         target = self.origin + self.elastic * (self.reached + length)
         ahead = min(length / self.last.length, settings.ahead) if self.last is not None and easier == 1.0 else 0.0
-        increment = Increment(problem, state, target, end=settings.end)
-        rough = settings.rough * float(state.normal.max(initial=1.0)) ** 2
+        largest = float(state.normal.max(initial=1.0)) ** 2
+        end = settings.smoothing * largest / problem.lightest if settings.smoothing else settings.end
+        increment = Increment(problem, state, target, end=end)
+        rough = settings.rough * largest
         tau = easier * _first_products(problem, state, target)
         found = increment.solve(tau, ahead, folds, self.stop, rough)
-        if found is None or (not found.left and problem.residual(found, state) >= settings.accepted):
+        if found is None:
+            return None
+        if not (found.left or settings.smoothing) and problem.residual(found, state) >= settings.accepted:
             return None
         return Stride(increment, state, found, length, share, self.last.increment if self.last is not None else None)
 
@@ -203,7 +211,7 @@ def _follow(
         if _keep(path, structure, problem, walk.state, walk.last.before, walk.reached):
             best = (walk.last, walk.reached)
         progress(path.loads[-1], walk.reached)
-    if best is not None:
+    if best is not None and not settings.smoothing:
         _polish(path, structure, problem, *best)
     if is_plateau(settings, walk.reached, calm_since, slope / plateau):
         path.status = OK

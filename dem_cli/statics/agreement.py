@@ -90,6 +90,14 @@ _BY = {
 }
 
 
+def _way(search: FailureLoad) -> str:
+    """From where, in words."""
+    if search.start.get("kind") != AT_PATH:
+        return "gravity"
+    path = search.limits.path if search.limits is not None else None
+    return "gravity by a smoothed path" if path is not None and path.smoothing else "the zero-dilation path"
+
+
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
     """Words of warning where histories differ, or where the bracket is wider than asked for."""
     said = []
@@ -97,9 +105,8 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
         share = 100.0 * (spread["highest"] - spread["lowest"]) / spread["highest"]
         said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
     if search.found and search.wide and search.width is not None:
-        way = "the zero-dilation path" if search.start.get("kind") == AT_PATH else "gravity"
         said.append(
-            f"reached from {way}: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket of "
-            f"{100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
+            f"reached from {_way(search)}: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
+            f"of {100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
         )
     return said

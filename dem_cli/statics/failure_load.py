@@ -25,18 +25,22 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
-from dem_cli.model.scales import largest_structure
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.trial_loads import TrialLoads
-from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT
+from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_path
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
     from dem_cli.statics.warm_start import CurveStart, WarmStart
+
+
+LARGE = (
+    "a large structure: its path is smoothed, and the load is raised from where it ends for as long as is affordable"
+)
 
 
 class LoadSearch:
@@ -83,7 +87,7 @@ class LoadSearch:
         elif self.longest is not None or sim.play.moved.any():  # a creep would stop at the first microrotation
             first = settings.first_in_play if self.longest is None else self.longest
             self._raise_load(self._trials([], first, np.inf if self.longest is None else self.longest))
-        else:
+        elif not self._ends_where_the_path_does():
             self._raise_to_estimate()
 
     def run_again_in_small_steps(self, estimate: float) -> None:
@@ -131,7 +135,7 @@ class LoadSearch:
         assert limits is not None
         if estimate >= self.settings.likely * self.impossible or not limits.slides:
             return self.impossible, True
-        if self.too_large():
+        if limits.too_large:
             return estimate, False
         path = limits.path
         load = (path.load or 0.0) / self.sim.live_scale if path is not None else 0.0
@@ -142,14 +146,27 @@ class LoadSearch:
         self.plateau = load
         return load, True
 
-    def too_large(self) -> bool:
-        """Whether the path would take too many factorisations."""
-        warm_start = self.sim.settings.warm_start
-        return self.largest() > {2: warm_start.large, 3: warm_start.large_in_space}[self.sim.model.dimension]
+    def _ends_where_the_path_does(self) -> bool:
+        """Whether the path of a large structure in the plane leads to a load that the explicit solver holds.
 
-    def largest(self) -> int:
-        """Blocks of the largest structure."""
-        return largest_structure(self.sim.joints.blocks, self.sim.model.fixed)
+        From there the load is raised for as long as is affordable. To prove a failure by motion takes 300,000 steps and
+        more: the answer is "at least", and "not above" the bound.
+        """
+        answer, limits = self.answer, self.answer.limits
+        if limits is None or self.sim.model.dimension != 2 or not limits.too_large or answer.bound is None:
+            return False
+        if not limits.slides or self.longest is not None:
+            return False
+        report = {**answer.start, "kind": PATH}
+        start = start_by_path(limits, report)
+        if start is None or not self._holds(start):
+            return False
+        answer.start = {**report, "note": LARGE}
+        settings = self.settings
+        self.settings = replace(settings, effort=settings.effort_of_large, trial=settings.trial_of_large,
+                                trial_per_point=0, most_undecided=0)  # fmt: skip
+        self._raise_load(self._trials([], settings.step_of_large * start.load / self.sim.live_scale))
+        return True
 
     def _holds(self, start: WarmStart | CurveStart) -> bool:
         """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""

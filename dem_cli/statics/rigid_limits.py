@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.contact.joints import only_points
 from dem_cli.errors import UsageError
+from dem_cli.model.scales import largest_structure
 from dem_cli.output.resume.stages import stage
 
 if TYPE_CHECKING:
@@ -126,8 +127,19 @@ class RigidLimits:
         return trace(
             structure, friction, plateau,
             progress=lambda load, _: clock.progress("following the path to failure", load, 0.0, None),
-            settings=settings.limit,
+            settings=settings.limit.smoothed() if self.too_large and self.sim.model.dimension == 2 else settings.limit,
         )  # fmt: skip
+
+    @cached_property
+    def largest(self) -> int:
+        """Blocks of the largest structure."""
+        return largest_structure(self.sim.joints.blocks, self.sim.model.fixed)
+
+    @property
+    def too_large(self) -> bool:
+        """Whether a path under the exact law would take too many factorisations: in the plane it is smoothed."""
+        warm_start = self.job.settings.warm_start
+        return self.largest > {2: warm_start.large, 3: warm_start.large_in_space}[self.sim.model.dimension]
 
     def on_points(self, values: np.ndarray, otherwise: np.ndarray | float = 0.0) -> np.ndarray:
         """Values of the points that touch at the start among all points, (n_points, ...); otherwise: of the others."""

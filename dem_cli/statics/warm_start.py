@@ -73,17 +73,18 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
         report |= {"kind": GRAVITY, "note": "every step of the load is asked for"}
     if report["kind"] == GRAVITY:
         return None, report
-    start = _by_path(job, limits, report) if kind == PATH else _by_limit_analysis(job, limits, report)
+    start = start_by_path(limits, report) if kind == PATH else _by_limit_analysis(job, limits, report)
     if start is None:
         report["kind"] = GRAVITY
     report.setdefault("note", limits.why_not)
     return start, {key: value for key, value in report.items() if value is not None}
 
 
-def _by_path(job: Job, limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:
+def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:
+    """The state at the highest load of the path, None where that says little; what is said of it goes to `report`."""
     from dem_cli.limit.path import OK
 
-    warm_start, path = job.settings.warm_start, limits.path
+    warm_start, path = limits.job.settings.warm_start, limits.path
     if path is None:
         return None
     report |= path.summary() | {"seconds": limits.seconds["path"]}

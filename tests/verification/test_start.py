@@ -42,6 +42,23 @@ def test_structures_of_any_size_are_raised_from_gravity(name):
     assert summary["load_range"] is None
 
 
+@pytest.mark.parametrize("steps", [150_000, 0])
+def test_large_structures_go_on_from_where_their_smoothed_path_ends(steps):
+    """Associated 0.56359, path under the exact law 0.55666; without steps for trials the load of the path is held."""
+    search = replace(DEFAULT.load_search, effort_of_large=1e4 * steps)
+    settings = replace(DEFAULT, warm_start=replace(DEFAULT.warm_start, large=50), load_search=search)
+    summary = run("wall_21", "structure.0.courses=10", "structure.0.blocks_per_course=10", settings=settings)
+    assert summary["start"]["kind"] == "path"
+    assert "smoothed" in summary["start"]["note"]
+    low, high = summary["failure_load_bracket"]
+    assert low == summary["failure_load"] == pytest.approx(0.55666, rel=3e-3)
+    assert low < high <= 0.5636
+    assert (summary["search"][0]["kind"], summary["search"][0]["state"]) == ("start", "equilibrium")
+    said = any("reached from gravity by a smoothed path: at least 0.55" in text for text in summary["warnings"])
+    assert said == (steps == 0) == (high > 0.5635)
+    assert summary["histories"][0]["method"] == "zero-dilation path"
+
+
 @pytest.mark.parametrize("factor", [1.3, 0.7])
 def test_a_wrong_start_is_not_believed(factor, monkeypatch):
     """Its forces do not balance at the load that it claims: the load is raised from gravity or from what holds."""

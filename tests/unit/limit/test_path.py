@@ -217,3 +217,15 @@ def testapart():
     one, two = apart(np.array([-3.0, 0.0, 1e8, -1e8]), 0.25)
     assert one - two == pytest.approx([-3.0, 0.0, 1e8, -1e8])
     assert one * two == pytest.approx(0.25)
+
+
+def test_a_smoothed_path_ends_near_the_load_of_the_exact_one():
+    structure, friction = ingredients(CASES / "wall_3.toml")
+    exact, smoothed = trace(structure, friction), trace(structure, friction, settings=DEFAULT_LIMIT.smoothed())
+    assert exact.smoothing == 0.0 < smoothed.smoothing == smoothed.summary()["smoothing"]
+    assert "smoothing" not in exact.summary()
+    assert smoothed.finished
+    assert smoothed.load == pytest.approx(exact.load, rel=2e-3)
+    reactions = np.column_stack([smoothed.normal, smoothed.shear]).ravel()
+    assert np.abs(structure.imbalance(reactions, smoothed.load)).max() < 1e-6
+    assert (np.abs(smoothed.shear[:, 0]) <= friction * smoothed.normal * (1.0 + 1e-6)).all()
