@@ -114,7 +114,8 @@ def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
 
     still_moving: those of which nobody knows it, when the time after the motion is over; among the others.
     """
-    peaks = np.array([run.peaks for run in runs if not run.collapsed]).reshape(-1, n_monitors)
+    stood = [run.peaks for run in runs if not run.collapsed]
+    peaks = np.array(stood).reshape(len(stood), n_monitors)
     collapsed, moving = len(runs) - len(peaks), sum(run.ending == MOVES for run in runs)
     columns = [
         {name: float(np.percentile(column, q)) for name, q in PERCENTILES.items()} if len(column) else None

@@ -14,6 +14,7 @@ from dem_cli.geometry.rotation import leans_of
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
+    from dem_cli.output.record import Energy
     from dem_cli.tables.analysis import ShakingAnalysis
 
 
@@ -53,11 +54,12 @@ def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[n
     ]
 
 
-def check_energy(sim: DynamicSimulation, step: TimeStep) -> None:
-    """Raises SolverError where the motion makes energy."""
-    sim.note_kinetic_energy()
-    error = closure(sim)
-    if abs(error) > sim.settings.history.blow_up and measures.energy(sim).kinetic > sim.noticeable_energy:
+def check_energy(sim: DynamicSimulation, step: TimeStep, energy: Energy | None = None) -> None:
+    """Raises SolverError where the motion makes energy. energy: the books of this instant, if they are known."""
+    energy = energy or measures.energy(sim)
+    sim.note_kinetic_energy(energy.kinetic)
+    error = closure(sim, energy)
+    if abs(error) > sim.settings.history.blow_up and energy.kinetic > sim.noticeable_energy:
         block = sim.model.block_ids[_fastest(sim)]
         known = f"the step {step.step:.3g} s is {step.step / step.limit:.0%} of the limit of the joints of the start"
         advice = f"{known}, lower analysis.margin" if np.isfinite(step.limit) else "give a smaller analysis.time_step"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,27 @@ from dem_cli.motion.record import MOTION_QUANTITIES
 
 if TYPE_CHECKING:
     from dem_cli.motion.motion import Motion
+
+AHEAD, LONGEST = 16, 65_536  # requests that are worked out at once, and rows at most
+
+
+class RowsAhead:
+    """Rows of tables without end, asked for one stretch behind the other and worked out for many of these at once.
+
+    rows: the rows from a number on, so many, of all tables; each row whatever comes with it.
+    """
+
+    def __init__(self, rows: Callable[[int, int], tuple[np.ndarray, ...]]):
+        self.rows, self.first, self.end = rows, 0, 0
+        self.tables: tuple[np.ndarray, ...] = ()
+
+    def stretch(self, first: int, n: int) -> tuple[np.ndarray, ...]:
+        """The rows first, first + 1 ..., n of them."""
+        if not self.first <= first <= first + n <= self.end:
+            more = max(n, min(AHEAD * n, LONGEST))
+            self.tables, self.first, self.end = self.rows(first, more), first, first + more
+        since = first - self.first
+        return tuple(table[since : since + n] for table in self.tables)
 
 
 class GroundMotion:
@@ -36,10 +57,21 @@ class GroundMotion:
         self.moving = np.array(sorted(self.own), np.int64)
         self.duration = max((motion.duration for motion in motions), default=0.0)
         self.peak = max((motion.peak for motion in motions), default=0.0)
+        self._ahead: dict[tuple[float, int], RowsAhead] = {}
 
     def of_base(self, times: np.ndarray) -> np.ndarray:
         """Acceleration, velocity and displacement of the base [m, s], (n, 3, d)."""
         return np.stack([self._sum(self.base, name, times) for name in MOTION_QUANTITIES], 1)
+
+    def sampled(self, first: int, n: int, every: int, dt: float) -> tuple[np.ndarray, np.ndarray]:
+        """Times of the steps first, first + every ..., n of them, and `of_base` there; first is a multiple of every."""
+
+        def rows(row: int, count: int) -> tuple[np.ndarray, ...]:
+            times = dt * (every * row + every * np.arange(count))
+            return times, self.of_base(times)
+
+        times, base = self._table(dt, every, rows).stretch(first // every, n)
+        return times, base
 
     def along(self, time: float) -> float:
         """Acceleration of the base along its first motion [m/s²]."""
@@ -53,7 +85,21 @@ class GroundMotion:
 
         Times are counted in steps: where a stretch starts changes no bit of the motion.
         """
-        times = dt * (round(start / dt) + np.arange(n_steps + 1))
+        gained, velocities = self._table(dt, 0, lambda first, n: self._gained(first, n, dt)).stretch(
+            round(start / dt), n_steps
+        )
+        return Ground(gained, self.moving, velocities)
+
+    def _table(self, dt: float, every: int, rows: Callable[[int, int], tuple[np.ndarray, ...]]) -> RowsAhead:
+        """What was worked out ahead for steps of dt; every: 0 for the steps themselves."""
+        if (dt, every) not in self._ahead:
+            self._ahead = {key: table for key, table in self._ahead.items() if key[0] == dt}  # of one run at a time
+            self._ahead[dt, every] = RowsAhead(rows)
+        return self._ahead[dt, every]
+
+    def _gained(self, first: int, n_steps: int, dt: float) -> tuple[np.ndarray, np.ndarray]:
+        """Ground.accelerations and Ground.velocities of the steps from a number on."""
+        times = dt * (first + np.arange(n_steps + 1))
         gained = np.diff(self._sum(self.base, "velocity", times - 0.5 * dt), axis=0)
         velocities = np.zeros((n_steps, len(self.moving), self.n_dof))
         if len(self.moving):
@@ -61,7 +107,7 @@ class GroundMotion:
             for j, block in enumerate(self.moving.tolist()):
                 way = self._sum(self.own[block], "displacement", times) - carried
                 velocities[:, j, : self.dimension] = np.diff(way, axis=0) / dt
-        return Ground(np.ascontiguousarray(gained / dt), self.moving, velocities)
+        return np.ascontiguousarray(gained / dt), velocities
 
     def _sum(self, motions: Sequence[Motion], name: str, times: np.ndarray) -> np.ndarray:
         total = np.zeros((len(times), self.dimension))

@@ -211,12 +211,11 @@ class TimeHistory:
         ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
         sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
         check_finite(sim)
-        new = slice(1 if since else 0, None)  # the first sample of a stretch that begins between two is none
-        times = (dt * (done - since + every * np.arange(n_samples)))[new]
+        new = 1 if since else 0  # the first sample of a stretch that begins between two is none
         values = np.zeros((0, len(self.peaks)))
-        if len(times):
-            base = self.ground.of_base(times)
-            values = monitors.series(watch.samples[new], base, watch.links[new])
+        if n_samples > new:
+            times, base = self.ground.sampled(done - since + every * new, n_samples - new, every, dt)
+            values = monitors.series(watch.samples[new:], base, watch.links[new:])
             self.track.observer.samples(Samples(times, base, values))
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
         return values
@@ -224,9 +223,9 @@ class TimeHistory:
     def _look(self) -> None:
         """The books of this instant; stops a run that makes energy."""
         sim = self.sim
-        self.track.write("shaking")
-        self.overlap = max(self.overlap, measures.largest_overlap(sim))
-        check_energy(sim, self.step)
+        row = self.track.write("shaking")
+        self.overlap = max(self.overlap, row.overlap)
+        check_energy(sim, self.step, row.energy)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """The summary, audited."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from operator import is_
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from dem_cli.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
+from dem_cli.kernels.jit import CompiledKernel
 from dem_cli.kernels.records import Dampers, Ground, Watch
 from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
@@ -39,13 +42,15 @@ class DynamicSimulation(Simulation):
     damping     what the joints and blocks lose (dynamics/damping.py)
     """
 
-    LASTING = Simulation.LASTING | {"damping"}
+    LASTING = Simulation.LASTING | {"damping", "_shaken", "_shake"}
 
     def __init__(
         self, model: Model, law: Law, properties: JointProperties, damping: Damping, settings: Settings = DEFAULT
     ):
         self.damping = damping
         self.real, self.dt = False, 1.0
+        self._shaken: tuple[Any, ...] = (None,)  # what the compiled loop of time histories is bound to
+        self._shake: Callable[..., int] | None = None
         self.strained = strain_rates(model, damping, self.dt)
         self.masses = np.where(held_motions(model, model.n_modes > 0), 0.0, _masses(model))
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
@@ -224,14 +229,24 @@ class DynamicSimulation(Simulation):
         return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
 
     def _run(self, first: int, n_steps: int, ground: Ground, watch: Watch) -> int:
-        run = compiled_shake(
+        scene = (
+            self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
+            self.ledger, self.dampers,
+        )  # fmt: skip
+        if all(map(is_, scene, self._shaken)):
+            run = self._shake = self._shake or self._compiled_shake().bound()
+        else:
+            self._shaken, self._shake, run = scene, None, self._compiled_shake()
+        *moved, dampers = scene
+        done: int = run(
+            first, min(n_steps, self.longest), self.dt, *moved, ground, dampers, watch, self.like, self.like_rotation
+        )
+        return done
+
+    def _compiled_shake(self) -> CompiledKernel:
+        return compiled_shake(
             self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
             self.model.n_modes > 0, len(self.model.mode_shapes) > 0,
-        )  # fmt: skip
-        return run(
-            first, min(n_steps, self.longest), self.dt, self.bodies, self.shape, self.joints, self.geometry,
-            self.contacts, self.links, self.loads, self.control, self.ledger, ground, self.dampers, watch, self.like,
-            self.like_rotation,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------
@@ -265,9 +280,9 @@ class DynamicSimulation(Simulation):
             found += 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates))
         return found
 
-    def note_kinetic_energy(self) -> None:
-        """Remembers the largest kinetic energy that was seen, which errors of energy are compared with."""
-        self.most_kinetic = max(self.most_kinetic, self.centred_kinetic_energy())
+    def note_kinetic_energy(self, energy: float) -> None:
+        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with."""
+        self.most_kinetic = max(self.most_kinetic, energy)
 
     def books(self) -> Books:
         """The energy ledger since `begin`, one step back from the positions."""

@@ -89,7 +89,7 @@ def live_travel(sim: Simulation) -> float:
 
     Of couples alone: how far the far ends of their blocks turned.
     """
-    force = live_force(sim)
+    force = live_force(sim) if sim.loads.live.any() else 0.0
     return live_displacement(sim) / force if force > 0.0 else 0.0
 
 
@@ -167,9 +167,12 @@ def energy(sim: Simulation) -> Energy:
     )
 
 
-def closure(sim: Simulation) -> float:
-    """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance."""
-    e = energy(sim)
+def closure(sim: Simulation, books: Energy | None = None) -> float:
+    """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance.
+
+    books: `energy` of this instant, if that is known.
+    """
+    e = books or energy(sim)
     error = e.kinetic + e.elastic + e.gravity + _taken(e) + e.reweighting - e.external - e.supports
     largest = _largest(sim, e)
     return float(error / largest) if largest > 0.0 else 0.0

@@ -173,6 +173,8 @@ class Settings:
 
     def changed(self) -> dict[str, Any]:
         """The settings that differ from the default, by their path, such as "relaxation.tolerance"."""
+        if self is DEFAULT:
+            return {}
         return dict(_differences(self, type(self)(), ""))
 
 

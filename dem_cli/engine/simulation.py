@@ -44,7 +44,7 @@ class Simulation:
 
     LASTING = frozenset((
         "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
-        "_loop",
+        "_loop", "_masses",
     ))  # fmt: skip
 
     def __init__(
@@ -64,6 +64,7 @@ class Simulation:
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int] | None = None
+        self._masses: dict[float, np.ndarray] = {}  # inverse ones of joints that stay as they are, by their safety
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
         self.like, self.like_rotation = (0.0,) * d, (0.0,) * r  # lengths of tuples in kernels
@@ -157,6 +158,7 @@ class Simulation:
             self.tracking.tile(self.law.n_of_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
+        self._masses.clear()
         self.set_masses()
 
     def _in_tiles(self) -> bool:
@@ -169,16 +171,21 @@ class Simulation:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
         self.measured()
-        fictitious_masses(
-            self.model,
-            self.joints,
-            self.bodies,
-            self.shape,
-            self.safety,
-            self.loads.inverse_masses,
-            self.settings.relaxation.free_fall,
-            self.link_springs(),
-        )
+        if self.safety in self._masses:
+            self.loads.inverse_masses[:] = self._masses[self.safety]
+        else:
+            fictitious_masses(
+                self.model,
+                self.joints,
+                self.bodies,
+                self.shape,
+                self.safety,
+                self.loads.inverse_masses,
+                self.settings.relaxation.free_fall,
+                self.link_springs(),
+            )
+        if self.kinematics == "fixed" and not self.links:
+            self._masses[self.safety] = self.loads.inverse_masses.copy()
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 
     # -- links -------------------------------------------------------------------------------------

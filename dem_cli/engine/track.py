@@ -54,6 +54,8 @@ class Track:
             self.observer.row(row)
         self.kept.clear()
 
-    def write(self, stage: str, load: float | None = None) -> None:
+    def write(self, stage: str, load: float | None = None) -> HistoryRow:
         """Hand over a row now, as `row`."""
-        self.observer.row(self.row(stage, load))
+        row = self.row(stage, load)
+        self.observer.row(row)
+        return row

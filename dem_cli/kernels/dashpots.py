@@ -23,29 +23,30 @@ from dem_cli.kernels.deformation.strain_dashpots import (
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
-from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, norm, scale, store
+from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
 
 OPEN, STICKS, SLIPS, STARTS = 0, 1, 2, 3
 
 
-# Columns of Dampers.gains in the plane, of the points that touch: normal, levers about both centroids, C (half of
-# damping × step) across and along the joint, shares of their errors that impulses give up in one turn, rates before the
-# step, impulses, the least one across the joint.
-NORMAL, LEVERS_A, LEVERS_B, VISCOUS, GAIN, RATE, IMPULSE, LEAST = 0, 2, 4, 6, 8, 10, 12, 14
+# Columns of Dampers.gains in the plane, of the points that touch: normal, levers about both centroids; across and along
+# the joint an impulse J becomes KEEP J − GAIN (rate after) − GIVEN with GIVEN = GAIN × rate before, and J itself; the
+# least impulse across. Along a joint that slips all of them are 0.
+NORMAL, LEVERS_A, LEVERS_B, KEEP, GAIN, GIVEN, IMPULSE, LEAST = 0, 2, 4, 6, 8, 10, 12, 14
 WIDTH = 16  # of which the last is empty: two lines of the cache
 
 
 @always_inline
-def _gain(normal_lever_a, normal_lever_b, masses, turning_a, turning_b, viscous, motions, lifts, point, direction):
-    """How far an impulse goes in one turn to where its error is none: 1 / (1 + C K), across or along the joint.
+def _put_turn(rows, row, k, levers, masses, turning, viscous, rate, more):
+    """What a turn does to an impulse, column k of KEEP, GAIN and GIVEN: it gives up J/(1 + C K) + C (w₀ + w)/(1 + C K).
 
-    viscous: C [kg]; K: rates by impulses at the point [1/kg]; masses: sum of both inverse masses; turning: of both
-    blocks.
+    viscous: C, half of damping × step [kg]; K: rates by impulses at the point [1/kg], of the masses (sum of both
+    inverses), of turning, of both blocks by their levers, and what more there is of modes.
     """
     inverse = masses
-    inverse += turning_a * (normal_lever_a * normal_lever_a) + turning_b * (normal_lever_b * normal_lever_b)
-    inverse = mobility_along(motions, lifts, point, direction, inverse)
-    return 1.0 / (1.0 + viscous * inverse)
+    inverse += turning[0] * (levers[0] * levers[0]) + turning[1] * (levers[1] * levers[1])
+    inverse += more
+    gain = viscous / (1.0 + viscous * inverse)
+    rows[row, KEEP + k], rows[row, GAIN + k], rows[row, GIVEN + k] = gain * inverse, gain, gain * rate
 
 
 @always_inline
@@ -147,7 +148,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             continue
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         half, masses = 0.5 * viscosity[joint] * dt, inverse_masses[a, 0] + inverse_masses[b, 0]
-        turning_a, turning_b = bodies.mobilities[a, 0], bodies.mobilities[b, 0]
+        turning = (bodies.mobilities[a, 0], bodies.mobilities[b, 0])
         xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
         spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
         relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
@@ -174,35 +175,17 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 share = 0.5 + closed
             if half > 0.0:
                 weight, least = share * half, least_of(normals[point], dt)
-                across, aside = weight * kns[point], weight * kss[point]
                 row = np.uint64(n_rows)
                 n_rows += 1
                 holders[row] = point
                 store(rows, row, NORMAL, frame[0])
                 rows[row, LEVERS_A], rows[row, LEVERS_A + 1] = reach_a[0][0], reach_a[1][0]
                 rows[row, LEVERS_B], rows[row, LEVERS_B + 1] = reach_b[0][0], reach_b[1][0]
-                rows[row, VISCOUS], rows[row, VISCOUS + 1] = across, 0.0 if slipping else aside
-                rows[row, GAIN] = _gain(
-                    reach_a[0][0], reach_b[0][0], masses, turning_a, turning_b, across, motions, lifts, point, frame[0]
-                )
-                rows[row, GAIN + 1] = (
-                    0.0
-                    if slipping
-                    else _gain(
-                        reach_a[1][0],
-                        reach_b[1][0],
-                        masses,
-                        turning_a,
-                        turning_b,
-                        aside,
-                        motions,
-                        lifts,
-                        point,
-                        frame[1],
-                    )
-                )
-                rows[row, RATE] = opening
-                store(rows, row, RATE + 1, sliding)
+                levers, more = (reach_a[0][0], reach_b[0][0]), mobility_along(motions, lifts, point, frame[0], 0.0)
+                _put_turn(rows, row, 0, levers, masses, turning, weight * kns[point], opening, more)
+                levers, more = (reach_a[1][0], reach_b[1][0]), mobility_along(motions, lifts, point, frame[1], 0.0)
+                aside = 0.0 if slipping else weight * kss[point]
+                _put_turn(rows, row, 1, levers, masses, turning, aside, sliding[0], more)
                 push = max(memory[point, first], least)
                 along = scale(0.0 if slipping else 1.0, load(memory, point, first + 1, sliding))
                 rows[row, IMPULSE] = push
@@ -278,39 +261,45 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, ba
         low, high, change = packed[joint], packed[number + 1], 0.0
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
-        mobility_a, mobility_b = load_mobility(mobilities, a, like), load_mobility(mobilities, b, like)
+        turning_a, turning_b = mobilities[a, 0], mobilities[b, 0]
         va, vb = load(velocities, a, 0, like), load(velocities, b, 0, like)
-        spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
+        spin_a, spin_b = velocities[a, d], velocities[b, d]
         for j in range(high - low):
             row = np.uint64(high - 1 - j if backwards else low + j)
-            frame = load_frame(rows, row, like)
-            reach_a = ((rows[row, LEVERS_A],), (rows[row, LEVERS_A + 1],))
-            reach_b = ((rows[row, LEVERS_B],), (rows[row, LEVERS_B + 1],))
-            push, along = rows[row, IMPULSE], load(rows, row, IMPULSE + 1, like[1:])
-            relative = plus_modes(motions, velocities, holders[row], a, b, axpy(-1.0, va, vb))
-            opening, sliding = rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b)
-            error = rows[row, VISCOUS] * (rows[row, RATE] + opening) + push
-            mean = axpy(1.0, load(rows, row, RATE + 1, sliding), sliding)
-            error_along = axpy(rows[row, VISCOUS + 1], mean, along)
-            new = max(push - error * rows[row, GAIN], rows[row, LEAST])
-            new_along = axpy(-rows[row, GAIN + 1], error_along, along)
-            rows[row, IMPULSE] = new
-            store(rows, row, IMPULSE + 1, new_along)
+            x, y = rows[row, NORMAL], rows[row, NORMAL + 1]
+            across_a, along_a = rows[row, LEVERS_A], rows[row, LEVERS_A + 1]
+            across_b, along_b = rows[row, LEVERS_B], rows[row, LEVERS_B + 1]
+            push, shear = rows[row, IMPULSE], rows[row, IMPULSE + 1]
+            # What needs no velocity comes first, so that little is left to wait for from one point to the next.
+            held = rows[row, KEEP] * push - rows[row, GIVEN]
+            held_along = rows[row, KEEP + 1] * shear - rows[row, GIVEN + 1]
+            u, v = plus_modes(motions, velocities, holders[row], a, b, axpy(-1.0, va, vb))
+            opening = (x * u + y * v) + (across_b * spin_b - across_a * spin_a)
+            sliding = (x * v - y * u) + (along_b * spin_b - along_a * spin_a)
+            new = max(held - rows[row, GAIN] * opening, rows[row, LEAST])
+            new_along = held_along - rows[row, GAIN + 1] * sliding
+            rows[row, IMPULSE], rows[row, IMPULSE + 1] = new, new_along
             if backwards:
                 point = np.uint64(holders[row])
-                memory[point, first] = new
-                store(memory, point, first + 1, new_along)
-            new, new_along = new - push, axpy(-1.0, along, new_along)
-            change = max(change, max(abs(new), norm(new_along)))
-            force = compose(frame, new, new_along, scale(0.0, like))
-            va, vb = axpy(-mass_a, force, va), axpy(mass_b, force, vb)
+                memory[point, first], memory[point, first + 1] = new, new_along
+            more, more_along = new - push, new_along - shear
+            change = max(change, max(abs(more), abs(more_along)))
+            va = (
+                (va[0] + mass_a * y * more_along) - mass_a * x * more,
+                (va[1] - mass_a * x * more_along) - mass_a * y * more,
+            )
+            vb = (
+                (vb[0] - mass_b * y * more_along) + mass_b * x * more,
+                (vb[1] + mass_b * x * more_along) + mass_b * y * more,
+            )
+            spin_a = (spin_a - turning_a * along_a * more_along) - turning_a * across_a * more
+            spin_b = (spin_b + turning_b * along_b * more_along) + turning_b * across_b * more
+            force = (x * more - y * more_along, y * more + x * more_along)
             push_modes(dampers.lifts, velocities, holders[row], a, b, force)
-            spin_a = axpy(-1.0, spun(mobility_a, torque_at(reach_a, force, new, new_along)), spin_a)
-            spin_b = axpy(1.0, spun(mobility_b, torque_at(reach_b, force, new, new_along)), spin_b)
         store(velocities, a, 0, va)
-        store(velocities, a, d, spin_a)
+        velocities[a, d] = spin_a
         store(velocities, b, 0, vb)
-        store(velocities, b, d, spin_b)
+        velocities[b, d] = spin_b
         stir(dampers, joint, a, b, turn, change)
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from dem_cli.kernels.advance import local_drag
 from dem_cli.kernels.dashpots import book_elements, book_supports
 from dem_cli.kernels.deformation.quadratic import bend, resist_bending
@@ -52,16 +54,19 @@ def _kick(
     """
     n_dof, d = velocities.shape[1], len(like)
     keep, gain = (1.0 - 0.5 * rate * dt) / (1.0 + 0.5 * rate * dt), dt / (1.0 + 0.5 * rate * dt)
-    for block in range(velocities.shape[0]):
-        for k in range(n_dof):
-            i = block * n_dof + k
+    i = np.uint64(0)
+    for number in range(velocities.shape[0]):
+        block = np.uint64(number)
+        for dof in range(n_dof):
+            k = np.uint64(dof)
             before, inverse = velocities[block, k], inverse_masses[block, k]
-            total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if k < d else 0.0)
+            total = forces[block, k] + dead_loads[block, k] - (masses[block, k] * base[k] if dof < d else 0.0)
             drag = local_drag(total, 0.0, before, damp, 0.0)
             old[i], unbalanced[block, k], drags[i] = before, total, drag
             new = keep * before + gain * inverse * (total - drag)
             velocities[block, k] = new
             pulled[i] = new
+            i += np.uint64(1)
         kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, block, like_rotation)
 
 
@@ -77,12 +82,14 @@ def _book(
     """
     n_dof = velocities.shape[1]
     contact = external = local = drained = support = dashpots = 0.0
-    for block in range(velocities.shape[0]):
+    i = np.uint64(0)
+    for number in range(velocities.shape[0]):
+        block = np.uint64(number)
         drained, dashpots = add_spin_powers(
             drained, dashpots, velocities, old, pulled, shape, turns, block, like_rotation
         )  # fmt: skip
-        for k in range(n_dof):
-            i = block * n_dof + k
+        for dof in range(n_dof):
+            k = np.uint64(dof)
             before, after, force = old[i], velocities[block, k], forces[block, k]
             free = 1.0 if inverse_masses[block, k] > 0.0 else 0.0
             mean = 0.5 * (before + after)
@@ -94,6 +101,7 @@ def _book(
             drained += masses[block, k] * (before + pulled[i]) * mean
             dashpots += masses[block, k] * (after - pulled[i]) * mean
             pulled[i] = after
+            i += np.uint64(1)
     ledger[CONTACT] += dt * contact
     ledger[EXTERNAL] += dt * external
     ledger[DAMPING] += dt * local

@@ -79,12 +79,11 @@ def pseudo_accelerations(accelerations: np.ndarray, filters: list[OscillatorFilt
     """PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods)."""
     from scipy.signal import lfilter
 
-    found = np.empty((*accelerations.shape[:-1], len(filters)))
+    moved = np.empty((*accelerations.shape[:-1], len(filters), accelerations.shape[-1]))
     first = accelerations[..., :1]
     for k, one in enumerate(filters):
-        u, _ = lfilter(one.displacement, one.denominator, accelerations, zi=first * one.start[0])
-        found[..., k] = omegas[k] ** 2 * peak(u)
-    return found
+        moved[..., k, :], _ = lfilter(one.displacement, one.denominator, accelerations, zi=first * one.start[0])
+    return omegas**2 * peak(moved)
 
 
 def oscillator(omega: float, damping: float, step: float) -> OscillatorFilter:

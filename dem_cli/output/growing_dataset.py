@@ -44,7 +44,7 @@ class GrowingDataset:
         start = self.length
         self.length = start + len(rows)
         if len(rows):
-            self._waiting.append(np.array(rows, dtype=self.dtype))  # which may change afterwards
+            self._waiting.append(np.array(rows, dtype=self.dtype, order="C"))  # which may change afterwards
         return start
 
     def write_out(self) -> None:

@@ -161,6 +161,9 @@ class KeptKernel:
             raise RuntimeError(f"compiled code failed, {frame.words[0]}")
         return found
 
+    def __deepcopy__(self, known: dict[int, Any]) -> KeptKernel:
+        return self
+
     def _put(self, frame: _Frame, place: int, value: Any) -> None:
         """Another argument than in the last call of this thread. What it is made of stays where it is in memory."""
         kind, here = self.kinds[place], frame.places[place]

@@ -1,0 +1,26 @@
+"""Datasets that grow: rows wait in memory as they were, in whatever order, and reach the file together."""
+
+from __future__ import annotations
+
+import io
+
+import h5py
+import numpy as np
+
+from dem_cli.output.growing_dataset import GrowingGroup
+
+
+def test_rows_wait_as_they_were_appended():
+    with h5py.File(io.BytesIO(), "w") as file:
+        group = GrowingGroup(file, {})
+        rows = np.asfortranarray(np.arange(12.0).reshape(1, 3, 4))
+        assert [group.append("field", rows), group.append("field", rows + 12.0)] == [0, 1]
+        rows[:] = -1.0
+        assert len(file["field"]) == 0
+        group.write_out()
+        assert group.append("field", np.full((1, 3, 4), 5.0)) == 2
+        group.write_out()
+        group.write_out()
+        assert file["field"][:2].ravel().tolist() == list(range(24))
+        assert (file["field"][2:] == 5.0).all()
+        assert len(file["field"]) == 3
