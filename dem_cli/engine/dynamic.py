@@ -286,9 +286,12 @@ class DynamicSimulation(Simulation):
             found += 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates))
         return found
 
-    def note_kinetic_energy(self, energy: float) -> None:
-        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with."""
-        self.most_kinetic = max(self.most_kinetic, energy)
+    def note_kinetic_energy(self, energy: float | None = None) -> None:
+        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with.
+
+        energy: that of this instant, if it is known.
+        """
+        self.most_kinetic = max(self.most_kinetic, self.centred_kinetic_energy() if energy is None else energy)
 
     def books(self) -> Books:
         """The energy ledger since `begin`, one step back from the positions."""

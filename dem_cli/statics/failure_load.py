@@ -16,7 +16,6 @@ raised from there; one from limit analysis is an equilibrium that exists, and no
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -166,7 +165,7 @@ class LoadSearch:
         settings, scale = self.settings, self.sim.live_scale
         most = min(settings.trial_of_large, int(settings.effort_of_large / len(self.sim.joints.kn)))
         self.settings = replace(
-            settings, effort=settings.effort_of_large, trial=most, trial_per_point=0, most_undecided=0, widest=math.inf
+            settings, effort=settings.effort_of_large, trial=most, trial_per_point=0, most_undecided=0
         )
         left = settings.step_of_large * (answer.bound - start.load)
         self._raise_load(self._trials([], max(left, settings.one_step * self.resolution * start.load) / scale))
