@@ -14,7 +14,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
 from types import ModuleType
 
-LATE = frozenset(("importlib.metadata", "numpy.char", "numpy.f2py", "numpy.polynomial", "numpy.testing"))
+LATE = frozenset(("numpy.f2py", "numpy.testing"))
 SELDOM = (200_000, 10, 10)  # objects between two collections, and collections between two of older ones
 
 

@@ -278,7 +278,8 @@ def _memory(sim: Simulation) -> str:
     saved = sim.save()
     state = len(pickle.dumps(saved, 5))
     whole, each = 1e-6 * (LIBRARIES + STATES * state), 1e-6 * state
-    basis = f"{1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {each:.2g} MB"
+    size = f"{each:.2g}" if each < 10.0 else f"{each:,.0f}"
+    basis = f"{1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {size} MB"
     return f"some {whole:,.0f} MB ({basis}); up to {1e-6 * COMPILING:.0f} MB where kernels are compiled first"
 
 

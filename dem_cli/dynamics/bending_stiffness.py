@@ -21,6 +21,8 @@ from dem_cli.model.scales import origin_of, smallest_edge
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
+SOFTER = 10.0  # times that blocks turn further with points of bending, which are three times as soft, at the very most
+
 
 def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> list[str]:
     """Words for joints whose stiffness is a property, and that have points at their ends although bending counts.
@@ -40,6 +42,8 @@ def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> li
             return []
         own = soft[properties.between(model, joints.blocks)][joints.owners]
         turns.append(turn_sideways(model, rigid_but(joints, own), settings))
+        if SOFTER * turns[0] <= settings.rocking.doubtful:
+            return []
     if turns[1] - turns[0] <= settings.rocking.doubtful:
         return []
     first, where = int(soft.argmax()), "its two ends" if model.dimension == 2 else "the corners of its area"

@@ -60,6 +60,10 @@ class DynamicSimulation(Simulation):
         self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
         self.takes_back = False  # springs that press at the start go on pressing
 
+    def __getstate__(self) -> dict[str, Any]:
+        """As that of every simulation."""
+        return super().__getstate__() | {"_shaken": (None,), "_shake": None}
+
     @property
     def n_damped(self) -> int:
         """Numbers that dashpots and Maxwell elements remember of each contact point."""
@@ -172,6 +176,8 @@ class DynamicSimulation(Simulation):
 
     def _decays(self) -> np.ndarray:
         """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""
+        if not len(self.damping.elements):
+            return np.zeros(0)
         share, rate = self.damping.elements.T
         gains = -share * np.expm1(-rate * self.dt) / rate
         return np.ascontiguousarray(np.column_stack([np.exp(-rate * self.dt), gains]))
@@ -280,9 +286,12 @@ class DynamicSimulation(Simulation):
             found += 0.5 * float(np.einsum("ni,nij,nj->", rates, self.strained.masses, rates))
         return found
 
-    def note_kinetic_energy(self, energy: float) -> None:
-        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with."""
-        self.most_kinetic = max(self.most_kinetic, energy)
+    def note_kinetic_energy(self, energy: float | None = None) -> None:
+        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with.
+
+        energy: that of this instant, if it is known.
+        """
+        self.most_kinetic = max(self.most_kinetic, self.centred_kinetic_energy() if energy is None else energy)
 
     def books(self) -> Books:
         """The energy ledger since `begin`, one step back from the positions."""

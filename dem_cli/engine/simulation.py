@@ -244,6 +244,10 @@ class Simulation:
             self.loads.dead[:] = np.where(self.model.held, 0.0, dead)
             self.loads.live[:] = np.where(self.model.held, 0.0, live * self.live_scale)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What a copy takes along: not the compiled code that this one is bound to."""
+        return self.__dict__ | {"_scene": (None,), "_loop": None}
+
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
         control = self.control.copy()

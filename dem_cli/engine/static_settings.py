@@ -66,9 +66,9 @@ class LoadSearchSettings:
     most_undecided: int = 5  # trials, before the bracket stays as wide as it is
     aside: float = 0.45  # of the bracket: how far from an undecided load the next trial is
     effort: float = 2e10  # steps × contact points, about 200 s: from there on a bracket that is known is not narrowed
-    effort_of_large: float = 8e9  # the same of what follows the smoothed path of a large structure
+    effort_of_large: float = 3e9  # the same of what follows the smoothed path of a large structure
     trial_of_large: int = 150_000  # steps of its trials
-    step_of_large: float = 0.0025  # and the first step of its load, over the load
+    step_of_large: float = 0.12  # and the first step of its load, over what is left to the bound
     softer: float = 10.0  # joints that show how much stiffness matters where geometry moves
     softer_steps: float = 1.0  # of the steps of the search, that this may take, or of a trial
     widest: float = 0.1  # bracket, over its load, that is still given as an answer where it cannot be narrowed

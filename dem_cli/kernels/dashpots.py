@@ -20,7 +20,7 @@ from dem_cli.kernels.deformation.strain_dashpots import (
     push_modes,
     put_motions,
 )
-from dem_cli.kernels.jit import always_inline, inline
+from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
 from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
@@ -133,7 +133,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     motions, lifts = dampers.motions, dampers.lifts
     pushes[:] = 0.0
-    d, with_elements, n_met, n_rows, n_active = len(like), dampers.elements.shape[0] > 0, 0, 0, 0
+    elements, d, n_met, n_rows, n_active = dampers.elements, len(like), 0, 0, 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         begin_joint(dampers, joint, n_rows)
@@ -196,11 +196,11 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 turned_a = axpy(-1.0, torque_at(reach_a, force, push, along), turned_a)
                 turned_b = axpy(1.0, torque_at(reach_b, force, push, along), turned_b)
                 push_modes(motions, pushes, point, a, b, force)
-            if with_elements:
+            if elements.shape[0] > 0:
                 rates[point, 0] = opening
                 store(rates, point, 1, sliding)
                 stiffness, reaches = (kns[point], kss[point]), (reach_a, reach_b)
-                pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
+                pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
         store(pushes, a, 0, pushed_a)
         store(pushes, a, d, turned_a)
         store(pushes, b, 0, pushed_b)
@@ -210,10 +210,23 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     return n_met
 
 
+def pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
+    """Forces of the Maxwell elements of a point after the step before, on those of its blocks; none: not compiled."""
+    if elements.ndim > 1:
+        _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
+
+
+@overload(pull)
+def _pulled(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
+    if elements.ndim > 1:
+        return _pull
+    return lambda elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like: None
+
+
 @inline
-def pull(contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
+def _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
     """Forces of the Maxwell elements of a point after the step before, added to those of its blocks."""
-    elements, first, memory, forces, d = dampers.elements, dampers.first, contacts.memory, bodies.forces, len(like)
+    first, memory, forces, d = dampers.first, contacts.memory, bodies.forces, len(like)
     state, pressed = dampers.states[point], contacts.normal[point]
     _relax(memory, dampers.rates, elements, state, pressed, stiffness, closed, point, first, d)
     normal, shear = 0.0, scale(0.0, like[1:])
@@ -329,12 +342,25 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
         )  # fmt: skip
 
 
+def book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
+    """What Maxwell elements took in this step, by the mean rates over it; none: not compiled."""
+    if elements.ndim > 1:
+        _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
+
+
+@overload(book_elements)
+def _booked(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
+    if elements.ndim > 1:
+        return _book_elements
+    return lambda elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation: None
+
+
 @inline
-def book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
-    """What Maxwell elements took in this step, by the mean rates over it."""
+def _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
+    """Adds it to the ledger."""
     blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
     positions, velocities = bodies.positions, bodies.velocities
-    rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, dampers.elements.shape[0]
+    rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, elements.shape[0]
     d, taken = len(like), 0.0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)

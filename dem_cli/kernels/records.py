@@ -264,7 +264,8 @@ class Dampers(NamedTuple):
 
     first: int
     viscosity: np.ndarray  # damping over stiffness of a joint [s], (n_joints,)
-    elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2)
+    elements: np.ndarray  # Maxwell: force kept over a step [-], gained per stiffness and rate [s], (n_elements, 2);
+    # where there are none: (0,)
     rates: np.ndarray  # opening and sliding before the step [m/s], where elements ask for it, (n_points, d)
     gains: np.ndarray  # what a turn reads, of the points that touch one behind another, columns as in dashpots.py,
     # (n_points, 16), in space as in spatial_dashpots.py, (n_points, 18)

@@ -193,8 +193,9 @@ def make_shake(
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
                 resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
-                if dampers.elements.shape[0] > 0:
-                    book_elements(joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
+                book_elements(
+                    dampers.elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation
+                )  # fmt: skip
                 if n_moving > 0:
                     old = shaped_as(means, velocities)
                     book_supports(

@@ -155,7 +155,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     pushes[:] = 0.0
     motions, lifts = dampers.motions, dampers.lifts
-    with_elements, n_met, n_rows, n_active = dampers.elements.shape[0] > 0, 0, 0, 0
+    elements, n_met, n_rows, n_active = dampers.elements, 0, 0, 0
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -180,7 +180,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             put_motions(motions, lifts, dampers.strained, bodies, point, 0, a, arms[0])
             put_motions(motions, lifts, dampers.strained, bodies, point, 1, b, arms[1])
             share = 1.0
-            if met or with_elements:
+            if met or elements.shape[0] > 0:
                 moved = plus_modes(motions, velocities, point, a, b, relative)
                 opening, sliding = rates_at(frame, arms[0], arms[1], moved, spin_a, spin_b)
                 rates[point, 0] = opening
@@ -209,9 +209,9 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 pushed = axpy(1.0, impulse, pushed)
                 turned_a = axpy(1.0, moment(arms[0], impulse), turned_a)
                 turned_b = axpy(1.0, moment(arms[1], impulse), turned_b)
-            if with_elements:
+            if elements.shape[0] > 0:
                 stiffness = (kns[point], kss[point])
-                pull(contacts, bodies, dampers, a, b, point, frame, arms, stiffness, closed, like)
+                pull(elements, contacts, bodies, dampers, a, b, point, frame, arms, stiffness, closed, like)
         if touched:
             add_at(pushes, a, 0, pushed, -1.0)
             add_at(pushes, b, 0, pushed, 1.0)

@@ -6,7 +6,6 @@ blocks.vtkhdf, for those who open results.h5 itself.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -75,7 +74,6 @@ class ResultWriter:
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
-        self.patience, self._on_disk = 0.0, time.monotonic()  # s that frames may wait before they are on disk
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
         self._files: list[Hdf5File] = []
@@ -118,7 +116,7 @@ class ResultWriter:
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
-        """Keep a snapshot; everything up to it is on disk when this returns, or waits until the next one (patience)."""
+        """Keep a snapshot; everything up to it is on disk when this returns."""
         self._guarded(lambda: self._frame(frame))
         self.last_frame = frame
 
@@ -197,7 +195,6 @@ class ResultWriter:
         self._write_out()
         for file in self._files:
             file.flush()
-        self._on_disk = time.monotonic()
 
     def _write_out(self) -> None:
         for each in (self._frames, self._contacts, self._history, self._joint_states, self._links, self._vtk):
@@ -223,8 +220,7 @@ class ResultWriter:
                 self._joint_states.append(name, values[np.newaxis])
         self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
         self.n_frames += 1
-        if time.monotonic() - self._on_disk >= self.patience:
-            self._flush()
+        self._flush()
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""

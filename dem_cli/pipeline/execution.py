@@ -35,7 +35,6 @@ class SolverOutcome(Protocol):
 
 
 ONE_OF_MANY = "not used here: one case is solved, as written above; `dem sweep` runs all of them"
-PATIENCE = 1.0  # s that frames wait before they are on disk: what a kill may cost of them
 Solve = Callable[["Case", "Model", "Observer"], SolverOutcome]
 RunOutcome = tuple[dict[str, Any], Path]  # the summary, and the folder with the results
 
@@ -104,7 +103,6 @@ def execute(
     ):
         text, kind, quantities = case_text(case), case.analysis.kind, monitor_quantities(case.monitor)
         writer = ResultWriter(folder.path, model, text, provenance(), names, kind, destination.output, quantities)
-        writer.patience = PATIENCE
         writer.follow(joints_of)
         options, recorder = options or BatchOptions(), Recorder(writer, listener)
         with (

@@ -90,12 +90,14 @@ _BY = {
 }
 
 
-def _way(search: FailureLoad) -> str:
-    """From where, in words."""
+def _reached(search: FailureLoad) -> str:
+    """What the lower side of a wide bracket is, in words."""
     if search.start.get("kind") != AT_PATH:
-        return "gravity"
+        return "reached from gravity: at least"
     path = search.limits.path if search.limits is not None else None
-    return "gravity by a smoothed path" if path is not None and path.smoothing else "the zero-dilation path"
+    if path is not None and path.smoothing:
+        return "reached from gravity by a smoothed path: at least"
+    return "reached from the zero-dilation path: at least"
 
 
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
@@ -104,9 +106,9 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
     if spread is not None:
         share = 100.0 * (spread["highest"] - spread["lowest"]) / spread["highest"]
         said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
-    if search.found and search.wide and search.width is not None:
+    if search.wide and search.width is not None:
         said.append(
-            f"reached from {_way(search)}: at least {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
+            f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
             f"of {100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
         )
     return said

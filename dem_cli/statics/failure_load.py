@@ -162,10 +162,13 @@ class LoadSearch:
         if start is None or not self._holds(start):
             return False
         answer.start = {**report, "note": LARGE}
-        settings = self.settings
-        self.settings = replace(settings, effort=settings.effort_of_large, trial=settings.trial_of_large,
-                                trial_per_point=0, most_undecided=0)  # fmt: skip
-        self._raise_load(self._trials([], settings.step_of_large * start.load / self.sim.live_scale))
+        settings, scale = self.settings, self.sim.live_scale
+        most = min(settings.trial_of_large, int(settings.effort_of_large / len(self.sim.joints.kn)))
+        self.settings = replace(
+            settings, effort=settings.effort_of_large, trial=most, trial_per_point=0, most_undecided=0
+        )
+        left = settings.step_of_large * (answer.bound - start.load)
+        self._raise_load(self._trials([], max(left, settings.one_step * self.resolution * start.load) / scale))
         return True
 
     def _holds(self, start: WarmStart | CurveStart) -> bool:

@@ -13,6 +13,7 @@ from dem_cli import api
 from dem_cli.case.reader import CaseSource, parse_toml, validate
 from dem_cli.cli import check
 from dem_cli.cli.main import main
+from dem_cli.kernels.compilation.kept_code import may_be_kept
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 WALL = CASES / "verification" / "wall_21.toml"
@@ -23,6 +24,7 @@ try:
     main(sys.argv[1:])
 finally:
     kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.column", "dem_cli.laws.barton"}
+    kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private"}
     print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", "dem_cli.motion.table", *kinds} & set(sys.modules)))
 """
 
@@ -32,6 +34,19 @@ def test_a_small_wall_is_checked_without_what_it_does_not_need():
     done = subprocess.run(words, capture_output=True, text=True, check=True)
     assert "49, 98 contact points" in done.stdout
     assert done.stdout.splitlines()[-1] == "LOADED []"
+
+
+@pytest.mark.skipif(not may_be_kept(), reason="code is kept on Linux and x86-64 alone")
+def test_a_later_run_loads_neither_numba_nor_what_scipy_names(tmp_path):
+    """The first one may compile."""
+    less = ("output.frames=0", "analysis.follow=0.0")
+    words = [sys.executable, "-c", LOADED, "run", str(WALL), "-o", str(tmp_path / "out"), "-q"]
+    for _ in range(2):
+        done = subprocess.run(
+            [*words, *(word for each in less for word in ("--set", each))], capture_output=True, text=True
+        )
+    assert "0.5993" in done.stdout
+    assert done.stdout.splitlines()[-1] == "LOADED ['h5py', 'scipy']"
 
 
 @pytest.mark.parametrize("name", ["wall_21", "rocking_rectangle", "windows_mu050", "groove", "space/wedge_in_groove"])

@@ -49,7 +49,7 @@ class Header(NamedTuple):
     entry: str  # name of the function to be called
     needed: list[str]  # functions that it calls, by name
     unused: list[str]  # that others in the file call, which nobody calls
-    check: int  # sum of the code
+    check: int  # sum of all before and of the code
 
 
 class OtherTypes(TypeError):
@@ -203,9 +203,14 @@ def _file(function: Callable, kinds: list[str]) -> Path:
     return cache_folder() / "kept" / f"{key[:32]}.code"
 
 
+def _check(header: Header, code: bytes) -> int:
+    """Sum of a file; a header that a disk has changed would call what is not there."""
+    return zlib.crc32(code, zlib.crc32(json.dumps(header[:-1]).encode()))
+
+
 def keep(function: Callable, header: Header, code: bytes) -> None:
     """Leaves the object code of a kernel on the disk; where it cannot, numba's own cache remains."""
-    data = json.dumps(header._replace(check=zlib.crc32(code))._asdict()).encode() + b"\n" + code
+    data = json.dumps(header._replace(check=_check(header, code))._asdict()).encode() + b"\n" + code
     with suppress(OSError):
         place = _file(function, header.kinds)
         place.parent.mkdir(exist_ok=True)
@@ -223,7 +228,7 @@ def kept_kernel(function: Callable, arguments: tuple[Any, ...]) -> KeptKernel | 
         kinds = [kind_of(value) for value in arguments]
         first, _, code = _file(function, kinds).read_bytes().partition(b"\n")
         header = Header(**json.loads(first))
-        if header.kinds != kinds or zlib.crc32(code) != header.check:
+        if header.kinds != kinds or _check(header, code) != header.check:
             return None
         return KeptKernel(header, _linked(header, code))
     except (OtherTypes, OSError, ValueError, TypeError, ImportError):

@@ -83,7 +83,8 @@ def test_a_damaged_file_or_another_processor_is_for_numba(folder, monkeypatch):
 
     (file,) = folder.glob("*.code")
     whole = file.read_bytes()
-    for damaged in (whole[:-1], b"", whole[:-100] + b"?" * 100, b"{}" + whole):
+    for damaged in (whole[:-1], b"", whole[:-100] + b"?" * 100, b"{}" + whole,
+                    whole.replace(b'"entry": "', b'"entry": "x')):  # fmt: skip
         file.write_bytes(damaged)
         assert kept_kernel(add_up.py_func, arguments()) is None
     file.write_bytes(whole.replace(b'"needed": [', b'"needed": ["no_such_function", '))
