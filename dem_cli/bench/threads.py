@@ -33,8 +33,9 @@ def measure(options: BenchOptions) -> GroupResult:
     if len(counts) == 1:
         found.notes.append("one core: only one thread and one run at a time")
     sizes = QUICK_SIZE if options.quick else LOOP_SIZES
-    for known in (wall for wall in SIZES if blocks_of(wall) in sizes):
-        found.records += steps_of(known, counts, options.rounds(15))
+    for structure in SIZES:
+        if blocks_of(structure) in sizes:
+            found.records += steps_of(structure, counts, options.rounds(15))
     with tempfile.TemporaryDirectory() as folder:
         runs(known, Path(folder), 1, 1)  # kernels compiled
         for axis in (INSIDE, BESIDE):
