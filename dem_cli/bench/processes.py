@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
+LOOK = 0.005  # s between two looks at a process
 RESULTS = (0, 1, 3)  # exit codes of runs with a summary: solved, outside a reference or falls, gave up
 
 
@@ -27,19 +30,27 @@ def dem_process(words: list[str], variables: Mapping[str, str] | None = None) ->
     Raises CalledProcessError where it ends without a result.
     """
     command = [sys.executable, "-m", "dem_cli", *words]
-    before, begun = cpu_of_children(), time.perf_counter()
-    process = subprocess.Popen(command, env=os.environ | (variables or {}), stdout=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    printed, memory = process.stdout.read(), None
-    if hasattr(os, "wait4"):
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        memory = used.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    process.communicate()
-    wall = time.perf_counter() - begun
+    before, begun, memory = cpu_of_children(), time.perf_counter(), None
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as said:
+        process = subprocess.Popen(command, env=os.environ | (variables or {}), stdout=said)
+        while process.poll() is None:
+            memory = _peak(process.pid) or memory
+            time.sleep(LOOK)
+        wall = time.perf_counter() - begun
+        said.seek(0)
+        printed = said.read()
     if process.returncode not in RESULTS:
         raise subprocess.CalledProcessError(process.returncode, command, printed)
     return ProcessCost(wall, cpu_of_children() - before, memory, printed)
+
+
+def _peak(process: int) -> int | None:
+    """Peak memory of a process so far [B]. What the system says at its end is no less than that of its parent."""
+    try:
+        lines = Path(f"/proc/{process}/status").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return None
+    return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:")), None)
 
 
 def cpu_of_children() -> float:
