@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from dem_cli.kernels.compilation.cache_folder import compiled_sources
+
 KERNELS = Path(__file__).resolve().parents[2] / "dem_cli" / "kernels"
 SOURCES = sorted(p for p in KERNELS.glob("*.py") if p.name not in ("__init__.py", "jit.py"))
 COMPILED = {"always_inline", "kernel", "inline", "overload"}  # the decorators of jit.py
@@ -80,3 +82,14 @@ def test_one_door_to_numba():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef):
                 assert not decorator_names(node) & {"njit", "jit", "register_jitable"}, path.name
+
+
+def test_all_that_is_compiled_names_the_cache():
+    """Else an edited callee would go on running the machine code of before."""
+    package = KERNELS.parent
+    texts = {path: path.read_text("utf-8") for path in package.rglob("*.py")}
+    users = {path: text for path, text in texts.items() if "from dem_cli.kernels.jit import" in text}
+    compiled = {path for path, text in users.items() if compiled_functions(ast.parse(text))}
+    assert len(compiled) > 30
+    assert compiled - set(compiled_sources()) == set()
+    assert all(source.is_file() for source in compiled_sources())

@@ -1,6 +1,6 @@
 """Cache folder of compiled kernels, named by what their machine code depends on; found without loading numba.
 
-It carries the hash of all sources of kernels and laws, because numba looks only at the file of the decorated function:
+It carries the hash of all sources that are compiled, because numba looks only at the file of the decorated function:
 a callee edited elsewhere, or a reordered record, would otherwise go on running old machine code.
 """
 
@@ -17,9 +17,11 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
-__all__ = ["cache_folder", "cache_is_cold", "fingerprint"]
+__all__ = ["cache_folder", "cache_is_cold", "compiled_sources", "fingerprint"]
 
 _ROOT = Path(__file__).resolve().parents[2]
+_ROOMS = ("kernels", "laws", "links")
+_ELSEWHERE = ("limit/front_factors.py", "bench/bare_loop.py")
 
 
 def _compiler() -> bytes:
@@ -34,12 +36,17 @@ def _compiler() -> bytes:
     return found
 
 
+def compiled_sources() -> list[Path]:
+    """Files with functions that are compiled."""
+    found = [source for folder in _ROOMS for source in sorted((_ROOT / folder).rglob("*.py"))]
+    return found + [_ROOT / name for name in _ELSEWHERE]
+
+
 def _source_hash() -> str:
     digest = hashlib.sha256(_compiler() + platform.python_version().encode())
-    for folder in ("kernels", "laws", "links"):
-        for source in sorted((_ROOT / folder).rglob("*.py")):
-            digest.update(source.name.encode())
-            digest.update(source.read_bytes())
+    for source in compiled_sources():
+        digest.update(source.name.encode())
+        digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
