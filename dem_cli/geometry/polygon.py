@@ -40,7 +40,7 @@ def following(starts: np.ndarray) -> np.ndarray:
 
 
 def signed_area(vertices: np.ndarray) -> float:
-    """Area [m2], negative where the corners run clockwise; to the last bit that of `properties`, in a sixth of the time."""
+    """Area [m2], negative where the corners run clockwise: to the last bit that of `properties`, six times as fast."""
     corners = np.asarray(vertices, float)
     arms = corners - corners[0]
     twice = cross(arms, np.concatenate((arms[1:], arms[:1])))
