@@ -38,6 +38,9 @@ class PathSettings:
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
+    far_ahead: float = 8.9  # times the displacement at the end of a plateau: what still counts as a rest on the way
+    leap: float = 3.0  # growth of the displacement in the increments that look so far
+    effort_ahead: float = 0.5  # of the factorisations before it, that it takes to look so far
     finer: float = 1e-5  # the same growth, where the load is known to be higher than a first plateau
     tau: float = 0.01  # of the first products, over the square of the largest normal force
     end: float = 1e-7  # of the last ones on the way (InteriorPointSettings.end at the highest load)
