@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, log2
+from math import ceil, inf, log2
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine.automatic_stiffness import ratio_of
@@ -107,6 +107,7 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
                     start, search.start = find_start(job, sim, search.limits)
                     wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
                     load_search = LoadSearch(sim, wanted, job.budget, track, search)
+                    load_search.on_stiff_joints = rigid / sim.live_scale if rigid else inf
                     load_search.run(start)
                     _second_history(job, load_search)
                     moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0

@@ -71,6 +71,7 @@ class LoadSearchSettings:
     effort_of_large: float = 3e9  # the same of what follows the smoothed path of a large structure
     trial_of_large: int = 150_000  # steps of its trials
     step_of_large: float = 0.12  # and the first step of its load, over what is left to the bound
+    below_of_large: float = 5e-4  # of the load of its path, where that is held first, if not as far below as others
     softer: float = 10.0  # joints that show how much stiffness matters where geometry moves
     softer_steps: float = 1.0  # of the steps of the search, that this may take, or of a trial
     widest: float = 0.1  # bracket, over its load, that is still given as an answer where it cannot be narrowed

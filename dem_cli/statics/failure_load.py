@@ -58,6 +58,7 @@ class LoadSearch:
         self.longest = None if wanted.longest is None else wanted.longest / scale
         self.plateau = np.inf  # load from which on a path is known to grow no more with displacement
         self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
+        self.on_stiff_joints = np.inf  # load that no estimate exceeds: where joints are soft a creep throws blocks
         self.first_step = sim.steps
         answer.scale, answer.limit = scale, self.limit * scale
 
@@ -78,7 +79,7 @@ class LoadSearch:
                 return
         answer.compliance, answer.elastic = compliance(sim, self.budget)
         check_moves(sim, answer.compliance)
-        if start is not None and self._holds(start):
+        if start is not None and self._holds(start, settings.below * self.resolution):
             low = answer.carried / sim.live_scale
             if start.kind == LIMIT:
                 answer.status, answer.high = EXISTS, answer.bound
@@ -121,7 +122,8 @@ class LoadSearch:
         self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
         estimate = self._creep(settings.reach * answer.compliance)
         sim.restore(answer.standing)
-        estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False
+        estimate = min(estimate if estimate > 0.0 else settings.probe, self.limit, self.on_stiff_joints)
+        expected = False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
         levels = [share * estimate for share in settings.shares]
@@ -159,8 +161,9 @@ class LoadSearch:
         if not limits.slides or self.longest is not None:
             return False
         report = {**answer.start, "kind": PATH}
-        start = start_by_path(limits, report)
-        if start is None or not self._holds(start):
+        start, below = start_by_path(limits, report), self.settings.below * self.resolution
+        near = min(self.settings.below_of_large, below)
+        if start is None or not (self._holds(start, near) or (near < below and self._holds(start, below))):
             return False
         answer.start = {**report, "note": LARGE_SMOOTHED if "smoothing" in report else LARGE}
         settings, scale = self.settings, self.sim.live_scale
@@ -168,14 +171,13 @@ class LoadSearch:
         self.settings = replace(
             settings, effort=settings.effort_of_large, trial=most, trial_per_point=0, most_undecided=0
         )
-        left = settings.step_of_large * (answer.bound - start.load)
-        self._raise_load(self._trials([], max(left, settings.one_step * self.resolution * start.load) / scale))
+        self._raise_load(self._trials([], settings.step_of_large * (answer.bound - start.load) / scale))
         return True
 
-    def _holds(self, start: WarmStart | CurveStart) -> bool:
-        """Whether the explicit solver holds the state of `start` a little below its load; else all is as it was."""
+    def _holds(self, start: WarmStart | CurveStart, below: float) -> bool:
+        """Whether the explicit solver holds the state of `start` a share below its load; else all is as it was."""
         sim, answer = self.sim, self.answer
-        load = (1.0 - self.settings.below * self.resolution) * start.load / sim.live_scale
+        load = (1.0 - below) * start.load / sim.live_scale
         if not 0.0 < load < self.limit:
             return False
         self.track.observer.progress("holding the start", load * sim.live_scale, 0.0, None)
