@@ -213,6 +213,8 @@ class LoadSearch:
         sim.set_load((1.0 + pushed) * load)
         released = _released_in_motion(sim, self.budget, load, self.settings.shown * answer.elastic * load)
         sim.set_load(load)
+        if pushed:
+            sim.advance(1, slot.HOLD_LOAD)  # what is out of balance at the load itself
         return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:
