@@ -18,6 +18,7 @@ LATE = frozenset((
     "numpy._core._add_newdocs",  # docstrings that nobody reads here
     "numpy._core._add_newdocs_scalars",
     "numpy.f2py",
+    "numpy.polynomial",
     "numpy.testing",
 ))  # fmt: skip
 SELDOM = (200_000, 10, 10)  # objects between two collections, and collections between two of older ones

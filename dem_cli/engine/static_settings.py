@@ -59,7 +59,8 @@ class LoadSearchSettings:
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
-    small_steps: int = 50  # to an estimate on which histories differ
+    unexpected: float = 150.0  # the same where a path carries a load at which motion begins, or does not say
+    small_steps: int = 64  # to the bound of loads on which histories differ
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and

@@ -92,19 +92,19 @@ class LoadSearch:
         elif not self._ends_where_the_path_does():
             self._raise_to_estimate()
 
-    def run_again_in_small_steps(self, estimate: float) -> None:
-        """The bracket again, raised from gravity in small steps to an estimate (as users know it) and on.
+    def run_again_in_small_steps(self, most: float) -> None:
+        """The bracket again, raised from gravity in small steps: equal shares of `most` (as users know it).
 
-        Where histories differ the steps may decide: this is then the history that a failure load is stated for. Where
-        the budget ends first, the bracket stays that of the larger steps.
+        Where histories differ the steps may decide: this is then the history that a failure load is stated for. No
+        estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first,
+        the bracket stays that of the larger steps.
         """
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
-        load = estimate / self.sim.live_scale
-        levels = [float(share) * load for share in np.arange(1, self.settings.small_steps) / self.settings.small_steps]
+        step = most / self.sim.live_scale / self.settings.small_steps
         try:
-            self._raise_load(self._trials(levels, self.settings.first_step * self.resolution * load))
+            self._raise_load(self._trials([], step, step))
         except (SolverError, KeyboardInterrupt) as stopped:
             vars(self.answer).update(vars(known))
             self.track.kept[:] = rows
@@ -261,6 +261,8 @@ class LoadSearch:
             if verdict.state == "equilibrium":
                 trials.carries(load)
                 self._keep(load)
+                if load > (1.0 + self.resolution) * self.plateau:
+                    self.plateau = np.inf  # it was none, but a rest on the way
             elif verdict.state == "failure":
                 trials.fails(load, for_certain=load >= self.impossible)
                 answer.high, answer.failing = load * answer.scale, verdict
@@ -332,7 +334,10 @@ class LoadSearch:
             return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
         if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
             return Ahead(load > self.plateau, change=change)
-        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load), change)
+        if load > self.plateau:
+            return Ahead(True, change=change)
+        reach = limits.path.reach(load * self.sim.live_scale) / abs(load)
+        return Ahead(False, max(reach, self.settings.unexpected), change)
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""
