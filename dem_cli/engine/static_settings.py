@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dem_cli.frozen_records import dataclass
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,7 @@ class LoadSearchSettings:
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
+    pushed: float = 2e-3  # of that load, put on besides as long as it is shown: where nothing slides
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
     likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from dem_cli.frozen_records import dataclass
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,19 @@ class AssociatedSettings:
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
     proof: float = 1e-6  # relative error accepted in a proof that something is impossible
     slides: float = 1e-3  # share of friction in the work of a mechanism, below which nothing slides in it
+    # Of the interior point on fronts (limit/frontal_program.py)
+    on_fronts: int = 5000  # degrees of freedom from which on the loads of plane joints with friction alone are found so
+    most: int = 100  # iterations
+    balanced: float = 0.3  # share of `residual`, ...
+    closed: float = 0.1  # ... and of `gap`, at which it ends
+    singular: float = 1e-20  # added to the diagonal, over its mean
+    boundary: float = 0.99  # share of the way to the boundary
+    least: float = 1e-6  # share of the mean product aimed at, at least
+    correctors: int = 2  # of one step, ...
+    far: float = 0.95  # ... while it is not as long as that; ...
+    beyond: float = 0.3  # ... each looks so much further, ...
+    gain: float = 0.03  # ... and has to make it so much longer
+    widest: float = 10.0  # products over the mean, and the mean over them, that need no correction
 
 
 @dataclass(frozen=True)

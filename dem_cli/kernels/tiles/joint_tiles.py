@@ -36,13 +36,15 @@ class JointTiles(NamedTuple):
     waves: np.ndarray  # (n_chunks,)
     ring: np.ndarray  # one thread, in waves, needs the pushes of so many tiles: a power of two, less one, (1,)
     ends: np.ndarray  # room, two rows a tile: blocks a and b, int32
-    constants: np.ndarray  # room, rows of a tile: axes, both arms, numbers of the law
-    springs: np.ndarray  # room, rows of a slot: place, kn, ks
+    # Before each loop the compiler has to ask of any two arrays whether they overlap: few, then, and in none of them
+    # something whose distance from the rest depends on the slot.
+    numbers: np.ndarray  # room, rows of a tile: axes, both arms, numbers of the law; then of each slot: place, kn, ks
     state: np.ndarray  # room, rows of a slot: gap, shear, slip path
     pushes: np.ndarray  # room, 4 rows of a tile, 16 in space: force on b (against a), moments of it about a and about b
     moves: np.ndarray  # room of each thread, rows of TILES_AHEAD tiles: motion of b against a, spins of a and of b
-    work: np.ndarray  # room of each thread, rows of one tile: opening, slide, spin of joints; push, rub, twist
-    marks: np.ndarray  # room of each thread, rows of each slot of a tile: shear before, normal force where work is lost
+    work: np.ndarray  # room of each thread, rows of one tile: opening, slide, spin of joints; push, rub, twist; law
+    marks: np.ndarray  # room of each thread, rows of one tile: of each slot shear before and normal force where work is
+    # lost; slide and spin of joints with two points
     lost: np.ndarray  # friction work of each TILES_OF_CHUNK tiles in a step, at least one [J]
     lost_before: np.ndarray  # and in the steps before it
     books: np.ndarray  # sums of each BLOCKS_OF_CHUNK blocks (tiled_steps.py), (n_chunks, N_SUMS)
@@ -51,14 +53,14 @@ class JointTiles(NamedTuple):
 
 
 def rows_of(d: int, n_numbers: int) -> tuple[int, int, int]:
-    """Rows of `constants` and of `moves` of a tile, of `springs` (and `state`) of a slot."""
+    """Rows of `numbers` of a tile without its slots, of a slot there and in `state`, and of the motion of a tile."""
     r = d * (d - 1) // 2
-    return (2 if d == 2 else 9) + 2 * d + n_numbers, d + 2 * r, d + 1
+    return (2 if d == 2 else 9) + 2 * d + n_numbers, d + 1, d + 2 * r
 
 
 NO_TILES = JointTiles(
     *(np.zeros(0, np.int64),) * 3, np.zeros(0, np.uint32), *(np.zeros(0, np.int64),) * 3, np.zeros(1, np.uint64),
-    np.zeros(0, np.int32), *(np.zeros(0),) * 7, np.zeros(1), np.zeros(1), np.zeros((1, 0)), np.zeros((1, 0)),
+    np.zeros(0, np.int32), *(np.zeros(0),) * 6, np.zeros(1), np.zeros(1), np.zeros((1, 0)), np.zeros((1, 0)),
     new_team(),
 )  # fmt: skip
 
@@ -80,7 +82,7 @@ def tiled(
     of_lanes[:n] = counts[order]
     heights = of_lanes.reshape(n_tiles, LANES).max(axis=1, initial=0)
     slots = np.concatenate([[0], np.cumsum(heights)]).astype(np.int64)
-    of_tile, of_moves, of_slot = rows_of(d, n_numbers)
+    of_tile, of_slot, of_motion = rows_of(d, n_numbers)
     lane_of = np.empty(n, dtype=np.int64)
     lane_of[order] = np.arange(n)
     n_chunks, chunks = -(-n_blocks // BLOCKS_OF_CHUNK), np.asarray(blocks) // BLOCKS_OF_CHUNK
@@ -95,10 +97,11 @@ def tiled(
         joints, slots, np.concatenate([[0], np.cumsum(np.bincount(side, minlength=2 * n_blocks))]),
         np.tile(place, 2)[np.argsort(side, kind="stable")].astype(np.uint32), begins, ready,
         np.argsort(ready, kind="stable"), np.array([ring - 1], np.uint64), np.zeros(n_tiles * 2 * LANES, np.int32),
-        np.zeros(n_tiles * of_tile * LANES), np.zeros(slots[-1] * of_slot * LANES),
-        np.zeros(slots[-1] * of_slot * LANES), np.zeros(n_tiles * stride),
-        np.zeros(threads * TILES_AHEAD * of_moves * LANES), np.zeros(threads * 2 * (of_moves - r) * LANES),
-        np.zeros(threads * heights.max(initial=0) * d * LANES),
+        np.zeros((n_tiles * of_tile + slots[-1] * of_slot) * LANES), np.zeros(slots[-1] * of_slot * LANES),
+        np.zeros(n_tiles * stride),
+        np.zeros(threads * TILES_AHEAD * of_motion * LANES),
+        np.zeros(threads * (2 * (d + r) + n_numbers) * LANES),
+        np.zeros(threads * (d - 1 + r + heights.max(initial=0) * d) * LANES),
         np.zeros(n_parts), np.zeros(n_parts),
         np.zeros((n_chunks, N_SUMS)), np.zeros((threads, N_SUMS)), new_team(threads),
     )  # fmt: skip

@@ -64,6 +64,13 @@ def gather(tiles, forces, ring, first, last, back, like, like_rotation):
 
 
 @inline
+def _begin_of(tiles, tile, of_tile, of_slot):
+    """Where the numbers of a tile and the state of its points begin, and how many slots it has."""
+    first, last = np.uint64(tiles.slots[np.uint64(tile)]), np.uint64(tiles.slots[np.uint64(tile) + ONE])
+    return np.uint64(tile) * of_tile + first * of_slot, first * of_slot, last - first
+
+
+@inline
 def _move(tiles, velocities, tile, motion, like, like_rotation):
     """How the blocks of the joints of one tile move: b against a, then both spins."""
     ends, moves, d = tiles.ends, tiles.moves, len(like)
@@ -83,39 +90,39 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
     def take_up(joints, contacts, first, last, like, like_rotation):
         """Constants and state of the tiles from first to last, from the records that everybody else reads."""
         tiles, d = joints.tiles, len(like)
-        n_axes = joints.axes.shape[1]
+        n_axes, ends, numbers, state = joints.axes.shape[1], tiles.ends, tiles.numbers, tiles.state
         of_tile, of_slot = np.uint64(n_axes + 2 * d + n_numbers) * ROW, np.uint64(d + 1) * ROW
-        ends, constants, springs, state = tiles.ends, tiles.constants, tiles.springs, tiles.state
         for t in range(first, last):
+            begin, held, slots = _begin_of(tiles, t, of_tile, of_slot)
             for i in range(LANES):
                 lane = np.uint64(i)
                 joint = tiles.joints[np.uint64(t) * ROW + lane]
-                end, row = np.uint64(t) * TWO * ROW + lane, np.uint64(t) * of_tile + lane
+                end, row = np.uint64(t) * TWO * ROW + lane, begin + lane
                 start = count = 0
                 if joint >= 0:
                     start, count = joints.starts[joint], joints.starts[joint + 1] - joints.starts[joint]
                     ends[end], ends[end + ROW] = joints.blocks[joint, 0], joints.blocks[joint, 1]
                     for k in range(n_axes):
-                        constants[row + np.uint64(k) * ROW] = joints.axes[joint, k]
+                        numbers[row + np.uint64(k) * ROW] = joints.axes[joint, k]
                     for k in range(2 * d):
-                        constants[row + np.uint64(n_axes + k) * ROW] = joints.arms[joint, k]
+                        numbers[row + np.uint64(n_axes + k) * ROW] = joints.arms[joint, k]
                     for k in range(n_numbers):
-                        constants[row + np.uint64(n_axes + 2 * d + k) * ROW] = joints.law[joint, k]
-                for p in range(tiles.slots[t + 1] - tiles.slots[t]):
-                    at = np.uint64(tiles.slots[t] + p) * of_slot + lane
+                        numbers[row + np.uint64(n_axes + 2 * d + k) * ROW] = joints.law[joint, k]
+                for p in range(slots):
+                    at, now = row + of_tile + np.uint64(p) * of_slot, held + np.uint64(p) * of_slot + lane
                     if p >= count:  # there is none: it never touches
                         for k in range(d + 1):
-                            springs[at + np.uint64(k) * ROW] = state[at + np.uint64(k) * ROW] = 0.0
-                        state[at] = 1e300
+                            numbers[at + np.uint64(k) * ROW] = state[now + np.uint64(k) * ROW] = 0.0
+                        state[now] = 1e300
                         continue
                     point = start + p
                     for k in range(d - 1):
-                        springs[at + np.uint64(k) * ROW] = joints.places[point, k]
-                        state[at + np.uint64(1 + k) * ROW] = contacts.shear[point, k]
-                    springs[at + np.uint64(d - 1) * ROW] = joints.kn[point]
-                    springs[at + np.uint64(d) * ROW] = joints.ks[point]
-                    state[at] = contacts.gaps[point]
-                    state[at + np.uint64(d) * ROW] = contacts.slip[point]
+                        numbers[at + np.uint64(k) * ROW] = joints.places[point, k]
+                        state[now + np.uint64(1 + k) * ROW] = contacts.shear[point, k]
+                    numbers[at + np.uint64(d - 1) * ROW] = joints.kn[point]
+                    numbers[at + np.uint64(d) * ROW] = joints.ks[point]
+                    state[now] = contacts.gaps[point]
+                    state[now + np.uint64(d) * ROW] = contacts.slip[point]
 
     @inline
     def give_back(joints, contacts, first, last, like):
@@ -129,58 +136,62 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 if joint < 0:
                     continue
                 for p in range(joints.starts[joint + 1] - joints.starts[joint]):
-                    at, point = np.uint64(tiles.slots[t] + p) * of_slot + lane, joints.starts[joint] + p
-                    gap = state[at]
+                    now, point = np.uint64(tiles.slots[t] + p) * of_slot + lane, joints.starts[joint] + p
+                    gap = state[now]
                     contacts.gaps[point] = gap
                     contacts.normal[point] = -joints.kn[point] * gap if gap < 0.0 else 0.0
                     for k in range(d - 1):
-                        contacts.shear[point, k] = state[at + np.uint64(1 + k) * ROW]
-                    contacts.slip[point] = state[at + np.uint64(d) * ROW]
+                        contacts.shear[point, k] = state[now + np.uint64(1 + k) * ROW]
+                    contacts.slip[point] = state[now + np.uint64(d) * ROW]
 
     @inline
-    def press_tile(tiles, tile, ring, motion, begin, befores, lost, dt, like, like_rotation):
-        """Forces of one tile, left in `pushes`; adds its friction work to `lost` [J].
+    def press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation):
+        """Forces of one tile with any number of slots, left in `pushes`; returns whether something was lost.
 
-        motion, begin, befores: where its room begins in `moves`, `work` and `marks`.
+        begin, held, push: where its numbers, the state of its points and its pushes begin; motion, room, marked: where
+        there is room for it in `moves`, `work` and `marks`.
         """
         d, r = len(like), len(like_rotation)
         D, R, T = np.uint64(d) * ROW, np.uint64(r) * ROW, np.uint64(d - 1) * ROW
-        A = (TWO if d == 2 else np.uint64(9)) * ROW
-        constants, springs, state, pushes = tiles.constants, tiles.springs, tiles.state, tiles.pushes
-        moves, work, marks = tiles.moves, tiles.work, tiles.marks
-        row = np.uint64(tile) * (A + TWO * D + np.uint64(n_numbers) * ROW)
-        push = (np.uint64(tile) & ring) * stride_of(like)
+        A, S = (TWO if d == 2 else np.uint64(9)) * ROW, D + ROW
+        numbers, state, moves, work = tiles.numbers, tiles.state, tiles.moves, tiles.work
+        marks, pushes = tiles.marks, tiles.pushes
         # Rows of work: opening, slide and spin of the joints, then their sums.
-        turns, opening = motion + D, begin
-        slides, spins = opening + ROW, opening + D
+        turns, slides, spins = motion + D, room + ROW, room + D
         sums = spins + R
-        rubs, twists = sums + ROW, sums + D
+        rubs, twists, of_law = sums + ROW, sums + D, sums + D + R
         for i in range(LANES):
             lane = np.uint64(i)
-            frame = take_frame(constants, row + lane, like)
-            arm_a, arm_b = take(constants, row + A + lane, like), take(constants, row + A + D + lane, like)
+            frame = take_frame(numbers, begin + lane, like)
+            arm_a, arm_b = take(numbers, begin + A + lane, like), take(numbers, begin + A + D + lane, like)
             spin_a, spin_b = take(moves, turns + lane, like_rotation), take(moves, turns + R + lane, like_rotation)
             moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), take(moves, motion + lane, like))
             opens, slide = components(frame, scale(dt, moved))
-            work[opening + lane] = opens
+            spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            work[room + lane] = opens
             put(work, slides + lane, slide)
-            put(work, spins + lane, seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b))))
+            put(work, spins + lane, spin)
             put(work, sums + lane, scale(0.0, like))
             put(work, twists + lane, scale(0.0, like_rotation))
-        first, count = np.uint64(tiles.slots[tile]), np.uint64(tiles.slots[tile + 1] - tiles.slots[tile])
+        for k in range(n_numbers):
+            for i in range(LANES):
+                work[of_law + np.uint64(k) * ROW + np.uint64(i)] = numbers[
+                    begin + A + TWO * D + np.uint64(k) * ROW + np.uint64(i)
+                ]
         lossy = 0
         for p in range(count):
-            at, before = (first + np.uint64(p)) * (D + ROW), befores + np.uint64(p) * D
+            at, now = begin + A + TWO * D + np.uint64(n_numbers) * ROW + np.uint64(p) * S, held + np.uint64(p) * S
+            before = marked + np.uint64(p) * D
             for i in range(LANES):
                 lane = np.uint64(i)
-                place = take(springs, at + lane, like[1:])
-                kn, ks = springs[at + T + lane], springs[at + D + lane]
-                spin, old = take(work, spins + lane, like_rotation), take(state, at + ROW + lane, like[1:])
-                gap = state[at + lane] + (work[opening + lane] + opening_at(spin, place))
+                place = take(numbers, at + lane, like[1:])
+                kn, ks = numbers[at + T + lane], numbers[at + D + lane]
+                spin, old = take(work, spins + lane, like_rotation), take(state, now + ROW + lane, like[1:])
+                gap = state[now + lane] + (work[room + lane] + opening_at(spin, place))
                 slide = sliding_at(take(work, slides + lane, like[1:]), spin, place)
-                normal, shear, loses = law(gap, slide, old, kn, ks, constants, row + A + TWO * D + lane)
-                state[at + lane] = gap
-                put(state, at + ROW + lane, shear)
+                normal, shear, loses = law(gap, slide, old, kn, ks, work, of_law + lane)
+                state[now + lane] = gap
+                put(state, now + ROW + lane, shear)
                 put(marks, before + lane, old)
                 marks[before + T + lane] = normal if loses else -1.0
                 lossy |= 1 if loses else 0
@@ -189,49 +200,132 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 put(work, twists + lane, add_moment_at(place, normal, shear, take(work, twists + lane, like_rotation)))
         for i in range(LANES):
             lane = np.uint64(i)
-            frame = take_frame(constants, row + lane, like)
-            arm_a, arm_b = take(constants, row + A + lane, like), take(constants, row + A + D + lane, like)
+            frame = take_frame(numbers, begin + lane, like)
+            arm_a, arm_b = take(numbers, begin + A + lane, like), take(numbers, begin + A + D + lane, like)
             rub, twist = take(work, rubs + lane, like[1:]), take(work, twists + lane, like_rotation)
             force = compose(frame, work[sums + lane], rub, scale(0.0, like))
             couple = seen_outside(frame, twist)
             put(pushes, push + lane, force)
             put(pushes, push + D + lane, axpy(1.0, moment(arm_a, force), couple))
             put(pushes, push + D + R + lane, axpy(1.0, moment(arm_b, force), couple))
+        return lossy
+
+    @inline
+    def press_pairs(tiles, begin, held, push, motion, before, dt, like, like_rotation):
+        """As press_slots, of joints with two points: the same sums in one loop, so that they stay in registers."""
+        d, r = len(like), len(like_rotation)
+        D, R, T = np.uint64(d) * ROW, np.uint64(r) * ROW, np.uint64(d - 1) * ROW
+        A, S = (TWO if d == 2 else np.uint64(9)) * ROW, D + ROW
+        numbers, state, moves, marks, pushes = tiles.numbers, tiles.state, tiles.moves, tiles.marks, tiles.pushes
+        turns, of_law, slides = motion + D, begin + A + TWO * D, before + TWO * D
+        first, next_held = of_law + np.uint64(n_numbers) * ROW, held + S
+        second = first + S
+        lossy = 0
+        for i in range(LANES):
+            lane = np.uint64(i)
+            frame = take_frame(numbers, begin + lane, like)
+            arm_a, arm_b = take(numbers, begin + A + lane, like), take(numbers, begin + A + D + lane, like)
+            spin_a, spin_b = take(moves, turns + lane, like_rotation), take(moves, turns + R + lane, like_rotation)
+            moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), take(moves, motion + lane, like))
+            opens, slide = components(frame, scale(dt, moved))
+            spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            put(marks, slides + lane, slide)
+            put(marks, slides + T + lane, spin)
+            p, old_p = take(numbers, first + lane, like[1:]), take(state, held + ROW + lane, like[1:])
+            q, old_q = take(numbers, second + lane, like[1:]), take(state, next_held + ROW + lane, like[1:])
+            gap_p = state[held + lane] + (opens + opening_at(spin, p))
+            gap_q = state[next_held + lane] + (opens + opening_at(spin, q))
+            kn, ks, slid = numbers[first + T + lane], numbers[first + D + lane], sliding_at(slide, spin, p)
+            push_p, rub_p, loses_p = law(gap_p, slid, old_p, kn, ks, numbers, of_law + lane)
+            kn, ks, slid = numbers[second + T + lane], numbers[second + D + lane], sliding_at(slide, spin, q)
+            push_q, rub_q, loses_q = law(gap_q, slid, old_q, kn, ks, numbers, of_law + lane)
+            state[held + lane], state[next_held + lane] = gap_p, gap_q
+            put(state, held + ROW + lane, rub_p)
+            put(state, next_held + ROW + lane, rub_q)
+            put(marks, before + lane, old_p)
+            put(marks, before + D + lane, old_q)
+            marks[before + T + lane] = push_p if loses_p else -1.0
+            marks[before + D + T + lane] = push_q if loses_q else -1.0
+            lossy |= 1 if loses_p | loses_q else 0
+            twist = add_moment_at(q, push_q, rub_q, add_moment_at(p, push_p, rub_p, scale(0.0, like_rotation)))
+            rub = axpy(1.0, rub_q, axpy(1.0, rub_p, scale(0.0, like[1:])))
+            force = compose(frame, (0.0 + push_p) + push_q, rub, scale(0.0, like))
+            couple = seen_outside(frame, twist)
+            put(pushes, push + lane, force)
+            put(pushes, push + D + lane, axpy(1.0, moment(arm_a, force), couple))
+            put(pushes, push + D + R + lane, axpy(1.0, moment(arm_b, force), couple))
+        return lossy
+
+    @inline
+    def wear(tiles, first, held, count, before, moved, slides, lost, like, like_rotation):
+        """Slip paths of one tile where work is lost; adds that to `lost` [J].
+
+        first, held, before: where `numbers`, `state` and `marks` of its slots begin; moved[slides:]: slide and spin.
+        """
+        d, numbers, state, marks = len(like), tiles.numbers, tiles.state, tiles.marks
+        D, T = np.uint64(d) * ROW, np.uint64(d - 1) * ROW
+        for i in range(LANES):
+            lane = np.uint64(i)
+            for p in range(count):
+                mark = before + np.uint64(p) * D + lane
+                normal = marks[mark + T]
+                if normal < 0.0:
+                    continue
+                at, now = first + np.uint64(p) * (D + ROW) + lane, held + np.uint64(p) * (D + ROW) + lane
+                place, ks = take(numbers, at, like[1:]), numbers[at + D]
+                slide = take(moved, slides + lane, like[1:])
+                slide = sliding_at(slide, take(moved, slides + T + lane, like_rotation), place)
+                old, shear = take(marks, mark, like[1:]), take(state, now + ROW, like[1:])
+                plastic = plastic_slide(old, shear, slide, ks)
+                if normal > 0.0:
+                    state[now + D] += norm(plastic)
+                lost += friction_work(old, shear, plastic)
+        return lost
+
+    @inline
+    def press_tile(tiles, tile, ring, motion, room, marked, lost, dt, like, like_rotation):
+        """Forces of one tile, left in `pushes`; adds its friction work to `lost` [J].
+
+        motion, room, marked: where its room begins in `moves`, `work` and `marks`.
+        """
+        d, D = len(like), np.uint64(len(like)) * ROW
+        of_tile = (TWO if d == 2 else np.uint64(9)) * ROW + TWO * D + np.uint64(n_numbers) * ROW
+        begin, held, count = _begin_of(tiles, tile, of_tile, D + ROW)
+        push = (np.uint64(tile) & ring) * stride_of(like)
+        if d == 2 and count == TWO:
+            lossy = press_pairs(tiles, begin, held, push, motion, marked, dt, like, like_rotation)
+            moved, slides = tiles.marks, marked + TWO * D
+        else:
+            lossy = press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation)
+            moved, slides = tiles.work, room + ROW
         if lossy:
-            for i in range(LANES):
-                lane = np.uint64(i)
-                for p in range(count):
-                    before = befores + np.uint64(p) * D + lane
-                    normal = marks[before + T]
-                    if normal < 0.0:
-                        continue
-                    at = (first + np.uint64(p)) * (D + ROW) + lane
-                    place, ks = take(springs, at, like[1:]), springs[at + D]
-                    slide = sliding_at(
-                        take(work, slides + lane, like[1:]), take(work, spins + lane, like_rotation), place
-                    )
-                    old, shear = take(marks, before, like[1:]), take(state, at + ROW, like[1:])
-                    plastic = plastic_slide(old, shear, slide, ks)
-                    if normal > 0.0:
-                        state[at + D] += norm(plastic)
-                    lost += friction_work(old, shear, plastic)
+            first = begin + of_tile
+            lost = wear(tiles, first, held, count, marked, moved, slides, lost, like, like_rotation)
         return lost
 
     @inline
     def press(tiles, velocities, ring, member, members, first, last, dt, like, like_rotation):
         """Forces of the tiles from first to last, by one thread of some; adds their friction work to `lost` [J]."""
-        D, R = np.uint64(len(like)) * ROW, np.uint64(len(like_rotation)) * ROW
-        begin, befores = np.uint64(member * (tiles.work.size // members)), member * (tiles.marks.size // members)
+        of_motion = np.uint64(len(like) + 2 * len(like_rotation)) * ROW
         motions, lost = np.uint64(member * (tiles.moves.size // members)), tiles.lost
+        room, marked = member * (tiles.work.size // members), member * (tiles.marks.size // members)
         for some in range(first, last, TILES_AHEAD):
             count = min(TILES_AHEAD, last - some)
             for t in range(count):
-                _move(tiles, velocities, some + t, motions + np.uint64(t) * (D + TWO * R), like, like_rotation)
+                _move(tiles, velocities, some + t, motions + np.uint64(t) * of_motion, like, like_rotation)
             for t in range(count):
-                part = (some + t) // TILES_OF_CHUNK
-                motion = motions + np.uint64(t) * (D + TWO * R)
+                part, motion = (some + t) // TILES_OF_CHUNK, motions + np.uint64(t) * of_motion
                 lost[part] = press_tile(
-                    tiles, some + t, ring, motion, begin, np.uint64(befores), lost[part], dt, like, like_rotation
+                    tiles,
+                    some + t,
+                    ring,
+                    motion,
+                    np.uint64(room),
+                    np.uint64(marked),
+                    lost[part],
+                    dt,
+                    like,
+                    like_rotation,
                 )
 
     return TiledForces(*(named(part, law) for part in (take_up, press, give_back)))
