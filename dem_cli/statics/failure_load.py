@@ -125,7 +125,8 @@ class LoadSearch:
         estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
-        levels = [share * estimate for share in settings.shares]
+        hinges = expected and answer.limits is not None and not answer.limits.slides
+        levels = [share * estimate for share in (settings.shares_of_hinges if hinges else settings.shares)]
         if expected:
             levels.append((1.0 - settings.short * self.resolution) * estimate)
             levels.append((1.0 + settings.beyond * self.resolution) * estimate)
@@ -223,6 +224,8 @@ class LoadSearch:
         sim.set_load((1.0 + pushed) * load)
         released = _released_in_motion(sim, self.budget, load, shown)
         sim.set_load(load)
+        if pushed:
+            sim.advance(1, slot.HOLD_LOAD)  # what is out of balance at the load itself
         return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:
