@@ -146,7 +146,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
 
     @inline
     def press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation):
-        """Forces of one tile with any number of slots, left in `pushes`; returns the lanes that lost something, as bits.
+        """Forces of one tile with any number of slots, left in `pushes`; the lanes that lost something, as bits.
 
         begin, held, push: where its numbers, the state of its points and its pushes begin; motion, room, marked: where
         there is room for it in `moves`, `work` and `marks`.
