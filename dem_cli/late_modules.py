@@ -9,22 +9,28 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Sequence
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
 from types import ModuleType
 
-LATE = frozenset(("numpy.f2py", "numpy.testing"))
+LATE = frozenset((
+    "importlib.metadata._adapters",  # of what packages say of themselves; with it comes e-mail
+    "numpy._core._add_newdocs",  # docstrings that nobody reads here
+    "numpy._core._add_newdocs_scalars",
+    "numpy.f2py",
+    "numpy.polynomial",
+    "numpy.testing",
+))  # fmt: skip
 SELDOM = (200_000, 10, 10)  # objects between two collections, and collections between two of older ones
 
 
-class LateModules(MetaPathFinder):
+class LateModules:
     """Finder of modules that are loaded when something in them is first asked for."""
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
         """Of a module that may wait."""
         spec = PathFinder.find_spec(name, path, target) if name in LATE else None
-        if spec is not None and isinstance(spec.loader, Loader):
+        if spec is not None and spec.loader is not None:
             spec.loader = LazyLoader(spec.loader)
         return spec
 

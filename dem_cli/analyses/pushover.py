@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil, log2
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.engine.automatic_stiffness import ratio_of
@@ -156,7 +157,8 @@ def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
 def _second_history(job: Job, load_search: LoadSearch) -> None:
     """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
-    Where it ends elsewhere, or nowhere, the load is raised again in small steps, up to so many blocks.
+    Where it ends elsewhere, or nowhere, or a creep came to rest at a higher load, the load is raised again in small
+    steps, up to so many blocks: which of the loads a search finds hangs on its steps there, and these are its own.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or unique(search, resolution) or search.limits.too_large:
@@ -164,14 +166,13 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     path = search.limits.path
     if path is None:
         return
-    if path.load is not None and path.finished:
-        near = abs(path.load - search.carried) <= resolution * path.load
-        if near or load_range(search, resolution) is None:
-            return
+    if path.load is not None and path.finished and load_range(search, resolution) is None:
+        return
     if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")
     elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
-        load_search.run_again_in_small_steps(search.carried)
+        most = search.bound or search.scale
+        load_search.run_again_in_small_steps(most * 2.0 ** ceil(log2(search.carried / most)))
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")
 

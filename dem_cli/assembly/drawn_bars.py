@@ -10,13 +10,13 @@ import numpy as np
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 from dem_cli.geometry.parts import shapes_of
-from dem_cli.links.bar import FINE, BarPiece, DrawnBar
+from dem_cli.links.drawn_bar import FINE, BarPiece, DrawnBar
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.links.bar import Reinforcement
+    from dem_cli.links.drawn_bar import Reinforcement
 
 TOUCHES = 1e-9  # of the largest part: what a line has in a part is round-off
 

@@ -7,7 +7,7 @@ A case file offers none of them; benchmarks and studies hand in others. Each was
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import field, fields, is_dataclass, replace
 from typing import Any
 
 from dem_cli.engine.dynamic_settings import (
@@ -29,6 +29,7 @@ from dem_cli.engine.static_settings import (
     SettlementSettings,
     WarmStartSettings,
 )
+from dem_cli.frozen_records import dataclass
 from dem_cli.limit.settings import LimitSettings
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING
 

@@ -23,6 +23,7 @@ from dem_cli.geometry.inertia import mobilities
 from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
+from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import CompiledKernel
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
@@ -44,7 +45,7 @@ class Simulation:
 
     LASTING = frozenset((
         "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
-        "_loop", "_masses",
+        "_loop", "_masses", "_stiff",
     ))  # fmt: skip
 
     def __init__(
@@ -64,6 +65,7 @@ class Simulation:
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int] | None = None
+        self._stiff: tuple[Any, ...] = (None,)  # joints, and the stiffness of their points
         self._masses: dict[float, np.ndarray] = {}  # inverse ones of joints that stay as they are, by their safety
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
         d, r = model.dimension, model.inertias.shape[1]
@@ -170,7 +172,8 @@ class Simulation:
     def set_masses(self) -> None:
         """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
-        self.measured()
+        if self.kinematics == "large":
+            self.measured()
         if self.safety in self._masses:
             self.loads.inverse_masses[:] = self._masses[self.safety]
         else:
@@ -246,7 +249,7 @@ class Simulation:
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy takes along: not the compiled code that this one is bound to."""
-        return self.__dict__ | {"_scene": (None,), "_loop": None}
+        return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,)}
 
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""
@@ -520,11 +523,19 @@ class Simulation:
 
     def elastic_energy(self) -> float:
         """In the springs of the joints and of links, and in blocks that deform [J]."""
-        contacts, joints = self.contacts, self.joints
-        normal = (contacts.normal**2 / np.where(joints.kn > 0, joints.kn, 1.0)).sum()
-        shear = ((contacts.shear**2).sum(axis=1) / np.where(joints.ks > 0, joints.ks, 1.0)).sum()
+        contacts, (kn, ks) = self.contacts, self._stiffness()
+        normal = (contacts.normal**2 / kn).sum()
+        shear = ((contacts.shear**2).sum(axis=1) / ks).sum()
         inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
+
+    def _stiffness(self) -> tuple[np.ndarray, np.ndarray]:
+        """Of all contact points along normal and tangents, 1 where there is none; that of fixed joints is kept."""
+        joints = self.joints
+        if joints is not self._stiff[0]:
+            found = tuple(np.where(stiffness > 0, stiffness, 1.0) for stiffness in (joints.kn, joints.ks))
+            self._stiff = (joints if isinstance(joints, FixedJoints) else None, *found)
+        return self._stiff[1:]
 
     def books(self) -> Books:
         """The energy ledger as it stands."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dem_cli.frozen_records import dataclass
 
 
 @dataclass(frozen=True)
@@ -53,12 +53,14 @@ class LoadSearchSettings:
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
+    pushed: float = 2e-3  # of that load, put on besides as long as it is shown: where nothing slides
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
     likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
-    small_steps: int = 50  # to an estimate on which histories differ
+    unexpected: float = 150.0  # the same where a path carries a load at which motion begins, or does not say
+    small_steps: int = 64  # to the bound of loads on which histories differ
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
 from dem_cli.kernels.separation import minus3, row3
@@ -239,5 +241,5 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
 @always_inline
 def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     """As _renew, for the loops that are made for a law: the cache knows these by all that they name, and a kernel has
-    another name in each process. A plain function has not."""
-    return _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh)
+    another name in each process. A plain function has not. One kind of integer: it is compiled once."""
+    return _renew(np.int64(joint), joints, geometry, contacts, bodies, remembers, bonded, fresh)

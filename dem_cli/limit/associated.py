@@ -4,13 +4,14 @@ Static theorem (Livesley 1978). Its dual is the mechanism of least work in which
 μ times the slip; where friction acts the load is therefore an upper bound of that of real, non-dilating joints. Where
 shear strength does not depend on the normal force (μ = 0, cohesion alone: Livesley's first case) it is the load itself.
 
-The solver's word is not taken: residuals, bounds and proofs of impossibility are computed here, on unscaled
-data, from the forces and velocities that it returns; what does not pass is "not converged".
+Clarabel finds it; of large structures in the plane an interior point on fronts does (limit/frontal_program.py), where
+that comes to an end. The solver's word is not taken: residuals, bounds and proofs of impossibility are computed here,
+on unscaled data, from the forces and velocities that it returns; what does not pass is "not converged".
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -128,14 +129,26 @@ def _first_good(
 ) -> LimitLoad:
     """The first answer that passes; where none does, the last."""
     iterations = 0
-    for options in TRIES:
+    for found in _answers(program, solve):
         look()
-        found = solve(program, options)
         iterations += found.iterations
         judged = judge(program, found)._replace(iterations=iterations)
         if not judged.status.startswith(GIVEN_UP):
             break
     return judged
+
+
+def _answers(
+    program: Program, solve: Callable[[Program, dict[str, Any]], ProgramSolution]
+) -> Iterator[ProgramSolution]:
+    """Answers of one solver after the other, each found when it is asked for."""
+    if len(program.structure.free) >= program.settings.on_fronts:
+        from dem_cli.limit.frontal_program import is_linear, solved_on_fronts
+
+        if is_linear(program):
+            yield solved_on_fronts(program, loaded=solve is largest_load)
+    for options in TRIES:
+        yield solve(program, options)
 
 
 def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:

@@ -119,7 +119,8 @@ class Elastic:
         columns = free_columns(structure.model, structure.joints)
         scale = np.where(columns < 0, 0.0, np.append(self.columns, 0.0)[columns])
         rows = relative_motion(structure.joints, self.dimension) * scale[:, None]
-        return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns))
+        places = structure.model.centroids[~structure.model.fixed]
+        return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns), places)
 
     def elastic(self, share: np.ndarray | float = 1.0) -> Factors:
         """LU of the structure while nothing slips; share: of the stiffness of every point."""

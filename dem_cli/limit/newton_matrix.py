@@ -23,6 +23,7 @@ class PointRows(NamedTuple):
     columns: np.ndarray  # degrees of freedom, −1: held, (n_points, 2 blocks, n_dof)
     products: tuple[tuple[int, int], ...]  # directions; of two different tangents either way round
     n_columns: int  # degrees of freedom in all
+    places: np.ndarray | None = None  # of the blocks that can move, for the order of many [m], (n_blocks, d)
 
     @property
     def n_dof(self) -> int:
@@ -118,7 +119,7 @@ class FrontMatrix:
         blocks = np.where((points.columns >= 0).any(axis=2), blocks, -1)
         touching = np.unique(np.sort(blocks[(blocks >= 0).all(axis=1)], axis=1), axis=0)
         self.settings = settings
-        self.fronts = fronts = fronts_of(touching, points.n_columns // n_dof, n_dof)
+        self.fronts = fronts = fronts_of(touching, points.n_columns // n_dof, n_dof, points.places)
         self.order = (fronts.order[:, None] * n_dof + np.arange(n_dof)).ravel()
         both = np.stack([np.repeat(blocks, 2, axis=1), np.tile(blocks, 2)], axis=2)
         self.parts = parts_of(fronts, both.reshape(-1, 2)).reshape(-1, 2, 2, 3)

@@ -4,11 +4,16 @@ The displacement of the live load grows until its multiplier grows no more. Ever
 state in equilibrium under the real, non-associated law (limit.elastic), so that the plateau is a true
 collapse state of the structure loaded from gravity, whatever the stiffness of its joints. The state is
 that of the explicit solver (gaps, shear springs), which can go on from it.
+
+The load of irregular structures grows in stairs: it rests while a few blocks come to lie elsewhere, over some elastic
+displacements, which are nothing for blocks that are rigid, and rises again. So a plateau is looked at from far ahead,
+by a few long increments, and where the load is higher there, the path is followed on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -178,6 +183,23 @@ class Walk:
             return None
         return Stride(increment, state, found, length, share, self.last.increment if self.last is not None else None)
 
+    def far_ahead(self) -> Iterator[tuple[float, float]]:
+        """Displacements far ahead and the loads there, by long increments as far as these lead; the walk stays here."""
+        ahead, leaping = copy(self), True
+        ahead.share = 1.0
+        most = int((1.0 + self.settings.effort_ahead) * self.problem.factorisations)
+        ahead.stop = lambda: self.stop() or self.problem.factorisations > most
+        while ahead.reached < self.settings.far_ahead * self.reached and not ahead.stop():
+            leap = ahead._advanced((self.settings.leap - 1.0) * ahead.reached, 1.0, 1.0, 0) if leaping else None
+            if leap is not None and not leap.state.left:
+                ahead._moved(leap)
+            else:
+                leaping = False
+                if not ahead.go_on():
+                    return
+            if not ahead.state.left:
+                yield ahead.reached, ahead.state.load
+
     def _moved(self, stride: Stride) -> None:
         self.last, self.state = stride, stride.state
         self.reached += stride.length
@@ -200,7 +222,12 @@ def _follow(
     settings, walk = problem.settings.path, Walk(problem, state, stop)
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
     best: tuple[Stride, float] | None = None  # that of the highest load, and where it led
-    while not is_plateau(settings, walk.reached, calm_since, slope / plateau) and walk.reached < settings.furthest:
+    higher = 0.0  # displacement at which the load is known to be higher than on a plateau before it
+    while walk.reached < settings.furthest:
+        if walk.reached >= higher and is_plateau(settings, walk.reached, calm_since, slope / plateau):
+            higher = _higher_ahead(path, walk, problem.live_scale, plateau)
+            if walk.reached >= higher:
+                break
         if not walk.go_on():
             break
         assert walk.last is not None
@@ -213,8 +240,16 @@ def _follow(
         progress(path.loads[-1], walk.reached)
     if best is not None and not settings.smoothing:
         _polish(path, structure, problem, *best)
-    if is_plateau(settings, walk.reached, calm_since, slope / plateau):
+    if walk.reached >= higher and is_plateau(settings, walk.reached, calm_since, slope / plateau):
         path.status = OK
+
+
+def _higher_ahead(path: Path, walk: Walk, scale: float, plateau: float) -> float:
+    """Displacement ahead at which the load of a plateau has risen again; 0: not as far as long increments lead."""
+    if walk.settings.smoothing or path.load is None:
+        return 0.0
+    higher = path.load + plateau * abs(path.load)
+    return next((reached for reached, load in walk.far_ahead() if load * scale > higher), 0.0)
 
 
 def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> tuple[float, float]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from dem_cli.frozen_records import dataclass
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,9 @@ class PathSettings:
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
+    far_ahead: float = 8.9  # times the displacement at the end of a plateau: what still counts as a rest on the way
+    leap: float = 3.0  # growth of the displacement in the increments that look so far
+    effort_ahead: float = 0.5  # of the factorisations before it, that it takes to look so far
     finer: float = 1e-5  # the same growth, where the load is known to be higher than a first plateau
     tau: float = 0.01  # of the first products, over the square of the largest normal force
     end: float = 1e-7  # of the last ones on the way (InteriorPointSettings.end at the highest load)
@@ -106,6 +111,19 @@ class AssociatedSettings:
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
     proof: float = 1e-6  # relative error accepted in a proof that something is impossible
     slides: float = 1e-3  # share of friction in the work of a mechanism, below which nothing slides in it
+    # Of the interior point on fronts (limit/frontal_program.py)
+    on_fronts: int = 5000  # degrees of freedom from which on the loads of plane joints with friction alone are found so
+    most: int = 100  # iterations
+    balanced: float = 0.3  # share of `residual`, ...
+    closed: float = 0.1  # ... and of `gap`, at which it ends
+    singular: float = 1e-20  # added to the diagonal, over its mean
+    boundary: float = 0.99  # share of the way to the boundary
+    least: float = 1e-6  # share of the mean product aimed at, at least
+    correctors: int = 2  # of one step, ...
+    far: float = 0.95  # ... while it is not as long as that; ...
+    beyond: float = 0.3  # ... each looks so much further, ...
+    gain: float = 0.03  # ... and has to make it so much longer
+    widest: float = 10.0  # products over the mean, and the mean over them, that need no correction
 
 
 @dataclass(frozen=True)

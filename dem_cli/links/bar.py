@@ -9,98 +9,19 @@ every instant (links/bar_forces.py).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
-from dem_cli.case.base import CaseModel, KeyProblem, Name, Positive, Vector
 from dem_cli.links.bar_forces import make_bar_forces
 from dem_cli.links.chain import Chain
+from dem_cli.links.drawn_bar import DrawnBar, Reinforcement, elements_of, nodes_of
 from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, LinkReading, Outline, Springs
 from dem_cli.links.spans import Spans, spans
 
-FINE = 0.2  # μ l of elements by default
 KINKED = 0.1  # stiffness across a joint over that along the bar, for masses: the element there turns when blocks slide
 SLIPPED = 1e-9  # of the elastic slip at the strength of the bond: less is round-off
-
-
-class BarProfile(CaseModel):
-    """[bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
-
-    area: Positive = Field(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
-    young: Positive = Field(description="Young's modulus [Pa]", examples=[2.0e11])
-    yield_stress: Positive | None = Field(
-        default=None,
-        description="yield stress in tension and compression, perfectly plastic [Pa]; default: no limit",
-        examples=[4.0e8],
-    )
-    bond_stiffness: Positive = Field(
-        description="bond force per slip, per length of bar: N/m per m [Pa]", examples=[1.0e9]
-    )
-    bond_strength: Positive | None = Field(
-        default=None, description="largest bond force per length of bar [N/m]; default: no limit", examples=[4.0e4]
-    )
-    dowel_stiffness: Positive | None = Field(
-        default=None,
-        description="as bond_stiffness, across the bar, where a joint bends it [Pa]; default: bond_stiffness",
-        examples=[1.0e9],
-    )
-
-    @property
-    def decay(self) -> float:
-        """μ = √(kb/EA): along 1/μ the force in a bar that is pulled falls to 1/e [1/m]."""
-        return math.sqrt(self.bond_stiffness / (self.young * self.area))
-
-    @property
-    def largest(self) -> float:
-        """Its yield force [N]."""
-        return math.inf if self.yield_stress is None else self.yield_stress * self.area
-
-
-class Reinforcement(CaseModel):
-    """[[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
-
-    Its path lies in blocks as they were drawn; these take it along.
-    """
-
-    id: Name | None = Field(default=None, description="name; default: bar-1, bar-2 ...", examples=["corner-1"])
-    bar: str = Field(description="a name in [bars]", examples=["rebar"])
-    path: Annotated[tuple[Vector, ...], Field(min_length=2)] = Field(
-        description="corners of the line along which it runs, all in blocks [m]",
-        examples=[[[0.1, 0.1], [0.1, 2.0]]],
-    )
-    element: Positive | None = Field(
-        default=None, description="its elements are no longer than this [m]; default: 0.2 √(EA/bond_stiffness)",
-        examples=[0.05],
-    )  # fmt: skip
-    anchored: tuple[Literal["start", "end"], ...] = Field(
-        default=(), description="ends that do not slip, as with a hook or a plate: start, end", examples=[["start"]]
-    )
-
-    def model_post_init(self, context: Any) -> None:
-        """Raises KeyProblem where two corners are one point."""
-        for i, (a, b) in enumerate(zip(self.path, self.path[1:])):
-            if len(a) == len(b) and math.dist(a, b) == 0.0:
-                raise KeyProblem("this corner is the one before it", "path", i + 1)
-
-
-class BarPiece(NamedTuple):
-    """A straight part of a bar in one block."""
-
-    block: int
-    ends: np.ndarray  # from the centroid of the block [m], (2, d)
-
-
-class DrawnBar(NamedTuple):
-    """A bar as it was drawn: what it is, and its pieces in the blocks one after another."""
-
-    profile: BarProfile
-    element: float  # greatest length of an element [m]
-    anchored: tuple[bool, bool]
-    pieces: tuple[BarPiece, ...]
 
 
 class Bars(NamedTuple):
@@ -367,7 +288,7 @@ _WORK = (
 
 def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: np.ndarray) -> Bars:
     """The bars of a case whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d)."""
-    d, cut = centroids.shape[1], [_nodes(bar) for bar in drawn]
+    d, cut = centroids.shape[1], [nodes_of(bar) for bar in drawn]
     first = np.concatenate([[0], np.cumsum([len(nodes.blocks) for nodes in cut])]).astype(np.int64)
     blocks, arms, along, reach, places = (
         np.concatenate([np.zeros((0, *shape), kind), *(getattr(nodes, name) for nodes in cut)])
@@ -376,7 +297,7 @@ def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: 
             ("places", (), float),
         )
     )  # fmt: skip
-    elements = [_elements(bar, nodes) for bar, nodes in zip(drawn, cut, strict=True)]
+    elements = [elements_of(bar, nodes) for bar, nodes in zip(drawn, cut, strict=True)]
     right, crossing, axial, n_joints = [], [], [np.zeros(0)], 0
     for begin, (stiffness, crosses) in zip(first.tolist(), elements):
         part = np.full(len(crosses), -1, np.int64)
@@ -424,45 +345,6 @@ def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: 
         directions=np.zeros((n_joints, d)),
         levers=np.zeros((n_joints, 2 * d)),
     )
-
-
-class _Nodes(NamedTuple):
-    blocks: np.ndarray
-    arms: np.ndarray
-    along: np.ndarray
-    reach: np.ndarray
-    places: np.ndarray
-
-
-def _nodes(bar: DrawnBar) -> _Nodes:
-    """In the middles of equal parts of each piece."""
-    blocks, arms, along, reach, places, upto = [], [], [], [], [], 0.0
-    for piece in bar.pieces:
-        way = piece.ends[1] - piece.ends[0]
-        length = math.sqrt(float((way**2).sum()))
-        count = max(1, math.ceil(length / bar.element - 1e-9))
-        shares = (np.arange(count) + 0.5) / count
-        blocks += [piece.block] * count
-        arms.append(piece.ends[0] + shares[:, None] * way)
-        along.append(np.tile(way / length, (count, 1)))
-        reach += [length / count] * count
-        places.append(upto + shares * length)
-        upto += length
-    return _Nodes(
-        np.array(blocks, np.int64), np.concatenate(arms), np.concatenate(along), np.array(reach), np.concatenate(places)
-    )
-
-
-def _elements(bar: DrawnBar, nodes: _Nodes) -> tuple[np.ndarray, np.ndarray]:
-    """Axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,) each."""
-    rigidity, reach = bar.profile.young * bar.profile.area, nodes.reach
-    stiffness = np.zeros(len(reach) + 1)
-    stiffness[1:-1] = rigidity / (0.5 * (reach[:-1] + reach[1:]))
-    for end, place in ((0, 0), (1, -1)):
-        stiffness[place] = rigidity / (0.5 * reach[place]) if bar.anchored[end] else 0.0
-    crosses = np.zeros(len(stiffness), bool)
-    crosses[1:-1] = nodes.blocks[:-1] != nodes.blocks[1:]
-    return stiffness, crosses
 
 
 BAR = Link(

@@ -10,5 +10,5 @@ LINKS: Registered[Link] = Registered(
     {"tie": ("dem_cli.links.tie", "TIE"), "reinforcement": ("dem_cli.links.bar", "BAR")}
 )
 PROFILES: Registered[type[CaseModel]] = Registered(  # tables by name that links name
-    {"bars": ("dem_cli.links.bar", "BarProfile")}
+    {"bars": ("dem_cli.links.drawn_bar", "BarProfile")}
 )

@@ -5,11 +5,12 @@ Handles are kept: opening one costs more than a row. Rows wait for `write_out`: 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
 
 import h5py
 import numpy as np
-from h5py import h5s
+from h5py import h5d, h5s
 
 from dem_cli.output.described_dataset import described_dataset
 from dem_cli.output.layout import Described
@@ -19,23 +20,11 @@ _FEWEST_ROWS = 64
 
 
 class GrowingDataset:
-    """HDF5 dataset that grows row by row."""
+    """HDF5 dataset that grows row by row; empty, when it is handed in."""
 
-    def __init__(
-        self,
-        group: h5py.Group,
-        name: str,
-        shape: tuple[int, ...],
-        dtype: np.dtype,
-        n_rows: int,
-        said: Described | None = None,
-    ):
-        """n_rows: how many rows space is made for at once, as far as that is little. said: what it holds."""
-        width = tuple(max(1, size) for size in shape)
-        row_bytes = dtype.itemsize * int(np.prod(width))
-        chunk = max(1, min(n_rows, _CHUNK_BYTES // row_bytes))
-        self.data = data = described_dataset(group, name, (0, *shape), dtype, said, (chunk, *width))
-        self.id, self.shape, self.dtype, self.length = data.id, shape, dtype, 0
+    def __init__(self, id: h5d.DatasetID, shape: tuple[int, ...], dtype: np.dtype):
+        """shape: of a row."""
+        self.id, self.shape, self.dtype, self.length = id, shape, dtype, 0
         self._waiting: list[np.ndarray] = []
         self._written = 0
 
@@ -53,9 +42,12 @@ class GrowingDataset:
             rows = self._waiting[0] if len(self._waiting) == 1 else np.concatenate(self._waiting)
             self._waiting.clear()
             self.id.set_extent((self.length, *self.shape))
-            space = self.id.get_space()
-            space.select_hyperslab((self._written, *(0 for _ in self.shape)), rows.shape)
-            self.id.write(h5s.create_simple(rows.shape), space, rows)
+            if self._written:
+                space = self.id.get_space()
+                space.select_hyperslab((self._written, *(0 for _ in self.shape)), rows.shape)
+                self.id.write(h5s.create_simple(rows.shape), space, rows)
+            else:
+                self.id.write(h5s.ALL, h5s.ALL, rows)
             self._written = self.length
 
 
@@ -64,10 +56,17 @@ class GrowingGroup:
 
     declared     what each holds; one that is not there is written without attributes (bookkeeping of VTKHDF)
     fewest_rows  that space is made for at once
+    made         those that are there already, without rows
     """
 
-    def __init__(self, group: h5py.Group, declared: Mapping[str, Described], fewest_rows: int = _FEWEST_ROWS):
-        self.group, self.declared, self.fewest_rows = group, declared, fewest_rows
+    def __init__(
+        self,
+        group: h5py.Group,
+        declared: Mapping[str, Described],
+        fewest_rows: int = _FEWEST_ROWS,
+        made: Collection[str] = (),
+    ):
+        self.group, self.declared, self.fewest_rows, self.made = group, declared, fewest_rows, made
         self._columns: dict[str, GrowingDataset] = {}
 
     def append(self, name: str, rows: np.ndarray) -> int:
@@ -75,15 +74,40 @@ class GrowingGroup:
         rows = np.asarray(rows)
         column = self._columns.get(name)
         if column is None:
-            n_rows, said = max(self.fewest_rows, len(rows)), self.declared.get(name)
-            column = GrowingDataset(self.group, name, rows.shape[1:], rows.dtype, n_rows, said)
-            self._columns[name] = column
+            column = self._columns[name] = GrowingDataset(self._first(name, rows), rows.shape[1:], rows.dtype)
         return column.append(rows)
+
+    def _first(self, name: str, rows: np.ndarray) -> h5d.DatasetID:
+        """The dataset for the first rows of a name: the one that is there, unless its pieces are made for fewer."""
+        if name in self.made:
+            if len(rows) <= self.fewest_rows:
+                return h5d.open(self.group.id, name.encode())
+            del self.group[name]
+        return self.make(name, rows.shape[1:], rows.dtype, len(rows))
+
+    def make(self, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int = 0) -> h5d.DatasetID:
+        """A new dataset without rows. shape: of a row. n_rows: space is made for so many at once, as far as that is
+        little.
+        """
+        width = tuple(max(1, size) for size in shape)
+        row_bytes = dtype.itemsize * math.prod(width)
+        chunk = max(1, min(max(self.fewest_rows, n_rows), _CHUNK_BYTES // row_bytes))
+        said = self.declared.get(name)
+        return described_dataset(self.group, name, (0, *shape), dtype, said, (chunk, *width)).id
 
     def write_out(self) -> None:
         """What waits becomes part of the file."""
         for column in self._columns.values():
             column.write_out()
+
+    def drop_unused(self) -> None:
+        """No dataset stays that never got rows, and no group without any."""
+        for name in self.made:
+            if name not in self._columns:
+                del self.group[name]
+                parent = name.rpartition("/")[0]
+                if parent and not len(self.group[parent]):
+                    del self.group[parent]
 
     def append_one(self, name: str, value: float, dtype: type = np.int64) -> int:
         """Add a single number."""

@@ -18,12 +18,14 @@ import h5py
 class TransactionalFile(io.RawIOBase):
     """Transactional file, whose writes reach the disk at `commit()`; the first one that fails is kept in `error`."""
 
-    def __init__(self, path: Path):
+    def __init__(self, path: Path, begun: bytes = b""):
+        """begun: what is in it already, and not on disk."""
         super().__init__()
         self.error: OSError | None = None
         self._disk = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0), 0o666)
-        self._held: list[tuple[int, bytes]] = []
-        self._place = self._size = self._on_disk = 0
+        self._held: list[tuple[int, bytes]] = [(0, begun)] if begun else []
+        self._size = len(begun)
+        self._place = self._on_disk = 0
 
     def commit(self) -> None:
         """Write what was held back; nothing more once a write has failed.
@@ -103,9 +105,10 @@ def _write_at(disk: int, place: int, piece: bytes) -> None:
 class Hdf5File:
     """An HDF5 file open for writing; on disk it is always as the last `flush()` left it."""
 
-    def __init__(self, path: Path):
-        self._file = TransactionalFile(path)
-        self.hdf = h5py.File(self._file, "w")
+    def __init__(self, path: Path, begun: bytes = b""):
+        """begun: the bytes of a file that this one goes on from."""
+        self._file = TransactionalFile(path, begun)
+        self.hdf = h5py.File(self._file, "r+" if begun else "w")
 
     def flush(self) -> None:
         """Everything written so far is on disk when this returns, or it raises OSError."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import platform
+import re
 from functools import cache
 from importlib import metadata
 
 from dem_cli.version import __version__
 
 PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
+_VERSION = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 
 
 def provenance() -> dict[str, str]:
@@ -22,7 +24,13 @@ def _versions() -> dict[str, str]:
     versions = {"dem": __version__, "python": platform.python_version(), "machine": platform.machine()}
     for name in PACKAGES:
         try:
-            versions[name] = metadata.version(name)
+            versions[name] = _version_of(name)
         except metadata.PackageNotFoundError:
             continue
     return versions
+
+
+def _version_of(package: str) -> str:
+    """As `metadata.version`, which reads what a package says of itself as an e-mail, 5 ms each."""
+    said = _VERSION.search(metadata.distribution(package).read_text("METADATA") or "")
+    return said[1] if said else metadata.version(package)

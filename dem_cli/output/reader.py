@@ -15,10 +15,10 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.layout import FRAMES, declared, units_of
+from dem_cli.output.layout import FRAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
 from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates, LinkPlaces, LinkRecord
 from dem_cli.output.series import HistorySeries, read_series
-from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS, RESULTS_FORMAT, ROW_SCALARS
+from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS
 
 Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
 

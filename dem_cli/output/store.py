@@ -13,43 +13,26 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dem_cli.model.model import SPATIAL_MODEL, WHERE_ASKED_FOR, Model
+from dem_cli.model.model import Model
 from dem_cli.output.described_dataset import store_described
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
 from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.hdf5_file import Hdf5File
-from dem_cli.output.layout import (
-    CONTACTS,
-    DEM,
-    ENERGY,
-    FRAMES,
-    HISTORY,
-    JOINT_PLACES,
-    JOINT_STATES,
-    LINKS,
-    MODEL,
-    PER_STEP_FRAMES,
-    declared,
-    describe,
-)  # fmt: skip
+from dem_cli.output.layout import IN_SECONDS, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
+from dem_cli.output.record import STAGES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
+from dem_cli.output.skeleton import FRAMES_AT_ONCE, declare_model, fill_model, growing_parts, skeleton
 from dem_cli.output.summary import write_summary
 
-RESULTS_FORMAT = 1
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
-ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time", "live_displacement")
 FRAME_SCALARS = ("step", "load", "displacement", "time")
-IN_SECONDS = frozenset(("time-history",))  # kinds whose frames ParaView counts in seconds; others by their number
 FRAME_ARRAYS = ("positions", "orientations", "velocities")
-_FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
 _TEXT = h5py.string_dtype()
-_UNSAID = ("aliases", "selections", "links", "link_names", "following")  # of a model: the case file says them
 JointsOf = Callable[[Model], FollowedJoints]
 
 
@@ -87,32 +70,19 @@ class ResultWriter:
 
     def _start(self, case_text: str, provenance: Mapping[str, str]) -> None:
         (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
-        file = self._open(RESULTS)
-        self.dem = dem = file.create_group("dem")
-        dem.attrs["format"] = RESULTS_FORMAT
-        dem.attrs["kind"] = self.kind
-        dem.attrs["status"] = "running"
-        dem.attrs["stages"], dem.attrs["states"] = list(STAGES), list(STATES)
-        describe(dem.create_dataset("case", data=case_text, dtype=_TEXT), DEM["case"])
-        dem.create_group("provenance").attrs.update(provenance)
-        _store_model(dem.create_group("model"), self.model)
-        d, moving = self.model.dimension, FRAMES if self.kind in IN_SECONDS else PER_STEP_FRAMES
-        self._frames = GrowingGroup(dem.create_group("frames"), declared(moving, d), _FRAMES_AT_ONCE)
-        self._contacts = GrowingGroup(dem.create_group("contacts"), declared(CONTACTS, d))
-        watched = HISTORY["monitor_values"]._replace(
-            columns=self.monitors, units=tuple(MONITOR_UNITS[quantity] for quantity in self.quantities)
-        )
-        ledger = {f"energy/{name}": said for name, said in ENERGY.items()}
-        self._history = GrowingGroup(dem.create_group("history"), HISTORY | {"monitor_values": watched} | ledger)
-        dem["history"].attrs.create("monitors", list(self.monitors), dtype=_TEXT)
+        scene = (self.monitors, self.quantities)
+        self.dem = self._open(RESULTS, skeleton(self.model, self.kind, provenance, *scene))["dem"]
+        self.dem["case"][()] = case_text
+        fill_model(self.dem["model"], self.model)
+        self._frames, self._contacts, self._history = growing_parts(self.dem, self.model.dimension, self.kind, *scene)
         self._flush()
 
     def follow(self, joints_of: JointsOf) -> None:
         """Keep the state of every joint with each frame. joints_of: finds the joints of a structure."""
         self._joints_of = joints_of
 
-    def _open(self, name: str) -> h5py.File:
-        self._files.append(Hdf5File(self.folder / name))
+    def _open(self, name: str, begun: bytes = b"") -> h5py.File:
+        self._files.append(Hdf5File(self.folder / name, begun))
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
@@ -148,7 +118,8 @@ class ResultWriter:
 
         def store() -> None:
             del self.dem["model"]
-            _store_model(self.dem.create_group("model"), model)
+            declare_model(self.dem.create_group("model"), model)
+            fill_model(self.dem["model"], model)
             self._flush()
 
         self._guarded(store)
@@ -169,6 +140,7 @@ class ResultWriter:
         def finish() -> None:
             self._flush_rows()
             self._write_out()
+            self._history.drop_unused()
             if self._series is not None:
                 self._series.write_csv(self.folder / HISTORY_TABLE)
             self.dem.attrs["status"] = str(summary["status"])
@@ -231,7 +203,7 @@ class ResultWriter:
             said, states = (declared(table, self.model.dimension) for table in (JOINT_PLACES, JOINT_STATES))
             for name, values in joints.places.stored().items():
                 store_described(group, name, values, said[name])
-            self._joint_states = GrowingGroup(group, states, _FRAMES_AT_ONCE)
+            self._joint_states = GrowingGroup(group, states, FRAMES_AT_ONCE)
         if links is not None:
             group = self.dem.create_group("links")
             group.attrs.create("names", [name for name, _ in self._named], dtype=_TEXT)
@@ -239,7 +211,7 @@ class ResultWriter:
             said = declared(LINKS, self.model.dimension)
             for name, values in links.places._asdict().items():
                 store_described(group, name, values, said[name])
-            self._links = GrowingGroup(group, said, _FRAMES_AT_ONCE)
+            self._links = GrowingGroup(group, said, FRAMES_AT_ONCE)
         self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
@@ -263,19 +235,6 @@ class ResultWriter:
 def _links_of(model: Model) -> list[tuple[str, Any]]:
     """Name and arrays of each tie and bar."""
     return list(zip(model.link_names, (link for link in model.links for _ in range(link.n_drawn)), strict=True))
-
-
-def _store_model(group: h5py.Group, model: Model) -> None:
-    said = declared(MODEL, model.dimension)
-    for name, value in model._asdict().items():
-        if name in _UNSAID or (name in (*SPATIAL_MODEL, *WHERE_ASKED_FOR) and not len(value)):
-            continue
-        if isinstance(value, int):
-            group.attrs[name] = value
-        elif isinstance(value, tuple):
-            describe(group.create_dataset(name, data=list(value), dtype=_TEXT), said[name])
-        else:
-            store_described(group, name, value, said[name])
 
 
 def _store_rows(history: GrowingGroup, rows: Sequence[HistoryRow]) -> None:

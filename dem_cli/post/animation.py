@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from dem_cli.errors import MissingExtra, UsageError
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style, view_box
 from dem_cli.post.histories import base_colours
 from dem_cli.post.playback import milliseconds, playback

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from dem_cli.model.model import Model
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, Frame
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import Drawing, drawing_of

@@ -9,8 +9,8 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import look
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results, read
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post.capacity import draw_capacity
 from dem_cli.post.collapse import draw_collapse
 from dem_cli.post.energy import draw_energy

@@ -10,9 +10,9 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures, style
 from dem_cli.render.sheet import ColourBar
 

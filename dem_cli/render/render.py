@@ -20,9 +20,9 @@ import numpy as np
 
 from dem_cli.errors import DemError, MissingExtra, OutputError, UsageError
 from dem_cli.model.model import Model
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Frames, Results, read
 from dem_cli.output.record import Frame
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.post.playback import SHORTEST, Playback, playback
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint

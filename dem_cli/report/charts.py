@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
 from dem_cli.output.record import MONITOR_UNITS
 from dem_cli.output.reference import from_summary
 from dem_cli.output.series import BASE
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
 from dem_cli.post.capacity import capacity_axis, of_frames, off_the_load, with_breaks
 from dem_cli.post.energy import across

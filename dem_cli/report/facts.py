@@ -10,9 +10,9 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
 from dem_cli.output.ending import ending_words
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.reader import Results
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import style
 
 KIND_TITLES = {

@@ -13,10 +13,10 @@ import numpy as np
 
 from dem_cli.geometry.rotation import angles_between, beside, matrices, rotation_vectors, unturned
 from dem_cli.model.model import Model
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.reader import Results
 from dem_cli.output.record import STATES, ContactRecord, Frame
-from dem_cli.output.store import IN_SECONDS
 from dem_cli.post import frame_measures
 from dem_cli.post import view_box as stage
 from dem_cli.post.scene import joint_strokes

@@ -38,7 +38,8 @@ if TYPE_CHECKING:
     from dem_cli.statics.warm_start import CurveStart, WarmStart
 
 
-LARGE = (
+LARGE = "a large structure: its path is followed for as long as is affordable, and the load raised from where it ends"
+LARGE_SMOOTHED = (
     "a large structure: its path is smoothed, and the load is raised from where it ends for as long as is affordable"
 )
 
@@ -90,19 +91,19 @@ class LoadSearch:
         elif not self._ends_where_the_path_does():
             self._raise_to_estimate()
 
-    def run_again_in_small_steps(self, estimate: float) -> None:
-        """The bracket again, raised from gravity in small steps to an estimate (as users know it) and on.
+    def run_again_in_small_steps(self, most: float) -> None:
+        """The bracket again, raised from gravity in small steps: equal shares of `most` (as users know it).
 
-        Where histories differ the steps may decide: this is then the history that a failure load is stated for. Where
-        the budget ends first, the bracket stays that of the larger steps.
+        Where histories differ the steps may decide: this is then the history that a failure load is stated for. No
+        estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first,
+        the bracket stays that of the larger steps.
         """
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
-        load = estimate / self.sim.live_scale
-        levels = [float(share) * load for share in np.arange(1, self.settings.small_steps) / self.settings.small_steps]
+        step = most / self.sim.live_scale / self.settings.small_steps
         try:
-            self._raise_load(self._trials(levels, self.settings.first_step * self.resolution * load))
+            self._raise_load(self._trials([], step, step))
         except (SolverError, KeyboardInterrupt) as stopped:
             vars(self.answer).update(vars(known))
             self.track.kept[:] = rows
@@ -147,13 +148,13 @@ class LoadSearch:
         return load, True
 
     def _ends_where_the_path_does(self) -> bool:
-        """Whether the path of a large structure in the plane leads to a load that the explicit solver holds.
+        """Whether the path of a large structure leads to a load that the explicit solver holds.
 
         From there the load is raised for as long as is affordable. To prove a failure by motion takes 300,000 steps and
         more: the answer is "at least", and "not above" the bound.
         """
         answer, limits = self.answer, self.answer.limits
-        if limits is None or self.sim.model.dimension != 2 or not limits.too_large or answer.bound is None:
+        if limits is None or not limits.too_large or answer.bound is None:
             return False
         if not limits.slides or self.longest is not None:
             return False
@@ -161,7 +162,7 @@ class LoadSearch:
         start = start_by_path(limits, report)
         if start is None or not self._holds(start):
             return False
-        answer.start = {**report, "note": LARGE}
+        answer.start = {**report, "note": LARGE_SMOOTHED if "smoothing" in report else LARGE}
         settings, scale = self.settings, self.sim.live_scale
         most = min(settings.trial_of_large, int(settings.effort_of_large / len(self.sim.joints.kn)))
         self.settings = replace(
@@ -202,11 +203,16 @@ class LoadSearch:
     def _fail_above(self, load: float) -> Verdict:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
         the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
+
+        So little above the bound a tall structure takes long to move. What only rocks, and so has one mechanism, is
+        pushed a little; where friction takes part, several may lie close together.
         """
-        sim, answer = self.sim, self.answer
+        sim, answer, limits = self.sim, self.answer, self.answer.limits
+        pushed = 0.0 if limits is None or limits.slides else self.settings.pushed
         sim.use_combined_damping()
-        sim.set_load(load)
+        sim.set_load((1.0 + pushed) * load)
         released = _released_in_motion(sim, self.budget, load, self.settings.shown * answer.elastic * load)
+        sim.set_load(load)
         return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:
@@ -245,6 +251,8 @@ class LoadSearch:
             if verdict.state == "equilibrium":
                 trials.carries(load)
                 self._keep(load)
+                if load > (1.0 + self.resolution) * self.plateau:
+                    self.plateau = np.inf  # it was none, but a rest on the way
             elif verdict.state == "failure":
                 trials.fails(load, for_certain=load >= self.impossible)
                 answer.high, answer.failing = load * answer.scale, verdict
@@ -316,7 +324,10 @@ class LoadSearch:
             return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
         if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
             return Ahead(load > self.plateau, change=change)
-        return Ahead(load > self.plateau, limits.path.reach(load * self.sim.live_scale) / abs(load), change)
+        if load > self.plateau:
+            return Ahead(True, change=change)
+        reach = limits.path.reach(load * self.sim.live_scale) / abs(load)
+        return Ahead(False, max(reach, self.settings.unexpected), change)
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""

@@ -137,7 +137,7 @@ class RigidLimits:
 
     @property
     def too_large(self) -> bool:
-        """Whether a path under the exact law would take too many factorisations: in the plane it is smoothed."""
+        """Whether a path takes too many factorisations to be followed to its end: in the plane it is smoothed."""
         warm_start = self.job.settings.warm_start
         return self.largest > {2: warm_start.large, 3: warm_start.large_in_space}[self.sim.model.dimension]
 

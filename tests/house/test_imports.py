@@ -114,6 +114,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "output.resume.stages",
     },
     "engine": {
+        "frozen_records",
         "limit.settings",
         "geometry",
         "assembly",
@@ -128,6 +129,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "links",
     },
     "limit": {
+        "frozen_records",
         "case.schema",
         "contact",
         "geometry",
@@ -155,6 +157,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "geometry": set(),
     "kernels": set(),
     "errors": set(),
+    "frozen_records": set(),
     "interrupts": set(),
     "late_modules": set(),
     "registration": set(),

@@ -59,6 +59,18 @@ def test_large_structures_go_on_from_where_their_smoothed_path_ends(steps):
     assert summary["histories"][0]["method"] == "zero-dilation path"
 
 
+def test_large_structures_in_space_go_on_from_where_their_path_ends():
+    """The path is that under the exact law, as far as it came; raised from gravity 0.6460 to 0.6464."""
+    settings = replace(DEFAULT, warm_start=replace(DEFAULT.warm_start, large_in_space=10))
+    in_space = ("dimension=3", "analysis.direction=[1.0, 0.0, 0.0]", "reference=[]")
+    summary = run("wall_21_mu075", *in_space, settings=settings)
+    assert (summary["start"]["kind"], summary["status"]) == ("path", "ok")
+    assert "smooth" not in summary["start"]["note"]
+    low, high = summary["failure_load_bracket"]
+    assert low < 0.6460 < high < low * 1.0021
+    assert (summary["search"][0]["kind"], summary["search"][0]["state"]) == ("start", "equilibrium")
+
+
 @pytest.mark.parametrize("factor", [1.3, 0.7])
 def test_a_wrong_start_is_not_believed(factor, monkeypatch):
     """Its forces do not balance at the load that it claims: the load is raised from gravity or from what holds."""

@@ -16,7 +16,6 @@ import os
 import platform
 import struct
 import sys
-import tempfile
 import zlib
 from array import array
 from collections.abc import Callable
@@ -211,6 +210,8 @@ def _check(header: Header, code: bytes) -> int:
 def keep(function: Callable, header: Header, code: bytes) -> None:
     """Leaves the object code of a kernel on the disk; where it cannot, numba's own cache remains."""
     data = json.dumps(header._replace(check=_check(header, code))._asdict()).encode() + b"\n" + code
+    import tempfile  # with half of the standard library
+
     with suppress(OSError):
         place = _file(function, header.kinds)
         place.parent.mkdir(exist_ok=True)

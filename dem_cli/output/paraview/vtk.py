@@ -13,12 +13,12 @@ from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.atomic_file import write_text
 from dem_cli.output.folder import write_error
+from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.cells import cells_of, outlines
 from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.reader import Results
 from dem_cli.output.record import Frame
-from dem_cli.output.store import IN_SECONDS
 
 Fields = Mapping[str, np.ndarray]
 _OF_TRIANGLES = (".stl",)  # formats that know no other faces

@@ -96,6 +96,7 @@ def test_many_at_once_are_the_same_as_one_by_one(corners):
 def test_clockwise_has_negative_area_and_the_same_centroid(corners):
     back = polygon.properties(corners[::-1])
     assert back.area == pytest.approx(-polygon.area(corners), rel=1e-12)
+    assert polygon.signed_area(corners[::-1]) == back.area
     assert back.centroid == pytest.approx(polygon.centroid(corners), abs=1e-12 * polygon.size(corners))
 
 

@@ -46,6 +46,17 @@ def test_exact_loads(name):
     assert path.load == pytest.approx(load, rel=tolerance)
 
 
+def test_a_rest_on_the_way_is_no_plateau():
+    """The load rests for ten increments below what `dem limit --lower` proves that the arch carries."""
+    structure, friction = ingredients(CASES / "arch_segmental_mu050.toml")
+    lower, upper = 1.2171, 1.21819
+    path = trace(structure, friction)
+    assert path.status == OK
+    assert lower < path.load < upper
+    blind = replace(DEFAULT_LIMIT, path=replace(DEFAULT_LIMIT.path, far_ahead=0.0))
+    assert trace(structure, friction, settings=blind).load < lower
+
+
 @pytest.mark.parametrize("mu", [0.5, 0.6, 0.75, 1.0])
 def test_frictional_heads_do_not_wedge(mu):
     """Thesis Table 5-3, where the associated load is up to 1.0."""

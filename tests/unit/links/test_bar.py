@@ -10,7 +10,8 @@ import pytest
 
 from dem_cli.geometry.rotation import quaternions, turned_further, turns_of
 from dem_cli.kernels.jit import kernel
-from dem_cli.links.bar import BAR, FINE, BarPiece, BarProfile, DrawnBar, Reinforcement, bars
+from dem_cli.links.bar import BAR, bars
+from dem_cli.links.drawn_bar import FINE, BarPiece, BarProfile, DrawnBar, Reinforcement
 from dem_cli.links.link import FORCE, PLASTIC, STRETCH, all_forces
 
 EA, KB, SB, LONG = 2.26e7, 1e9, 4e4, 0.6

@@ -24,3 +24,20 @@ def test_rows_wait_as_they_were_appended():
         assert file["field"][:2].ravel().tolist() == list(range(24))
         assert (file["field"][2:] == 5.0).all()
         assert len(file["field"]) == 3
+
+
+def test_a_dataset_that_is_there_is_taken_unless_made_for_fewer_rows():
+    with h5py.File(io.BytesIO(), "w") as file:
+        names = ("few", "many", "none")
+        for name in names:
+            GrowingGroup(file, {}, 4).make(name, (2,), np.dtype(float))
+        group = GrowingGroup(file, {}, 4, made=names)
+        for name, count in (("few", 3), ("many", 9)):
+            group.append(name, np.arange(2.0 * count).reshape(-1, 2))
+        group.write_out()
+        group.drop_unused()
+        assert {name: (data.chunks, len(data)) for name, data in file.items()} == {
+            "few": ((4, 2), 3),
+            "many": ((9, 2), 9),
+        }
+        assert file["many"][-1].tolist() == [16.0, 17.0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
@@ -65,6 +66,20 @@ def test_a_run_without_frames_is_readable(tmp_path):
     assert list(results.frames) == []
     assert results.energy == results.monitors == {}
     assert not (tmp_path / "contacts.vtkhdf").exists()
+
+
+def test_runs_of_equal_sizes_share_a_skeleton_and_no_numbers(tmp_path):
+    model = wall_model()
+    heavy = model._replace(masses=2.0 * model.masses, dead_loads=2.0 * model.dead_loads)
+    rows = history_rows(wall_frames(model))
+    for name, drawn, kept in (("a", model, rows), ("b", heavy, rows[:2]), ("c", model, [])):
+        (tmp_path / name).mkdir()
+        write(tmp_path / name, [], kept, drawn)
+        found = read(tmp_path / name)
+        assert found.model.masses.tolist() == drawn.masses.tolist()
+        assert found.history.get("step", np.zeros(0)).tolist() == [row.step for row in kept]
+    with h5py.File(tmp_path / "c" / "results.h5") as file:
+        assert list(file["dem/history"]) == []
 
 
 def test_rows_without_monitors(tmp_path):
