@@ -163,6 +163,7 @@ class MechanismSettings:
     turns: float = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
     parts: float = 0.01  # slip over the largest motion, below which what does not turn comes off and does not slide
     takes_part: float = 0.1  # of the largest motion
+    follows: float = 0.02  # of the largest motion: what goes elsewhere by more is not the mechanism it is compared with
     slides: float = 1e-6  # of the shear limit: a point that is as near to it slides
     listed: int = 20  # names in a summary
 
