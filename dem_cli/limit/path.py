@@ -78,6 +78,7 @@ class Path:
             "residual": self.residual if np.isfinite(self.residual) else None,
             "displacement": self.reached[self.highest] if self.reached else None,
             "final_load": self.loads[-1] if self.loads else None,
+            "highest_increment": self.highest if self.loads else None,
             "factorisations": self.factorisations,
             **({"smoothing": self.smoothing} if self.smoothing else {}),
         }

@@ -44,12 +44,18 @@ def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
         how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(spent)}"
         final = limits.get("non_associated_final_load")
         if final is not None and final < 0.98 * limits["non_associated"]:
-            how = f"highest load of a path that drops to {load_text(final)} then, {how}"
+            unseen = "in the first increment, so that its peak is between two loads, " * _at_once(limits)
+            how = f"highest load of a path that drops to {load_text(final)} then, {unseen}{how}"
         return [("non-associated", f"{load_text(limits['non_associated'])}  ({how})")]
     if limits.get("non_associated_at_least") is not None:
         at_least = load_text(limits["non_associated_at_least"])
         return [("non-associated", f"at least {at_least}  ({status}, {seconds(spent)})")]
     return [("non-associated", str(status))] if str(status).startswith("not looked for") else []
+
+
+def _at_once(limits: Mapping[str, Any]) -> bool:
+    """Whether the load of a path was highest after its first increment from gravity."""
+    return limits.get("non_associated_highest_increment") == 1
 
 
 def _least(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
