@@ -44,6 +44,7 @@ class LoadSearchSettings:
     doublings: int = 4  # of that load
     locked: float = 100.0  # internal multiplier at which a structure counts as self-locking
     shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
+    shares_of_hinges: tuple[float, ...] = (0.5, 0.9)  # the same where nothing slides at the bound: any way leads there
     least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
     jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
     first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
@@ -160,6 +161,7 @@ class MechanismSettings:
     turns: float = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
     parts: float = 0.01  # slip over the largest motion, below which what does not turn comes off and does not slide
     takes_part: float = 0.1  # of the largest motion
+    follows: float = 0.02  # of the largest motion: what goes elsewhere by more is not the mechanism it is compared with
     slides: float = 1e-6  # of the shear limit: a point that is as near to it slides
     listed: int = 20  # names in a summary
 

@@ -10,6 +10,8 @@ impulses are solved at once (spatial_dashpots.py).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from dem_cli.kernels.deformation.strain_dashpots import (
@@ -20,7 +22,7 @@ from dem_cli.kernels.deformation.strain_dashpots import (
     push_modes,
     put_motions,
 )
-from dem_cli.kernels.jit import always_inline, inline, overload
+from dem_cli.kernels.jit import always_inline, inline, named, overload
 from dem_cli.kernels.joint_plane import load_mobility, rates_at, reach_of, spun, torque_at
 from dem_cli.kernels.records import DASHPOT, MAXWELL, SUPPORT
 from dem_cli.kernels.vec import add_at, axpy, compose, dot, load, load_frame, scale, store
@@ -316,6 +318,29 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, ba
         stir(dampers, joint, a, b, turn, change)
 
 
+def make_turns(sweep: Callable) -> Callable:
+    """Turns of all impulses by one kind of sweep, each to and fro; after the first where impulses still change."""
+
+    @inline
+    def take_turns(joints, contacts, bodies, inverse_masses, dampers, turns, like, like_rotation):
+        """Up to so many turns, on the velocities after the kick."""
+        dampers.stirred[:] = 0
+        swept, n_active = dampers.active, dampers.active[-1]
+        n = n_active
+        for turn in range(1, turns + 1):
+            if turn > 1:
+                swept, n = dampers.awake, waken(joints, dampers, n_active, turn)
+            if n == 0:
+                break
+            sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, False, like, like_rotation)
+            sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, True, like, like_rotation)
+
+    return named(take_turns, sweep)
+
+
+turns_in_plane = make_turns(_sweep)
+
+
 @inline
 def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """As spatial_dashpots.resist."""
@@ -326,20 +351,7 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
         push = load(pushes, block, d, like_rotation)
         add_at(velocities, block, d, spun(load_mobility(mobilities, block, like), push), 1.0)
         give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
-    dampers.stirred[:] = 0
-    swept, n_active = dampers.active, dampers.active[-1]
-    n = n_active
-    for turn in range(1, turns + 1):
-        if turn > 1:
-            swept, n = dampers.awake, waken(joints, dampers, n_active, turn)
-        if n == 0:
-            break
-        _sweep(
-            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, False, like, like_rotation
-        )  # fmt: skip
-        _sweep(
-            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, True, like, like_rotation
-        )  # fmt: skip
+    turns_in_plane(joints, contacts, bodies, inverse_masses, dampers, turns, like, like_rotation)
 
 
 def book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):

@@ -17,12 +17,12 @@ from dem_cli.kernels.dashpots import (
     end_joint,
     forget,
     least_of,
+    make_turns,
     meet_in_plane,
     pull,
     resist_in_plane,
     stir,
     touch,
-    waken,
 )
 from dem_cli.kernels.dashpots import WIDTH as PLANAR_WIDTH
 from dem_cli.kernels.deformation.strain_dashpots import (
@@ -268,6 +268,9 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n,
         stir(dampers, joint, a, b, turn, change)
 
 
+turns_in_space = make_turns(_sweep_in_space)
+
+
 @inline
 def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """As `resist`; bodies.means: velocities before the step."""
@@ -286,20 +289,7 @@ def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns
             velocities[block, k] += old[block * n_dof + k]
         add_at(velocities, block, 3, turning, 1.0)
         give_pushes(dampers.motions, dampers.strained, velocities, pushes, block)
-    dampers.stirred[:] = 0
-    swept, n_active = dampers.active, dampers.active[-1]
-    n = n_active
-    for turn in range(1, turns + 1):
-        if turn > 1:
-            swept, n = dampers.awake, waken(joints, dampers, n_active, turn)
-        if n == 0:
-            break
-        _sweep_in_space(
-            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, False, like, like_rotation
-        )  # fmt: skip
-        _sweep_in_space(
-            joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, True, like, like_rotation
-        )  # fmt: skip
+    turns_in_space(joints, contacts, bodies, inverse_masses, dampers, turns, like, like_rotation)
     for block in range(velocities.shape[0]):
         for k in range(n_dof):
             velocities[block, k] -= old[block * n_dof + k]

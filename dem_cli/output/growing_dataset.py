@@ -27,6 +27,7 @@ class GrowingDataset:
         self.id, self.shape, self.dtype, self.length = id, shape, dtype, 0
         self._waiting: list[np.ndarray] = []
         self._written = 0
+        self._piece: np.ndarray | None = None  # of the file, that is being filled: as many rows as are stored together
 
     def append(self, rows: np.ndarray) -> int:
         """Add rows; returns the length that there was before."""
@@ -42,13 +43,36 @@ class GrowingDataset:
             rows = self._waiting[0] if len(self._waiting) == 1 else np.concatenate(self._waiting)
             self._waiting.clear()
             self.id.set_extent((self.length, *self.shape))
-            if self._written:
+            if not self._written:
+                self.id.write(h5s.ALL, h5s.ALL, rows)
+            elif not self._fits(rows):
                 space = self.id.get_space()
                 space.select_hyperslab((self._written, *(0 for _ in self.shape)), rows.shape)
                 self.id.write(h5s.create_simple(rows.shape), space, rows)
-            else:
-                self.id.write(h5s.ALL, h5s.ALL, rows)
-            self._written = self.length
+            self._note(rows)
+
+    def _fits(self, rows: np.ndarray) -> bool:
+        """Whether rows went into the piece that is being filled, which is then written as it lies: in half the time."""
+        piece, n = self._piece, len(rows)
+        if piece is None or not rows.size or rows.dtype != self.id.dtype:
+            return False
+        filled = self._written % len(piece)
+        if not filled or filled + n > len(piece):
+            return False
+        piece[filled : filled + n] = rows
+        self.id.write_direct_chunk((self._written - filled, *(0 for _ in self.shape)), piece)
+        return True
+
+    def _note(self, rows: np.ndarray) -> None:
+        """The piece after rows were written."""
+        if self._piece is None:
+            self._piece = np.zeros(self.id.get_create_plist().get_chunk(), self.dtype)
+        self._written, size = self.length, len(self._piece)
+        filled = self.length % size
+        if filled <= len(rows):  # it began within them
+            self._piece[:] = 0
+            if rows.size:
+                self._piece[:filled] = rows[len(rows) - filled :]
 
 
 class GrowingGroup:

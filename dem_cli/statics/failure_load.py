@@ -29,6 +29,7 @@ from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
+from dem_cli.statics.mechanism import follows
 from dem_cli.statics.trial_loads import TrialLoads
 from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_path
 
@@ -124,7 +125,8 @@ class LoadSearch:
         estimate, expected = min(estimate if estimate > 0.0 else settings.probe, self.limit), False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
-        levels = [share * estimate for share in settings.shares]
+        hinges = expected and answer.limits is not None and not answer.limits.slides
+        levels = [share * estimate for share in (settings.shares_of_hinges if hinges else settings.shares)]
         if expected:
             levels.append((1.0 - settings.short * self.resolution) * estimate)
             levels.append((1.0 + settings.beyond * self.resolution) * estimate)
@@ -204,15 +206,26 @@ class LoadSearch:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
         the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
 
-        So little above the bound a tall structure takes long to move. What only rocks, and so has one mechanism, is
-        pushed a little; where friction takes part, several may lie close together.
+        So little above the bound a tall structure takes long to move. Where nothing slides it is pushed a little, and
+        its motion compared with the mechanism of the bound: another one that lies as close may have set in as well.
         """
-        sim, answer, limits = self.sim, self.answer, self.answer.limits
-        pushed = 0.0 if limits is None or limits.slides else self.settings.pushed
+        limits = self.answer.limits
+        if limits is not None and not limits.slides and limits.associated is not None:
+            verdict = self._moves_on(load, self.settings.pushed)
+            if follows(self.sim, self.answer.standing, limits.associated.velocities):
+                return verdict
+            self.sim.restore(self.answer.standing)
+        return self._moves_on(load)
+
+    def _moves_on(self, load: float, pushed: float = 0.0) -> Verdict:
+        """Motion under a load from the highest equilibrium so far; pushed: what is put on besides, of the load."""
+        sim, shown = self.sim, self.settings.shown * self.answer.elastic * load
         sim.use_combined_damping()
         sim.set_load((1.0 + pushed) * load)
-        released = _released_in_motion(sim, self.budget, load, self.settings.shown * answer.elastic * load)
+        released = _released_in_motion(sim, self.budget, load, shown)
         sim.set_load(load)
+        if pushed:
+            sim.advance(1, slot.HOLD_LOAD)  # what is out of balance at the load itself
         return Verdict("failure", sim.unbalanced, released)
 
     def _creep(self, distance: float) -> float:

@@ -55,6 +55,19 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
     return {"failure_mode": mode, "friction_share": share, "mechanism": parts}
 
 
+def follows(sim: Simulation, held: SavedState, velocities: np.ndarray) -> bool:
+    """Whether blocks moved since a saved state as a mechanism says, and no other has set in besides.
+
+    velocities: of that mechanism, in any unit, (n_blocks, n_dof)
+    """
+    d, radii = sim.model.dimension, sim.shape.radii[:, None]
+    moved = np.column_stack([sim.bodies.positions - held.bodies.positions, rotations_since(sim, held.bodies) * radii])
+    rates = np.column_stack([velocities[:, :d], velocities[:, d:] * radii])
+    rest = moved - (moved * rates).sum() / (rates * rates).sum() * rates
+    most = np.linalg.norm(moved, axis=1).max(initial=0.0)
+    return bool(np.linalg.norm(rest, axis=1).max(initial=0.0) <= sim.settings.mechanism.follows * most)
+
+
 def moved_blocks(sim: Simulation) -> dict[str, Any]:
     """Blocks that went along in a collapse, by how far they are from where they started."""
     shift = np.sqrt((displacements(sim) ** 2).sum(axis=1))

@@ -217,6 +217,8 @@ def test_answer_without_a_failure_load(tmp_path):
 
 def test_compiling_is_said_at_once():
     stream = io.StringIO()
-    console.Progress(stream=stream).update("compiling (once)", 0.0, 0.0, None)
+    progress = console.Progress(stream=stream)
+    for _ in range(2):
+        progress.update("compiling (once)", 0.0, 0.0, None)
     console.Progress(stream=stream, quiet=True).update("compiling (once)", 0.0, 0.0, None)
     assert stream.getvalue() == "compiling (once)\n"

@@ -50,6 +50,21 @@ def test_bracket_is_as_narrow_as_asked(resolution):
     assert low <= 0.6 * (1 + 1e-6) <= high * (1 + 1e-4)
 
 
+def test_a_mechanism_a_little_above_the_failure_load_takes_no_part():
+    """Columns that turn over at 1/2 and at 1/2 · 1.001: what shows the failure of one does not move the other."""
+    near = tables(
+        BASE,
+        block("low", rectangle(-1, 0, 0, 2)),
+        block("high", rectangle(1, 0, 2, 2 / 1.001)),
+        friction=0.9,
+        analysis={"direction": [-1.0, 0.0]},
+    )
+    summary, _ = solve(near)
+    assert summary["failure_load_bracket"] == pytest.approx([0.5, 0.5], rel=2e-3)
+    assert summary["proof_of_failure"]["by"] == "limit analysis"
+    assert summary["mechanism"]["moving_blocks"] == {"count": 1, "first": ["low"]}
+
+
 @pytest.mark.parametrize("name", ["wall_21_mu075", "stack_bond_mu060"])
 def test_failure_is_the_motion_from_where_it_began(name):
     """Where the creep ends in a higher equilibrium than the loads did, that one lies further on than proven failure."""

@@ -37,6 +37,7 @@ class Progress:
         self._next = self.start + (_FIRST_BAR if self.on_terminal else _LINE_EVERY)
         self._pace = Pace()
         self._bar: Any = None
+        self._compiles = False  # that was said
 
     def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Say where the run stands; cheap enough to be called often."""
@@ -44,7 +45,9 @@ class Progress:
         self._pace.look(now, stage, fraction)
         if not self.quiet and stage.startswith(_COMPILING):  # said at once: it takes seconds
             self.stop()
-            print(stage, file=self.stream, flush=True)
+            if not self._compiles:
+                print(stage, file=self.stream, flush=True)
+            self._compiles = True
         elif not self.quiet and now >= self._next:
             self._next = now + (_BAR_EVERY if self.on_terminal else _LINE_EVERY)
             self._say(now, stage, load, displacement, fraction)

@@ -96,15 +96,16 @@ class KernelLowering(NativeLowering):
         return KernelLower
 
 
-def keep_compiled(function: Callable, compiled: Any) -> None:
-    """Keeps what numba has just compiled, if it can run without numba: it neither allocates nor raises."""
-    of, library = compiled.fndesc, compiled.library
+def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None:
+    """Keeps what numba compiled, if it can run without numba: it neither allocates nor raises.
+
+    of: numba's description of the function; code, module: of its object code, and LLVM's module that this was made of.
+    """
     kinds, entry = _kinds(of), of.llvm_cfunc_wrapper_name
     if not kinds:
         return
-    code = library._get_compiled_object()
     undefined = _undefined(code)
-    called = _called(str(library._final_module), entry) - _NEVER_DONE
+    called = _called(str(module), entry) - _NEVER_DONE
     needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))
     if entry in called and not any(_OF_PYTHON.match(name) for name in called):
         header = Header(kinds, _RESULTS[of.restype], entry, needed, sorted(undefined - set(needed)), 0)

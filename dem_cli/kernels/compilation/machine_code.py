@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import numba
+from llvmlite.binding import parse_bitcode
 from numba import literal_unroll, types
 from numba.core import event
 from numba.core.caching import FunctionCache
@@ -97,7 +98,18 @@ class KernelCache(FunctionCache):
         """For numba and, where it can, for itself."""
         super().save_overload(sig, data)
         if KERNEL:
-            keep_compiled(self._py_func, data)
+            library = data.library
+            keep_compiled(self._py_func, data.fndesc, library._get_compiled_object(), library._final_module)
+
+    def _load_overload(self, sig: Any, target_context: Any) -> Any:
+        """As numba's own; what is here only for numba is kept as well: it would not be asked for it otherwise."""
+        found = self._cache_file.load(self._index_key(sig, target_context.codegen()))
+        if found is None:
+            return None
+        if KERNEL:
+            (_, _, (code, bitcode)), of = found[:2]
+            keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
+        return self._impl.rebuild(target_context, found)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """As numba's own, which first gets ready to compile all that it knows: that takes as long as to load numba.

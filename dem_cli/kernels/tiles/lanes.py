@@ -81,3 +81,15 @@ def _take_frame(array, start, like):
         take(array, start + np.uint64(3) * ROW, like),
         take(array, start + np.uint64(6) * ROW, like),
     )
+
+
+def lowest_bit(bits):
+    """Place of the lowest bit that is set in a whole number; there is one."""
+    return (bits & -bits).bit_length() - 1
+
+
+@overload(lowest_bit)
+def _lowest_bit(bits):
+    from dem_cli.kernels.compilation.bits import lowest
+
+    return lambda bits: lowest(bits)

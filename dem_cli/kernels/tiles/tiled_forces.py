@@ -16,7 +16,7 @@ from dem_cli.kernels.contact_point import friction_work, plastic_slide
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
 from dem_cli.kernels.tiles.joint_tiles import TILES_AHEAD, TILES_OF_CHUNK
-from dem_cli.kernels.tiles.lanes import LANES, ROW, put, take, take_frame
+from dem_cli.kernels.tiles.lanes import LANES, ROW, lowest_bit, put, take, take_frame
 from dem_cli.kernels.vec import axpy, components, compose, load, norm, scale, store
 
 ONE, TWO = np.uint64(1), np.uint64(2)
@@ -146,7 +146,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
 
     @inline
     def press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation):
-        """Forces of one tile with any number of slots, left in `pushes`; returns whether something was lost.
+        """Forces of one tile with any number of slots, left in `pushes`; the lanes that lost something, as bits.
 
         begin, held, push: where its numbers, the state of its points and its pushes begin; motion, room, marked: where
         there is room for it in `moves`, `work` and `marks`.
@@ -194,7 +194,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 put(state, now + ROW + lane, shear)
                 put(marks, before + lane, old)
                 marks[before + T + lane] = normal if loses else -1.0
-                lossy |= 1 if loses else 0
+                lossy |= (1 if loses else 0) << i
                 work[sums + lane] += normal
                 put(work, rubs + lane, axpy(1.0, shear, take(work, rubs + lane, like[1:])))
                 put(work, twists + lane, add_moment_at(place, normal, shear, take(work, twists + lane, like_rotation)))
@@ -246,7 +246,7 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
             put(marks, before + D + lane, old_q)
             marks[before + T + lane] = push_p if loses_p else -1.0
             marks[before + D + T + lane] = push_q if loses_q else -1.0
-            lossy |= 1 if loses_p | loses_q else 0
+            lossy |= (1 if loses_p | loses_q else 0) << i
             twist = add_moment_at(q, push_q, rub_q, add_moment_at(p, push_p, rub_p, scale(0.0, like_rotation)))
             rub = axpy(1.0, rub_q, axpy(1.0, rub_p, scale(0.0, like[1:])))
             force = compose(frame, (0.0 + push_p) + push_q, rub, scale(0.0, like))
@@ -257,15 +257,16 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         return lossy
 
     @inline
-    def wear(tiles, first, held, count, before, moved, slides, lost, like, like_rotation):
-        """Slip paths of one tile where work is lost; adds that to `lost` [J].
+    def wear(tiles, lossy, first, held, count, before, moved, slides, lost, like, like_rotation):
+        """Slip paths of one tile in the lanes where work is lost; adds that to `lost` [J].
 
         first, held, before: where `numbers`, `state` and `marks` of its slots begin; moved[slides:]: slide and spin.
         """
         d, numbers, state, marks = len(like), tiles.numbers, tiles.state, tiles.marks
         D, T = np.uint64(d) * ROW, np.uint64(d - 1) * ROW
-        for i in range(LANES):
-            lane = np.uint64(i)
+        while lossy != 0:
+            lane = np.uint64(lowest_bit(lossy))
+            lossy &= lossy - 1
             for p in range(count):
                 mark = before + np.uint64(p) * D + lane
                 normal = marks[mark + T]
@@ -298,9 +299,9 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
         else:
             lossy = press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation)
             moved, slides = tiles.work, room + ROW
-        if lossy:
+        if lossy != 0:
             first = begin + of_tile
-            lost = wear(tiles, first, held, count, marked, moved, slides, lost, like, like_rotation)
+            lost = wear(tiles, lossy, first, held, count, marked, moved, slides, lost, like, like_rotation)
         return lost
 
     @inline

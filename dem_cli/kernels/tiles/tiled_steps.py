@@ -86,6 +86,45 @@ def _owner(tiles, chunk, members):
 
 
 @inline
+def _open(tiles, ledger, member, low, high):
+    """Sums of the steps before, into the first chunk and the first of the parts from low to high."""
+    for part in range(low, high):
+        tiles.lost_before[part] = ledger[FRICTION] if part == 0 else 0.0
+    if member == 0:
+        for chunk in range(tiles.books.shape[0]):
+            for k in range(N_LEDGER):
+                tiles.books[chunk, k] = ledger[k] if chunk == 0 else 0.0
+
+
+@inline
+def _close(tiles, ledger):
+    """Sums of all chunks and parts, in their order, into the ledger."""
+    for k in range(N_LEDGER):
+        ledger[k] = _total(tiles.books, k)
+    ledger[FRICTION] = 0.0
+    for part in range(tiles.lost.size):
+        ledger[FRICTION] += tiles.lost_before[part]
+
+
+@inline
+def _add_up(flat, books, control, mode, first, last, dt):
+    """What steers all blocks, of those with the degrees of freedom from first to last: powers, flow."""
+    velocities, forces, previous, dead_loads, live_loads, inverse_masses, _ = flat
+    i, j, dead, live = first, last, control[DEAD_FACTOR], control[LIVE_FACTOR]
+    if mode in (GUIDED, TILT_GUIDED, FIRE):
+        books[POWER], books[SPEED], books[FORCE] = powers(
+            velocities[i:j], forces[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j], dead, live
+        )
+    if mode in (GUIDED, TILT_GUIDED):
+        books[FLOW] = steered_flow(velocities[i:j], live_loads[i:j])
+    elif mode in (CREEP, TILT_CREEP):
+        books[FLOW] = driven_flow(
+            velocities[i:j], forces[i:j], previous[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j],
+            dead, live, control[DAMP], control[DAMP_CHANGE], dt,
+        )  # fmt: skip
+
+
+@inline
 def _drift(bodies, first, last, dt, like, like_rotation):
     """Positions and rotation vectors of some blocks from velocities; to first order rotations add up."""
     positions, orientations, velocities, d = bodies.positions, bodies.orientations, bodies.velocities, len(like)
@@ -162,12 +201,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         # Mean velocities and damping forces of one chunk at a time, each thread where nobody else writes.
         own = min(member * BLOCKS_OF_CHUNK, n_blocks)
         means, drags, steps_work = bodies.means[own * n_dof :], bodies.drags[own * n_dof :], tiles.lost_before
-        for part in range(part_low, part_high):
-            steps_work[part] = ledger[FRICTION] if part == 0 else 0.0
-        if member == 0:
-            for chunk in range(n_chunks):
-                for k in range(N_LEDGER):
-                    books[chunk, k] = ledger[k] if chunk == 0 else 0.0
+        _open(tiles, ledger, member, part_low, part_high)
         if n_steps > 0:
             take_up(joints, contacts, low, high, like, like_rotation)
         mean_load = 0.0
@@ -228,21 +262,9 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
                 dead, live = control[DEAD_FACTOR], control[LIVE_FACTOR]
             if creeps or mode == FIRE:
                 for chunk in range(n_chunks):
-                    if _owner(tiles, chunk, members)[0] != member:
-                        continue
-                    i, j = chunk * of_chunk, min((chunk + 1) * of_chunk, forces.size)
-                    if guided or mode == FIRE:
-                        books[chunk, POWER], books[chunk, SPEED], books[chunk, FORCE] = powers(
-                            velocities[i:j], forces[i:j], dead_loads[i:j], live_loads[i:j], inverse_masses[i:j],
-                            dead, live,
-                        )  # fmt: skip
-                    if guided:
-                        books[chunk, FLOW] = steered_flow(velocities[i:j], live_loads[i:j])
-                    elif creeps:
-                        books[chunk, FLOW] = driven_flow(
-                            velocities[i:j], forces[i:j], previous[i:j], dead_loads[i:j], live_loads[i:j],
-                            inverse_masses[i:j], dead, live, control[DAMP], control[DAMP_CHANGE], dt,
-                        )  # fmt: skip
+                    if _owner(tiles, chunk, members)[0] == member:
+                        i, j = chunk * of_chunk, min((chunk + 1) * of_chunk, forces.size)
+                        _add_up(flat, books[chunk], control, mode, i, j, dt)
                 met = _together(tiles, members, met)
                 if guided or mode == FIRE:
                     keep, steer = steering(_total(books, POWER), _total(books, SPEED), _total(books, FORCE), control)
@@ -261,11 +283,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
             give_back(joints, contacts, low, high, like)
         met = _together(tiles, members, met)
         if member == 0:
-            for k in range(N_LEDGER):
-                ledger[k] = _total(books, k)
-            ledger[FRICTION] = 0.0
-            for part in range(tiles.lost.size):
-                ledger[FRICTION] += steps_work[part]
+            _close(tiles, ledger)
             for k in range(N_CONTROL):
                 common[k] = control[k]
             common[UNBALANCED] = largest_unbalanced(previous, force_scales)

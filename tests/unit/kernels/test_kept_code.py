@@ -57,6 +57,14 @@ def test_kept_code_gives_what_compiled_code_gives(folder):
         assert once[3][-1, -1] == expected
 
 
+def test_what_numba_alone_has_is_kept_as_well(folder):
+    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+    for file in folder.iterdir():
+        file.unlink()
+    kernel(add_up.py_func)._made()(*arguments())  # by numba, from its own cache
+    assert {file.name: file.read_bytes() for file in folder.iterdir()} == before
+
+
 def test_each_thread_has_arguments_of_its_own(folder):
     kept = kept_kernel(add_up.py_func, arguments())
     expected = [add_up._made()(*arguments(3, float(k))) for k in range(40)]

@@ -41,3 +41,15 @@ def test_a_dataset_that_is_there_is_taken_unless_made_for_fewer_rows():
             "many": ((9, 2), 9),
         }
         assert file["many"][-1].tolist() == [16.0, 17.0]
+
+
+def test_rows_come_back_however_they_meet_the_pieces_of_the_file():
+    random = np.random.default_rng(1)
+    with h5py.File(io.BytesIO(), "w") as file:
+        group, rows = GrowingGroup(file, {}, 5), np.zeros((0, 2))
+        for count in (3, *random.integers(0, 12, 40)):
+            more = random.normal(size=(count, 2))
+            group.append("field", more)
+            group.write_out()
+            rows = np.concatenate([rows, more])
+            assert np.array_equal(file["field"][()], rows)

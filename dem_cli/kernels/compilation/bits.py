@@ -1,0 +1,21 @@
+"""Bits of whole numbers for compiled code: one instruction of the processor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+__all__ = ["lowest"]
+
+
+@intrinsic
+def lowest(typing_context: Any, bits: Any) -> Any:
+    """Place of the lowest bit that is set; there is one."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.cttz(arguments[0], cgutils.true_bit)
+
+    return types.int64(types.int64), code
