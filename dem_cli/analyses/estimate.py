@@ -21,7 +21,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.links.matrices import each
 from dem_cli.links.registry import LINKS
 from dem_cli.model.model import Model
-from dem_cli.model.scales import stiffness_scale
+from dem_cli.model.scales import largest_structure, stiffness_scale
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -48,6 +48,7 @@ NANOSECONDS = {  # per contact point and step, one core (scripts/benchmark), by 
     2: {"fixed": 10, "large": 20},
     3: {"fixed": 10, "large": 90},
 }
+LARGE = "the load is raised from there, and may be “at least …, not above …”"  # of a structure that is large
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
 
 
@@ -78,6 +79,7 @@ def describe(case: Case, model: Model) -> Rows:
         *_kinematics(wanted, moving, model),
         ("time step", _time_step(sim)),
         *_runs(case),
+        *_path(case, sim),
         ("cost", _cost(case, sim)),
         ("memory", _memory(sim)),
         ("load", _load(case, model)),
@@ -251,6 +253,17 @@ def _runs(case: Case) -> Rows:
     scale, (fewest, most) = scale_of(case, DEFAULT.safety), expected(case)
     named = "F" if case.analysis.of_strength else case.analysis.vary
     return [("runs", f"{fewest} to {most}, {named} between {scale.low:g} and {scale.high:g}")]
+
+
+def _path(case: Case, sim: Simulation) -> Rows:
+    """Of a pushover of a large structure: its failure load is where a path leads, at least; failure is not proved."""
+    d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
+    if case.analysis.kind != "pushover" or not DEFAULT.limit.too_large(blocks, d):
+        return []
+    if sim.kinematics != "fixed" or sim.law.bonded or sim.properties.rough or sim.links or case.analysis.step:
+        return []
+    way = "its path" if DEFAULT.limit.of_path(blocks, d) is DEFAULT.limit else "a smoothed path"
+    return [("path", f"one structure of {blocks:,} blocks: {way} leads next to failure, in a minute or two; {LARGE}")]
 
 
 def _cost(case: Case, sim: Simulation) -> str:

@@ -82,8 +82,6 @@ class LoadSearchSettings:
 class WarmStartSettings:
     """The path of a static solver, as a start or beside it: for which sizes, and when it has come to failure."""
 
-    large: int = 1600  # blocks of one structure, beyond which the path is smoothed, and where it ends is the answer
-    large_in_space: int = 1000  # the same in 3D
     repeated: int = 1000  # blocks of one structure, beyond which no load is raised again in small steps
     flat: float = 1.0  # resolutions: growth of the load along the path, over that of displacement, that counts as none
     drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure

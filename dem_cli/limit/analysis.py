@@ -19,7 +19,7 @@ from dem_cli.limit.cone import envelope_of, friction_of, steep
 from dem_cli.limit.matrices import NO_LINKS, Structure, structure_of
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
-from dem_cli.model.scales import smallest_edge
+from dem_cli.model.scales import largest_structure, smallest_edge
 
 if TYPE_CHECKING:
     from dem_cli.laws.envelope import Envelope
@@ -154,6 +154,8 @@ def _path(
     """
     from dem_cli.limit.path import trace  # with SciPy's solvers
 
+    blocks = largest_structure(structure.joints.blocks, structure.model.fixed)
+    settings = settings.of_path(blocks, structure.model.dimension)
     path, lowest = trace(structure, friction, progress=progress, settings=settings), associated.lower
     if path.load is None or lowest is None or slides(structure, friction, associated, settings.associated):
         return path

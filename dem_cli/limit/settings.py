@@ -31,6 +31,8 @@ class PathSettings:
     easier: tuple[tuple[float, int], ...] = ((1.0, 0), (1e2, 0), (1.0, 4), (1e2, 4), (1e4, 4))
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
     smoothed_effort: float = 5e9  # the same of a path that is smoothed, × points to the power of 1.5: some 90 s
+    large: int = 1600  # blocks of one structure, beyond which the path is smoothed, and where it ends is the answer
+    large_in_space: int = 1000  # the same in 3D, where it is not smoothed
     most: int = 2500  # factorisations before giving up
     most_in_space: int = 1200  # the same in 3D: what ends at all ends by then
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
@@ -178,6 +180,14 @@ class LimitSettings:
     def of_increment(self, dimension: int, folds: int = 0) -> InteriorPointSettings:
         """The interior point in 2D or 3D, which may go round so many folds."""
         return {2: self.round_folds, 3: self.round_folds_in_space}[dimension] if folds else self.interior_point
+
+    def too_large(self, blocks: int, dimension: int) -> bool:
+        """Whether a path takes too many factorisations for a structure of so many blocks to be followed to its end."""
+        return blocks > {2: self.path.large, 3: self.path.large_in_space}[dimension]
+
+    def of_path(self, blocks: int, dimension: int) -> LimitSettings:
+        """Those of the path of a structure of so many blocks: one that is too large is smoothed, in the plane."""
+        return self.smoothed() if dimension == 2 and self.too_large(blocks, dimension) else self
 
     def smoothed(self) -> LimitSettings:
         """For large structures: increments end on the central path, in equilibrium, the corner of friction rounded off.

@@ -127,7 +127,7 @@ class RigidLimits:
         return trace(
             structure, friction, plateau,
             progress=lambda load, _: clock.progress("following the path to failure", load, 0.0, None),
-            settings=settings.limit.smoothed() if self.too_large and self.sim.model.dimension == 2 else settings.limit,
+            settings=settings.limit.of_path(self.largest, self.sim.model.dimension),
         )  # fmt: skip
 
     @cached_property
@@ -138,8 +138,7 @@ class RigidLimits:
     @property
     def too_large(self) -> bool:
         """Whether a path takes too many factorisations to be followed to its end: in the plane it is smoothed."""
-        warm_start = self.job.settings.warm_start
-        return self.largest > {2: warm_start.large, 3: warm_start.large_in_space}[self.sim.model.dimension]
+        return self.job.settings.limit.too_large(self.largest, self.sim.model.dimension)
 
     def on_points(self, values: np.ndarray, otherwise: np.ndarray | float = 0.0) -> np.ndarray:
         """Values of the points that touch at the start among all points, (n_points, ...); otherwise: of the others."""

@@ -46,7 +46,8 @@ def test_structures_of_any_size_are_raised_from_gravity(name):
 def test_large_structures_go_on_from_where_their_smoothed_path_ends(steps):
     """Associated 0.56359, path under the exact law 0.55666; without steps for trials the load of the path is held."""
     search = replace(DEFAULT.load_search, effort_of_large=1e4 * steps)
-    settings = replace(DEFAULT, warm_start=replace(DEFAULT.warm_start, large=50), load_search=search)
+    path = replace(DEFAULT.limit.path, large=50)
+    settings = replace(DEFAULT, limit=replace(DEFAULT.limit, path=path), load_search=search)
     summary = run("wall_21", "structure.0.courses=10", "structure.0.blocks_per_course=10", settings=settings)
     assert summary["start"]["kind"] == "path"
     assert "smoothed" in summary["start"]["note"]
@@ -61,7 +62,8 @@ def test_large_structures_go_on_from_where_their_smoothed_path_ends(steps):
 
 def test_large_structures_in_space_go_on_from_where_their_path_ends():
     """The path is that under the exact law, as far as it came; raised from gravity 0.6460 to 0.6464."""
-    settings = replace(DEFAULT, warm_start=replace(DEFAULT.warm_start, large_in_space=10))
+    path = replace(DEFAULT.limit.path, large_in_space=10)
+    settings = replace(DEFAULT, limit=replace(DEFAULT.limit, path=path))
     in_space = ("dimension=3", "analysis.direction=[1.0, 0.0, 0.0]", "reference=[]")
     summary = run("wall_21_mu075", *in_space, settings=settings)
     assert (summary["start"]["kind"], summary["status"]) == ("path", "ok")

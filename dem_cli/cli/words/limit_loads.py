@@ -41,7 +41,7 @@ def _associated(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
 def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     status, spent = limits.get("non_associated_status"), float(limits.get("non_associated_seconds") or 0.0)
     if limits.get("non_associated") is not None:
-        how = f"residual {limits['non_associated_residual']:.1g} W, {seconds(spent)}"
+        how = f"{_smoothed(limits)}residual {limits['non_associated_residual']:.1g} W, {seconds(spent)}"
         final = limits.get("non_associated_final_load")
         if final is not None and final < 0.98 * limits["non_associated"]:
             unseen = "in the first increment, so that its peak is between two loads, " * _at_once(limits)
@@ -49,8 +49,13 @@ def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
         return [("non-associated", f"{load_text(limits['non_associated'])}  ({how})")]
     if limits.get("non_associated_at_least") is not None:
         at_least = load_text(limits["non_associated_at_least"])
-        return [("non-associated", f"at least {at_least}  ({status}, {seconds(spent)})")]
+        return [("non-associated", f"at least {at_least}  ({_smoothed(limits)}{status}, {seconds(spent)})")]
     return [("non-associated", str(status))] if str(status).startswith("not looked for") else []
+
+
+def _smoothed(limits: Mapping[str, Any]) -> str:
+    """A word where the corner of friction was rounded off on the path, as for large structures."""
+    return "smoothed path: an estimate, " if limits.get("non_associated_smoothing") else ""
 
 
 def _at_once(limits: Mapping[str, Any]) -> bool:

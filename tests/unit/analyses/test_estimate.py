@@ -45,6 +45,12 @@ def test_wall_of_231_blocks():
     assert found["joint dry"] == "431 bed joints, 209 others"
 
 
+def test_a_large_wall_is_raised_from_a_smoothed_path():
+    assert "path" not in rows("wall_21")
+    said = rows("wall_21", "structure.0.courses=41", "structure.0.blocks_per_course=40")["path"]
+    assert said.startswith("one structure of 1,661 blocks: a smoothed path leads next to failure")
+
+
 def test_the_step_that_real_masses_would_allow():
     # A free block on two springs K/2: the bound of the highest frequency is the one of Gershgorin.
     found = rows("sliding_block", "joints.dry.kn=1e9", "joints.dry.ks=1e9", "analysis.kinematics='fixed'")

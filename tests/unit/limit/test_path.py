@@ -10,8 +10,9 @@ import pytest
 from engine import block, rectangle, scene
 from engine.limits import mirrored_model, on_a_base, rotated, tower
 
+from dem_cli.cli.words.limit_loads import limit_rows
 from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import start_structure
+from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment
@@ -240,3 +241,13 @@ def test_a_smoothed_path_ends_near_the_load_of_the_exact_one():
     reactions = np.column_stack([smoothed.normal, smoothed.shear]).ravel()
     assert np.abs(structure.imbalance(reactions, smoothed.load)).max() < 1e-6
     assert (np.abs(smoothed.shear[:, 0]) <= friction * smoothed.normal * (1.0 + 1e-6)).all()
+
+
+@pytest.mark.parametrize("large", [20, 21])
+def test_limit_analysis_smooths_the_paths_that_a_run_does(large):
+    made = scene(CASES / "wall_21_mu075.toml")
+    settings = replace(DEFAULT_LIMIT, path=replace(DEFAULT_LIMIT.path, large=large))
+    found = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case), settings=settings)
+    assert (found.non_associated.smoothing > 0.0) == (large < 21)
+    assert found.non_associated.load == pytest.approx(0.645963, rel=2e-3)
+    assert ("smoothed path: an estimate" in dict(limit_rows(found.summary()))["non-associated"]) == (large < 21)
