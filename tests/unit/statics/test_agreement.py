@@ -50,8 +50,7 @@ def test_path_that_a_search_began_at_is_no_second_history():
 
 @pytest.mark.parametrize(
     ("path", "finished", "kind", "said"),
-    [(0.317, False, "path", True), (0.3602, False, "path", False), (0.317, True, "path", False)]
-    + [(0.317, False, "gravity", False)],
+    [(0.317, False, "path", True), (0.3602, False, "path", False), (0.317, True, "path", False)],
 )
 def test_load_raised_beyond_an_unfinished_path_is_one_history_alone(path, finished, kind, said):
     raised = search(path, finished, slides=True)
