@@ -100,12 +100,25 @@ def _reached(search: FailureLoad) -> str:
     return "reached from the zero-dilation path: at least"
 
 
+def _alone_beyond_its_path(search: FailureLoad, resolution: float) -> bool:
+    """Whether the load was raised beyond the end of a path that was not followed to a plateau: one history alone."""
+    path = search.limits.path if search.start.get("kind") == AT_PATH and search.limits is not None else None
+    if path is None or path.load is None or path.finished or not search.found or search.wide:
+        return False
+    return search.carried > (1.0 + resolution) * path.load and not unique(search, resolution)
+
+
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
     """Words of warning where histories differ, or where the bracket is wider than asked for."""
     said = []
     if spread is not None:
         share = 100.0 * (spread["highest"] - spread["lowest"]) / spread["highest"]
         said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
+    if _alone_beyond_its_path(search, resolution):
+        said.append(
+            f"the path was not followed to its end: from there the load was raised in steps to {search.carried:.5g}, "
+            "and no second history says whether others end lower"
+        )
     if search.wide and search.width is not None:
         said.append(
             f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import CREEP, PATH, histories, load_range
+from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range
 
 RESOLUTION = 0.002
 
@@ -46,3 +46,13 @@ def test_path_that_a_search_began_at_is_no_second_history():
     assert load_range(begun_there, RESOLUTION)["why"].startswith(
         "0.36 from the end of the zero-dilation path, at least 0.4"
     )
+
+
+@pytest.mark.parametrize(
+    ("path", "finished", "kind", "said"),
+    [(0.317, False, "path", True), (0.3602, False, "path", False), (0.317, True, "path", False)],
+)
+def test_load_raised_beyond_an_unfinished_path_is_one_history_alone(path, finished, kind, said):
+    raised = search(path, finished, slides=True)
+    raised.start = {"kind": kind}
+    assert any("no second history" in word for word in doubts(raised, RESOLUTION, None)) is said
