@@ -172,8 +172,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")
     elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
-        most = search.bound or search.scale
-        load_search.run_again_in_small_steps(most * 2.0 ** ceil(log2(search.carried / most)))
+        load_search.run_again_in_small_steps(2.0 ** ceil(log2(search.carried)))
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")
 

@@ -47,6 +47,7 @@ class Path:
     live_displacements: list[float] = field(default_factory=list)  # live loads × displacements since before gravity [J]
     highest: int = 0  # increment at which the load was highest: the state is that
     factorisations: int = 0
+    rest: float | None = None  # multiplier at its first plateau, where the load was seen to be higher beyond
     smoothing: float = 0.0  # products that were left on the way, over the square of the largest normal force
 
     @property
@@ -79,6 +80,7 @@ class Path:
             "displacement": self.reached[self.highest] if self.reached else None,
             "final_load": self.loads[-1] if self.loads else None,
             "highest_increment": self.highest if self.loads else None,
+            "first_plateau": self.rest,
             "factorisations": self.factorisations,
             **({"smoothing": self.smoothing} if self.smoothing else {}),
         }
@@ -229,6 +231,7 @@ def _follow(
             higher = _higher_ahead(path, walk, problem.live_scale, plateau)
             if walk.reached >= higher:
                 break
+            path.rest = path.load if path.rest is None else path.rest
         if not walk.go_on():
             break
         assert walk.last is not None

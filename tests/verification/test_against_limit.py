@@ -72,8 +72,15 @@ def test_dilating_joints_hold_a_stack_bond_that_real_ones_do_not():
     assert row.associated.load > 1.25 / 3
 
 
-def test_dem_agrees_with_the_path_round_a_fold():
-    agree("uneven_courses_mu050")
+def test_a_load_that_is_raised_goes_on_where_the_path_falls_from_a_peak():
+    """Beyond the 1 % that others are held to, as KNOWN has it; the run names both loads."""
+    row = methods.measure(VERIFICATION / "uneven_courses_mu050.toml")
+    (problem, as_run) = criteria.problems(row)
+    assert "DEM raised from gravity differs from the path by +1." in problem
+    assert "DEM as dem run differs from the path by +1." in as_run
+    assert row.path.load == pytest.approx(0.4050, rel=1e-3)
+    assert row.gravity.load == pytest.approx(0.4119, rel=2e-3)  # in 100 to 800 steps
+    assert any("methods differ by 1." in text for text in row.warnings)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)

@@ -42,6 +42,8 @@ def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
     status, spent = limits.get("non_associated_status"), float(limits.get("non_associated_seconds") or 0.0)
     if limits.get("non_associated") is not None:
         how = f"{_smoothed(limits)}residual {limits['non_associated_residual']:.1g} W, {seconds(spent)}"
+        if (rest := limits.get("non_associated_first_plateau")) is not None:
+            how = f"rests at {load_text(rest)} on the way, {how}"
         final = limits.get("non_associated_final_load")
         if final is not None and final < 0.98 * limits["non_associated"]:
             unseen = "in the first increment, so that its peak is between two loads, " * _at_once(limits)
