@@ -54,7 +54,7 @@ class LoadSearchSettings:
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
-    pushed: float = 2e-3  # of that load, put on besides as long as it is shown: where nothing slides
+    pushed: float = 1e-3  # of that load, put on besides as long as it is shown: where nothing slides
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
     likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides
@@ -73,6 +73,7 @@ class LoadSearchSettings:
     trial_of_large: int = 150_000  # steps of its trials
     step_of_large: float = 0.12  # and the first step of its load, over what is left to the bound
     below_of_large: float = 5e-4  # of the load of its path, where that is held first, if not as far below as others
+    beyond_stiff: float = 2.0  # times the load of stiff joints, that an estimate is at most where geometry moves
     softer: float = 10.0  # joints that show how much stiffness matters where geometry moves
     softer_steps: float = 1.0  # of the steps of the search, that this may take, or of a trial
     widest: float = 0.1  # bracket, over its load, that is still given as an answer where it cannot be narrowed

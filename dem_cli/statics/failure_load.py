@@ -59,7 +59,7 @@ class LoadSearch:
         self.longest = None if wanted.longest is None else wanted.longest / scale
         self.plateau = np.inf  # load from which on a path is known to grow no more with displacement
         self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
-        self.on_stiff_joints = np.inf  # load that no estimate exceeds: where joints are soft a creep throws blocks
+        self.on_stiff_joints = np.inf  # load of joints that are stiff, where geometry moves: a creep may throw blocks
         self.first_step = sim.steps
         answer.scale, answer.limit = scale, self.limit * scale
 
@@ -123,7 +123,8 @@ class LoadSearch:
         self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
         estimate = self._creep(settings.reach * answer.compliance)
         sim.restore(answer.standing)
-        estimate = min(estimate if estimate > 0.0 else settings.probe, self.limit, self.on_stiff_joints)
+        most = min(self.limit, settings.beyond_stiff * self.on_stiff_joints)
+        estimate = min(estimate if estimate > 0.0 else settings.probe, most)
         expected = False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
