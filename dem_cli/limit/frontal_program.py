@@ -54,10 +54,12 @@ class Feasible(NamedTuple):
 
     def lengths(self, step: Feasible) -> tuple[float, float]:
         """How far a step may go until something is no more positive, at most 1: velocities, forces."""
-        return tuple(
-            min(1.0, float((-values / np.minimum(change, -1e-300)).min(initial=1.0)))
-            for values, change in ((self.slack, step.slack), (self.amounts, step.amounts))
-        )  # type: ignore[return-value]
+        return _to_zero(self.slack, step.slack), _to_zero(self.amounts, step.amounts)
+
+
+def _to_zero(values: np.ndarray, change: np.ndarray) -> float:
+    """Share of a change, at most 1, after which the first of positive values is nothing."""
+    return min(1.0, float((-values / np.minimum(change, -1e-300)).min(initial=1.0)))
 
 
 def is_linear(program: Program) -> bool:
