@@ -8,6 +8,7 @@ import numpy as np
 
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
+from dem_cli.engine.placement import moves
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry.rotation import swept
 
@@ -24,10 +25,10 @@ def set_initial(case: Case, sim: Simulation) -> None:
     for table in case.initial:
         chosen = _chosen(sim.model, table)
         if table.tilt:
-            sim.turn(chosen, np.array(table.turn), _pivot(sim, chosen, np.array(table.turn)))
-        sim.displace(chosen, np.array(table.displacement))
-        sim.throw(chosen, np.array(table.velocity))
-        sim.find_faces()
+            moves.turn(sim, chosen, np.array(table.turn), _pivot(sim, chosen, np.array(table.turn)))
+        moves.displace(sim, chosen, np.array(table.displacement))
+        moves.throw(sim, chosen, np.array(table.velocity))
+        moves.find_faces(sim)
     _check_apart(case, sim, rest)
 
 
@@ -43,8 +44,8 @@ def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
     turn: counter-clockwise, in space axis times angle (3,) [rad].
     """
     turn = np.atleast_1d(turn)
-    sim.turn(chosen, turn, _pivot(sim, chosen, turn))
-    sim.find_faces()
+    moves.turn(sim, chosen, turn, _pivot(sim, chosen, turn))
+    moves.find_faces(sim)
 
 
 def _check_apart(case: Case, sim: Simulation, rest: float) -> None:

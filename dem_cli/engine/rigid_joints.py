@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.compatibility import compatibility
+from dem_cli.engine.placement import moves
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
@@ -61,7 +62,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
     """
     closed = np.zeros(len(sim.joints.kn))
     closed[points] = -sim.measured().gaps[points]
-    sim.shift(_motion_that_opens(sim, closed))
+    moves.shift(sim, _motion_that_opens(sim, closed))
     gaps = sim.measured().gaps
     closure = np.minimum(gaps, 0.0)  # of open points: they stay open
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]

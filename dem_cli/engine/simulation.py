@@ -8,19 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.contact.detect import block_shape, strained_corners, world_corners
+from dem_cli.contact.detect import block_shape
 from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
-from dem_cli.engine.clearances import play_of_start
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
+from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.tracking import JointTracking
-from dem_cli.geometry.inertia import mobilities
-from dem_cli.geometry.rotation import oriented_as, rotation_vectors, turned_as_one, turned_further, turns_of
+from dem_cli.geometry.rotation import rotation_vectors
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
@@ -30,9 +29,7 @@ from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, joined
 from dem_cli.model.model import Model
-from dem_cli.model.quadratic_modes import bent_by
 from dem_cli.model.scales import depth, origin_of, smallest_edge
-from dem_cli.model.uniform_strain import covectors_of, gradients_of
 from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
 
@@ -354,7 +351,7 @@ class Simulation:
         self.loads.speed_limits[:] = limit
         self.loads.speed_limits[:, self.model.rotations] /= self.shape.radii[:, None]
 
-    # -- what analyses write -----------------------------------------------------------------------
+    # -- what analyses write (where blocks are put: engine/placement/moves.py) --------------------------
 
     def set_dead_share(self, share: float) -> None:
         """Dead loads times a share, while they are put on."""
@@ -371,106 +368,6 @@ class Simulation:
     def move_supports(self, velocities: np.ndarray) -> None:
         """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""
         self.bodies.velocities[self.model.fixed, : velocities.shape[1]] = velocities[self.model.fixed]
-
-    def displace(self, blocks: np.ndarray, displacement: np.ndarray) -> None:
-        """Moves blocks where they are put [m], (d,); `find_faces` when all are in place."""
-        self.bodies.positions[blocks] += displacement
-
-    def turn(self, blocks: np.ndarray, rotation: np.ndarray | float, about: np.ndarray) -> None:
-        """Turns blocks as one about a point (d,): counter-clockwise, in space by axis times angle (3,) [rad]."""
-        bodies = self.bodies
-        bodies.positions[blocks] = about + turned_as_one(bodies.positions[blocks] - about, rotation)
-        bodies.orientations[blocks] = turned_further(bodies.orientations[blocks], rotation)
-
-    def shift(self, motion: np.ndarray) -> None:
-        """Moves all blocks back by small displacements (n_blocks, n_dof) [m, rad]. Forces of joints stay.
-
-        Links become shorter or longer by it: that changes their forces, and what they store comes from outside.
-        """
-        before = elastic_energy_of_links(self.links)
-        for link in self.links:
-            link.follow(motion, self.bodies)
-        self.ledger[slot.EXTERNAL] += elastic_energy_of_links(self.links) - before
-        bodies, d, spins = self.bodies, self.model.dimension, motion[:, self.model.rotations]
-        bodies.positions[:] += motion[:, :d]
-        bodies.orientations[:] = turned_further(bodies.orientations, spins)
-        self._follow()
-        self.taken_back += motion
-        angles = np.sqrt((spins**2).sum(axis=1))
-        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
-
-    def move_to(self, motion: np.ndarray, shear: np.ndarray, load: float, friction: float) -> None:
-        """Moves all blocks, at rest, by finite displacements (n_blocks, n_dof) [m, rad] to a state found elsewhere.
-
-        shear: forces along the tangents there [N], (n_points, d − 1); load: internal multiplier there; friction: work
-        that friction took on the way [J]. Loads are booked as growing in proportion; what of their work neither
-        friction nor springs have counts as numerical damping.
-        """
-        bodies, d, spins, before = (
-            self.bodies,
-            self.model.dimension,
-            motion[:, self.model.rotations],
-            self.elastic_energy(),
-        )
-        mean = 0.5 * (self.load + load)
-        applied = self.loads.dead + mean * self.loads.live
-        bodies.positions[:] += motion[:, :d]
-        bodies.orientations[:] = turned_further(bodies.orientations, spins)
-        bodies.velocities[:] = 0.0
-        self._follow()
-        self.contacts.shear[:] = shear
-        gaps = self.measured().gaps
-        self.contacts.gaps[:] = gaps
-        self.contacts.normal[:] = np.maximum(self.joints.kn * (self.contacts.closure - gaps), 0.0)
-        self.set_load(load)
-        given = float((applied[:, : motion.shape[1]] * motion).sum())
-        self.ledger[slot.EXTERNAL] += given
-        self.ledger[slot.LIVE] += mean * float((self.loads.live[:, : motion.shape[1]] * motion).sum())
-        self.ledger[slot.FRICTION] += friction
-        self.ledger[slot.DAMPING] += given - friction - (self.elastic_energy() - before)
-        self.ledger[slot.CONTACT] -= given
-        angles = np.sqrt((spins**2).sum(axis=1))
-        bodies.travel[:] += np.sqrt((motion[:, :d] ** 2).sum(axis=1)) + self.shape.radii * angles
-        if self.tracking.due(bodies):
-            self.detect()
-
-    def throw(self, blocks: np.ndarray, velocity: np.ndarray) -> None:
-        """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""
-        self.bodies.velocities[blocks] = velocity
-
-    def find_faces(self) -> None:
-        """Corners and joints of blocks that were displaced or turned."""
-        self._follow()
-        self.bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
-        self.detect()
-
-    def _follow(self) -> None:
-        """Takes along what goes with the blocks to where they were put: corners, turns, mobilities."""
-        bodies, shape = self.bodies, self.shape
-        bodies.turns[:] = turns_of(bodies.orientations)
-        if self.model.n_modes:
-            bodies.gradients[:] = gradients_of(bodies.modes, shape.radii, bodies.turns)
-            if self.model.dimension == 3:
-                bodies.covectors[:] = covectors_of(bodies.gradients)
-            bodies.bent[:] = bent_by(bodies.modes, self.model.mode_shapes)
-            bodies.corners[:] = strained_corners(shape, bodies)
-        else:
-            bodies.corners[:] = world_corners(shape, bodies.positions, bodies.orientations)
-        bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
-
-    def place(self, normal: np.ndarray, shear: np.ndarray, gaps: np.ndarray, displacements: np.ndarray) -> None:
-        """A state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all blocks.
-
-        displacements: (n_blocks, n_dof) [m, rad]. The books start anew with `open_books`.
-        """
-        d = self.model.dimension
-        self.contacts.normal[:], self.contacts.shear[:], self.contacts.gaps[:] = normal, shear, gaps
-        self.bodies.positions[:] = self.reference_positions + displacements[:, :d]
-        self.bodies.orientations[:] = oriented_as(self.bodies.orientations, displacements[:, self.model.rotations])
-        self.bodies.velocities[:] = 0.0
-        self.bodies.modes[:] = 0.0
-        if self.kinematics == "large":
-            self._follow()
 
     def open_books(self, friction: float) -> None:
         """A new ledger, in which the springs' energy and what friction took [J] were given from outside."""

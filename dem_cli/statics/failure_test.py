@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.engine import measures
-from dem_cli.engine.clearances import beyond
 from dem_cli.engine.measures import free_falls
+from dem_cli.engine.placement.clearances import beyond
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation

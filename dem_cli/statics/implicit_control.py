@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.contact.joints import only_points
+from dem_cli.engine.placement import moves
 from dem_cli.errors import UsageError
 from dem_cli.statics.displacement_control import DisplacementControl, Followed
 
@@ -147,7 +148,7 @@ class ImplicitControl(DisplacementControl):
         shear = self.sim.contacts.shear.copy()
         shear[kept] = found.shear.reshape(-1, int(kept.sum())).T * problem.weight
         motion = on_blocks(problem.displacements(found.displacements))
-        self.sim.move_to(motion, shear, found.load * problem.live_scale / self.sim.live_scale, friction)
+        moves.move_to(self.sim, motion, shear, found.load * problem.live_scale / self.sim.live_scale, friction)
 
 
 class StiffControl(ImplicitControl):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.engine.placement import moves
 from dem_cli.statics.rigid_limits import RigidLimits
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class WarmStart(NamedTuple):
         sim.set_load(self.load / sim.live_scale)
         share = sim.dead_share  # a tilted table has less of all loads
         gaps = np.where(self.normal > 0.0, -share * self.normal / sim.joints.kn, self.gaps)
-        sim.place(share * self.normal, share * self.shear, gaps, self.displacements)
+        moves.place_at_rest(sim, share * self.normal, share * self.shear, gaps, self.displacements)
         given = float((sim.loads.dead * self.displacements).sum()) + self.work
         sim.open_books(max(given - sim.elastic_energy(), 0.0))
 

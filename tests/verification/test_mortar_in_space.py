@@ -14,6 +14,7 @@ from studies.space.structures import box, tables
 
 from dem_cli.contact.spatial_motion import place
 from dem_cli.engine.budget import Budget
+from dem_cli.engine.placement import moves
 from dem_cli.errors import SolverError
 from dem_cli.geometry import polygon
 from dem_cli.kernels.records import FIXED_TO_B
@@ -94,7 +95,7 @@ def test_area_and_first_moment_stay_those_of_the_overlap(shift):
     sim = simulation(on_bed(analysis={"kind": "gravity"}), kinematics="large")
     block = sim.model.block_ids.index("b")
     for _ in range(20):
-        sim.displace(np.array([block]), np.array([*shift, 0.0]) / 20.0)
+        moves.displace(sim, np.array([block]), np.array([*shift, 0.0]) / 20.0)
         sim.bodies.corners[sim.shape.corner_blocks == block] += np.array([*shift, 0.0]) / 20.0
         sim.geometry.markers[:] = np.nan
         place(sim.joints, sim.geometry, sim.contacts, sim.bodies)

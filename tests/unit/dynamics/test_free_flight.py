@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from dem_cli.dynamics.initial_state import tilt
 from dem_cli.engine import measures
 from dem_cli.engine.dynamic import DynamicSimulation
+from dem_cli.engine.placement import moves
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.viscous import Damping
 from dem_cli.geometry.inertia import along_principal
@@ -102,7 +103,7 @@ def test_a_thrown_block_is_where_eulers_equations_take_it():
         sim = flying(WEDGE, step)
         sim.loads.dead[FREE, 2], sim.loads.dead[FREE, 3:] = -9.81 * sim.model.masses[FREE], torque
         start = sim.bodies.positions[FREE].copy()
-        sim.throw(np.array([FREE]), velocity)
+        moves.throw(sim, np.array([FREE]), velocity)
         sim.start_moving()
         first = fly(sim, round(time / step))[0]
         assert first[1] == pytest.approx(velocity, rel=1e-12)

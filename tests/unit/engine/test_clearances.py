@@ -14,7 +14,7 @@ from dem_cli.contact.detect import find_joints
 from dem_cli.contact.edges import widest_gaps
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.planar import microrotations
-from dem_cli.engine.clearances import beyond, gap_play, play
+from dem_cli.engine.placement.clearances import beyond, gap_play, play
 from dem_cli.engine.settings import DEFAULT
 
 CLEARANCE = DEFAULT.clearance

@@ -13,6 +13,7 @@ from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.time_step import time_step
 from dem_cli.engine import measures
 from dem_cli.engine.dynamic import DynamicSimulation
+from dem_cli.engine.placement import moves
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
 from dem_cli.geometry.rotation import moments, turning, turns_of
@@ -112,7 +113,7 @@ def test_loads_at_points_turn_on_the_way():
     sim = column(2, Damping(), lift=2.0)
     sim.dead_loads[N, 3:] = 1.0, 200.0, 300.0
     sim.begin(1e-4)
-    sim.throw(np.array([N]), np.array([0.0, 0.0, 20.0, 0.0, 0.0, 0.0]))
+    moves.throw(sim, np.array([N]), np.array([0.0, 0.0, 20.0, 0.0, 0.0, 0.0]))
     sim.shake(sim._still(120), 120, sim.watch(np.array([N]), 120, 2))
     assert sim.bodies.orientations[N, 0] > 0.2
     now = turned_loads(sim.strained, sim.dead_loads, sim.turns_of_means)

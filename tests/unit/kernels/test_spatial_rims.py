@@ -12,6 +12,7 @@ import pytest
 from engine import simulation, steps
 from scipy.spatial.transform import Rotation
 
+from dem_cli.engine.placement import moves
 from dem_cli.geometry.rotation import quaternions
 
 DEEP = 1e-4  # m that the upper block is pressed into the lower one
@@ -49,7 +50,7 @@ class Pair:
         sim, arm = self.sim, turned.apply([0.0, 0.0, 0.5])
         sim.bodies.positions[1] = self.centre + shift + arm
         sim.bodies.orientations[1] = quaternions(turned.as_rotvec()[None])[0]
-        sim.find_faces()
+        moves.find_faces(sim)
         sim.bodies.velocities[:] = 0.0
         steps(sim, 1)
         force = sim.bodies.forces[1].copy()

@@ -9,6 +9,7 @@ from studies.deformable import elastic_wall
 
 from dem_cli.engine import measures
 from dem_cli.engine.monitors import Monitors
+from dem_cli.engine.placement import moves
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError
@@ -86,8 +87,8 @@ def test_a_bent_column_that_turns_stays_as_bent_as_it_was():
     sim = at_rest(column(2e3, "coulomb", 1e5), "large")
     before, gaps, everything = sim.bodies.modes.copy(), sim.measured().gaps.copy(), np.arange(sim.model.n_blocks)
     assert np.abs(before[:, 3:]).max() > 0.05 * np.abs(before).max()
-    sim.turn(everything, np.pi / 2, np.zeros(2))
-    sim.find_faces()
+    moves.turn(sim, everything, np.pi / 2, np.zeros(2))
+    moves.find_faces(sim)
     assert sim.measured().gaps == pytest.approx(gaps, rel=1e-6, abs=1e-6 * np.abs(gaps).max())
     sim.loads.dead[:, :2] = sim.loads.dead[:, :2] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
     sim.advance(400, slot.HOLD_LOAD)

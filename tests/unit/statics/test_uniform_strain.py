@@ -13,6 +13,7 @@ from engine import scene
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.monitors import Monitors
+from dem_cli.engine.placement import moves
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
@@ -182,8 +183,8 @@ def test_a_loaded_block_that_turns_keeps_its_strain(dimension):
     before, gaps = sim.bodies.modes.copy(), sim.measured().gaps.copy()
     everything = np.arange(sim.model.n_blocks)
     turn = np.pi / 2 if dimension == 2 else np.array([0.0, np.pi / 2, 0.0])
-    sim.turn(everything, turn, np.zeros(dimension))
-    sim.find_faces()
+    moves.turn(sim, everything, turn, np.zeros(dimension))
+    moves.find_faces(sim)
     assert sim.bodies.modes == pytest.approx(before)
     assert sim.measured().gaps == pytest.approx(gaps, rel=1e-9)
     sim.loads.dead[:, :dimension] = turned_as_one(sim.loads.dead[:, :dimension], turn)  # loads turn with them

@@ -1,0 +1,1 @@
+"""Where blocks are put, and how far they may come from there."""
