@@ -19,7 +19,7 @@ class ProofSettings:
     far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
     beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load, ...
     unexpected: float = 150.0  # ... elastic displacements, where a path carries more, does not say, or there is none
-    in_place: float = 0.03  # of the width of a block, that such a way is at most where geometry moves: mechanisms change
+    in_place: float = 0.03  # of the width of a block, that such a way is at most where geometry moves, and mechanisms
     steadily: float = 3.3  # times as far, where the motion does not accelerate
     gross: float = 0.1  # of the width of a block: no elastic motion
     turned: float = 0.05  # rad: no elastic rotation

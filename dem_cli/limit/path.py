@@ -64,7 +64,7 @@ class Path:
 
     @property
     def fall(self) -> float:
-        """Largest fall of the load on the way to its highest, over that: a peak that a load which is raised fails at."""
+        """Largest fall of the load on the way to its highest, over that: a load that is raised fails at this peak."""
         if not self.load:
             return 0.0
         loads = np.array(self.loads[: self.highest + 1])

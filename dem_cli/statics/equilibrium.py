@@ -50,9 +50,9 @@ NOTHING_KNOWN = Ahead()  # but that elastic displacements are overestimated, or 
 
 
 def unexpected(sim: Simulation) -> Ahead:
-    """What is said of a load where no path says that it grows no more: it may rest and rise again, as in irregular walls.
+    """What is said of a load where no path says that it grows no more: it may rest and rise again.
 
-    Their blocks give way by 30 to 150 elastic displacements before they rest.
+    Blocks of irregular walls give way by 30 to 150 elastic displacements before they rest.
     """
     return Ahead(reach=sim.settings.proof.unexpected)
 
