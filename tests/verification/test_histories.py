@@ -72,7 +72,7 @@ def irregular(structure: dict, friction: float, **joint: float) -> dict:
 
 
 def test_a_load_that_fell_on_the_way_is_raised_again_in_small_steps():
-    """A peak at 0.52 on the path, which rises to 0.549 beyond: 0.5453 without a word, as both methods leapt over."""
+    """A peak at 0.52 on the path, which rises to 0.549 beyond: 0.5453 without a word: both methods leapt over it."""
     cells = {"kind": "voronoi-wall", "cells": 67, "relax": 5, "stretch": 1.83, "size": [3.13, 1.53], "seed": 2086}
     found = solve(irregular(cells, 0.69))[0]["load_range"]
     assert found["lowest"] < 0.53
