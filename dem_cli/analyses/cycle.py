@@ -19,7 +19,7 @@ from dem_cli.output.record import FALLS, Observer
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
-from dem_cli.statics.equilibrium import settle, settle_or_fail
+from dem_cli.statics.equilibrium import settle, settle_or_fail, unexpected
 from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
@@ -128,7 +128,8 @@ class ByLoad:
         """To a multiplier, as users know it."""
         sim = self.sim
         scale = self.elastic * max(abs(load) / sim.live_scale, self.job.case.analysis.step / sim.live_scale)
-        return settle_or_fail(sim, load / sim.live_scale, self.job.budget, scale).state == "equilibrium"
+        verdict = settle_or_fail(sim, load / sim.live_scale, self.job.budget, scale, ahead=unexpected(sim))
+        return verdict.state == "equilibrium"
 
 
 class ByDisplacement:

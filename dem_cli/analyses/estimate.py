@@ -43,6 +43,7 @@ CURVE = (150_000, 2_000_000)  # of a pushover under displacement control
 GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
+COLLAPSE = "; where it collapses, ten to thirty times that: how far it stands is sought then"  # of a settlement
 FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
 NANOSECONDS = {  # per contact point and step, one core (scripts/benchmark), by dimension
     2: {"fixed": 10, "large": 20},
@@ -283,7 +284,8 @@ def _cost(case: Case, sim: Simulation) -> str:
         fewest, most = FOLLOW_STEPS
         seconds = [s + 1e-9 * n * points * costs["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
         basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
-    return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis})"
+    collapse = COLLAPSE if case.analysis.kind == "settlement" else ""
+    return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis}){collapse}"
 
 
 def _memory(sim: Simulation) -> str:

@@ -158,9 +158,9 @@ def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
 def _second_history(job: Job, load_search: LoadSearch) -> None:
     """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
-    Where it ends elsewhere, or nowhere, or rested on the way, or a creep came to rest at a higher load, the load is
-    raised again in small steps, up to so many blocks: which of the loads a search finds hangs on its steps there, and
-    these are its own.
+    Where it ends elsewhere, or nowhere, rested or fell on the way, or a creep came to rest at a higher load, the load
+    is raised again in small steps, up to so many blocks: which of the loads a search finds hangs on its steps there,
+    and these are its own.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or unique(search, resolution) or search.limits.too_large:
@@ -168,7 +168,8 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     path = search.limits.path
     if path is None:
         return
-    if path.load is not None and path.finished and path.rest is None and load_range(search, resolution) is None:
+    even = path.load is not None and path.finished and path.rest is None and path.fall <= resolution
+    if even and load_range(search, resolution) is None:
         return
     if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")

@@ -17,7 +17,9 @@ class ProofSettings:
     steady: float = 1.55  # growth while time doubles that counts as steady motion
     far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
     far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
-    beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load
+    beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load, ...
+    unexpected: float = 150.0  # ... elastic displacements, where a path carries more, does not say, or there is none
+    in_place: float = 0.03  # of the width of a block, that such a way is at most where geometry moves, and mechanisms
     steadily: float = 3.3  # times as far, where the motion does not accelerate
     gross: float = 0.1  # of the width of a block: no elastic motion
     turned: float = 0.05  # rad: no elastic rotation
@@ -60,7 +62,6 @@ class LoadSearchSettings:
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
-    unexpected: float = 150.0  # the same where a path carries a load at which motion begins, or does not say
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and

@@ -11,7 +11,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import Frame, HistoryRow, Observer
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import Ahead, Verdict, settle_or_fail, stand
+from dem_cli.statics.equilibrium import NOTHING_KNOWN, Ahead, Verdict, settle_or_fail, stand, unexpected
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.post_peak import fall_under, soften_falls
 from dem_cli.statics.rigid_limits import RigidLimits
@@ -129,10 +129,10 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     if near is not None:
         track.keep("loading")
         return *near, 1.0
-    shares, at = list(safety.shares), 0.0
+    shares, at, ahead = list(safety.shares), 0.0, NOTHING_KNOWN if hopeless else unexpected(sim)
     while shares:
         share, before = shares[0], sim.save()
-        verdict = settle_or_fail(sim, share * load, job.budget, elastic * share)
+        verdict = settle_or_fail(sim, share * load, job.budget, elastic * share, ahead=ahead)
         if verdict.state == "equilibrium":
             at = shares.pop(0)
             track.keep("loading")

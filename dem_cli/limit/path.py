@@ -63,6 +63,14 @@ class Path:
         return self.reached[first] if self.reached else 0.0
 
     @property
+    def fall(self) -> float:
+        """Largest fall of the load on the way to its highest, over that: a load that is raised fails at this peak."""
+        if not self.load:
+            return 0.0
+        loads = np.array(self.loads[: self.highest + 1])
+        return float((np.maximum.accumulate(loads) - loads).max() / abs(self.load))
+
+    @property
     def finished(self) -> bool:
         """Whether the load stopped growing."""
         return self.status == OK

@@ -245,7 +245,7 @@ class Observer:
         """A stretch of a time history to keep; follows the one before."""
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Where the run stands; `fraction` of the whole work done, None where nobody can tell."""
+        """Where the run stands; `fraction` of the stage that is done, None where nobody can tell."""
 
     def structure(self, model: Model) -> None:
         """The structure that all frames show, where it is another one than that of the case; before any of them."""

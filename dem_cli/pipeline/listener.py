@@ -9,7 +9,7 @@ class RunListener:
     """Hears how a run goes; this one does nothing. Its methods return at once and change nothing."""
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Where the solver stands; `fraction` of the whole work done, None where nobody can tell."""
+        """Where the solver stands; `fraction` of the stage that is done, None where nobody can tell."""
 
     def solved(self) -> None:
         """The solver has ended; its results are being completed."""

@@ -27,7 +27,7 @@ from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail
+from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail, unexpected
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.mechanism import follows
 from dem_cli.statics.trial_loads import TrialLoads
@@ -338,12 +338,11 @@ class LoadSearch:
         limits, change = self.answer.limits, self._elastic_change(load)
         if limits is not None and self.impossible < np.inf and not limits.slides:
             return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
-        if limits is None or not limits.followed or limits.path is None or abs(load) <= self.settings.least:
+        if load > self.plateau or abs(load) <= self.settings.least:
             return Ahead(load > self.plateau, change=change)
-        if load > self.plateau:
-            return Ahead(True, change=change)
-        reach = limits.path.reach(load * self.sim.live_scale) / abs(load)
-        return Ahead(False, max(reach, self.settings.unexpected), change)
+        path = limits.path if limits is not None and limits.followed else None
+        reach = path.reach(load * self.sim.live_scale) / abs(load) if path is not None else 0.0
+        return Ahead(False, max(reach, unexpected(self.sim).reach), change)
 
     def _passed(self, kind: str, before: int, load: float, state: str) -> None:
         """Notes a creep or a constant load that began after `before` steps."""

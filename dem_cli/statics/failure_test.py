@@ -39,11 +39,15 @@ class FailureTest:
         proof = sim.settings.proof
         self.sim, self.start, self.begun = sim, sim.places(), sim.steps
         linked = measures.link_scale(sim)  # ties may take over only when blocks have gone as far as they stretch
-        far = proof.far if plateau else max(proof.far, proof.far_per_depth * sim.depth**2, proof.beyond * reach)
+        far, rests = proof.far, 0.0 if plateau else proof.beyond * reach * scale
+        if not plateau:
+            far = max(far, proof.far_per_depth * sim.depth**2)
         self.far = max(far * scale, proof.not_elastic * linked)
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             width = float(np.median(sim.widths[sim.free]))
             self.far = min(self.far, max(proof.not_elastic * max(scale, linked), proof.gross * width))
+            rests = min(rests, proof.in_place * width)
+        self.far = max(self.far, rests)
         self.play = np.maximum(sim.play.moved, sim.play.turned * sim.shape.radii)
         self.away = np.abs(self.start - sim.first_places).max(axis=1)
         self.moved: list[np.ndarray] = []  # largest displacement of each block at each look [m]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import settle_or_fail, stand
+from dem_cli.statics.equilibrium import settle_or_fail, stand, unexpected
 from dem_cli.statics.warm_start import CURVE, GRAVITY
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def _held(sim: Simulation, loads: list[float], budget: Budget) -> float:
     carried = 0.0
     for load in loads:
         inner = load / sim.live_scale
-        if settle_or_fail(sim, inner, budget, elastic * inner).state != "equilibrium":
+        if settle_or_fail(sim, inner, budget, elastic * inner, ahead=unexpected(sim)).state != "equilibrium":
             break
         carried = load
     return carried

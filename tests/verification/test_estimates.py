@@ -20,7 +20,7 @@ relax = 6
 stretch = 1.6
 size = [1.6, 1.6]
 thickness = 0.5
-seed = 16
+seed = 123
 [analysis]
 kind = "pushover"
 follow = 0
@@ -29,7 +29,7 @@ follow = 0
 
 @pytest.mark.parametrize("wrong", [-0.15, 0.07])
 def test_wrong_estimates(tmp_path, monkeypatch, wrong):
-    """Larger steps come to 0.5400 to 0.5418, by the estimate; what is stated does not."""
+    """Larger steps come to 0.4130 to 0.4219, by the estimate; what is stated does not."""
     case = tmp_path / "wall.toml"
     case.write_text(WALL)
     right, expected = dem_cli.run(case).summary, LoadSearch._expected

@@ -6,9 +6,12 @@ a callee edited elsewhere, or a reordered record, would otherwise go on running 
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import platform
+import shutil
+import stat
 import tempfile
 from collections.abc import Callable
 from functools import cache
@@ -65,7 +68,22 @@ def _place(home: str, source_hash: str) -> Path:
     if _writable(folder):
         return folder
     uid = os.getuid() if hasattr(os, "getuid") else 0
-    return Path(tempfile.gettempdir()) / f"dem-cli-{uid}" / folder.name
+    temporary = Path(tempfile.gettempdir()) / f"dem-cli-{uid}"
+    if not _of_nobody_else(temporary, uid):  # whoever made it would choose the code that runs here
+        temporary = Path(tempfile.mkdtemp(prefix="dem-cli-"))
+        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+    return temporary / folder.name
+
+
+def _of_nobody_else(folder: Path, uid: int) -> bool:
+    """Whether a folder in a place where all may write, made if it is missing, is of this user alone."""
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return False
+    private = stat.S_ISDIR(found.st_mode) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return os.name == "nt" or (private and found.st_uid == uid)
 
 
 _source_hash_of_process = cache(_source_hash)

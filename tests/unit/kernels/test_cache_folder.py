@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
@@ -16,6 +17,7 @@ from numba.core.registry import cpu_target
 
 import dem_cli
 from dem_cli.engine.loops import compiled_advance, compiled_shake
+from dem_cli.kernels.compilation.cache_folder import _place
 from dem_cli.kernels.compilation.machine_code import KernelCache
 from dem_cli.kernels.jit import CompiledKernel, kernel
 from dem_cli.laws.registry import LAWS
@@ -114,3 +116,15 @@ def test_no_two_kernels_are_written_to_one_file():
     """Two processes that save at one time know nothing of each other."""
     one, other = (KernelCache(compiled_advance("fixed", LAWS["coulomb"]).py_func) for _ in range(2))
     assert one._cache_file._data_name(1) != other._cache_file._data_name(1)
+
+
+def test_a_temporary_folder_that_others_may_write_is_not_used(tmp_path, monkeypatch):
+    """Machine code that another user laid there would run here."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    (tmp_path / "file").touch()
+    home = str(tmp_path / "file" / "home")  # where nothing can be made
+    own = _place(home, "sources")
+    assert own.parent.parent == tmp_path
+    assert _place.__wrapped__(home, "sources") == own
+    own.parent.chmod(0o777)
+    assert _place.__wrapped__(home, "sources").parent != own.parent

@@ -17,6 +17,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment
 from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
+from dem_cli.limit.path import Path as LoadPath
 from dem_cli.limit.settings import DEFAULT_LIMIT
 from dem_cli.limit.slips import apart
 
@@ -56,6 +57,11 @@ def test_a_rest_on_the_way_is_no_plateau():
     assert lower < path.load < upper
     blind = replace(DEFAULT_LIMIT, path=replace(DEFAULT_LIMIT.path, far_ahead=0.0))
     assert trace(structure, friction, settings=blind).load < lower
+
+
+@pytest.mark.parametrize(("loads", "fall"), [([0.0, 0.4, 0.5], 0.0), ([0.0, 0.4, 0.3, 0.5], 0.2), ([0.5, 0.1], 0.0)])
+def test_a_fall_of_the_load_counts_on_the_way_to_its_highest(loads, fall):
+    assert LoadPath(OK, max(loads), loads=loads, highest=loads.index(max(loads))).fall == pytest.approx(fall)
 
 
 @pytest.mark.parametrize("mu", [0.5, 0.6, 0.75, 1.0])
