@@ -78,9 +78,7 @@ class LateLoader:
         def found(name: str) -> Any:
             if name == "__path__":  # which each import asks for: who has none is no package
                 raise AttributeError(name)
-            with self.lock:  # who comes while it is loaded waits; who loads it asks for what is there already
-                if not self.begun:
-                    self._load(module)
+            self.load(module)
             if name in module.__dict__:
                 return module.__dict__[name]
             own = module.__dict__["__getattr__"]
@@ -89,6 +87,12 @@ class LateLoader:
             raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
 
         return found
+
+    def load(self, module: ModuleType) -> None:
+        """Loads it, once: who comes meanwhile waits, and who is loaded by it asks for what is there already."""
+        with self.lock:
+            if not self.begun:
+                self._load(module)
 
     def _load(self, module: ModuleType) -> None:
         before = dict(module.__dict__)
@@ -102,11 +106,32 @@ class LateLoader:
             raise
 
 
+class LoadedModule:
+    """Loader of a module that is there: the package that it is in, loaded first, has brought it."""
+
+    def __init__(self, module: ModuleType) -> None:
+        self.module, self.spec = module, module.__spec__
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """The module."""
+        return self.module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing but to leave it as it was."""
+        module.__spec__ = self.spec
+
+
 class LateModules:
     """Finder of modules that are loaded when something in them is first asked for."""
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        """Of a module that may wait."""
+        """Of a module that may wait, or that is in a package that has waited until now."""
+        package = sys.modules.get(name.rpartition(".")[0])
+        late = package and package.__spec__ and package.__spec__.loader
+        if package is not None and isinstance(late, LateLoader):
+            late.load(package)
+            if name in sys.modules:
+                return ModuleSpec(name, LoadedModule(sys.modules[name]))  # type: ignore[arg-type]
         spec = PathFinder.find_spec(name, path, target) if name in LATE else None
         if spec is not None and spec.loader is not None:
             spec.loader = LateLoader(spec, LATE[name])  # type: ignore[assignment]

@@ -322,12 +322,27 @@ class LoadSearch:
             if sim.kinematics == "large":
                 most = max(most, settings.trial_per_depth * sim.depth**2)
             tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
-            verdict = settle_or_fail(
+            verdict = self._rests_soon(load, tolerance) or settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
                 ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
+
+    def _rests_soon(self, load: float, tolerance: float) -> Verdict | None:
+        """Equilibrium the fast way, where nothing slides at the bound: joints that only open remember no way there.
+
+        None where that is not so, or where it does not come to rest: then all is as before.
+        """
+        sim, answer = self.sim, self.answer
+        if answer.limits is None or self.impossible == np.inf or answer.limits.slides or sim.kinematics != "fixed":
+            return None
+        scale = answer.elastic * abs(load)
+        verdict = relax(sim, load, tolerance, self.settings.hold_start, scale, budget=self.budget, elastic=False)
+        if verdict.state == "equilibrium":
+            return verdict
+        sim.restore(answer.standing)
+        return None
 
     def _elastic_change(self, load: float) -> float | None:
         """Elastic displacement from the present load to another one [m], where a curve led next to failure."""

@@ -14,6 +14,11 @@ loads = globals().get("loads", 0) + 1
 known = "of the module"
 from late_example import other
 """
+OTHER = """
+from late_example import known
+number = 7
+times = globals().get("times", 0) + 1
+"""
 
 
 @pytest.fixture
@@ -21,7 +26,7 @@ def late(tmp_path, monkeypatch):
     """A late package, one of whose names is known."""
     (tmp_path / "late_example").mkdir()
     (tmp_path / "late_example" / "__init__.py").write_text(SOURCE)
-    (tmp_path / "late_example" / "other.py").write_text("number = 7\n")
+    (tmp_path / "late_example" / "other.py").write_text(OTHER)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(late_modules.LATE, "late_example", {"known": "before"})
     monkeypatch.setattr(sys, "meta_path", [LateModules(), *sys.meta_path])
@@ -46,6 +51,12 @@ def test_what_is_not_known_loads_the_module_once(late):
     with pytest.raises(AttributeError, match="nothing"):
         late.nothing  # noqa: B018
     assert late.loads == 1
+
+
+def test_a_module_in_a_late_package_comes_after_it_and_once(late):
+    other = importlib.import_module("late_example.other")
+    assert (other.known, other.times, late.loads, late.other is other) == ("of the module", 1, 1, True)
+    assert other.__spec__.origin.endswith("other.py")
 
 
 def test_threads_wait_for_a_module_that_another_one_loads(late):
