@@ -1,4 +1,4 @@
-"""Late modules and rare collections: what a process of this program saves of its start, a fifth of a short run.
+"""Late modules and rare collections: what a process of this program saves of its start, a quarter of a short run.
 
 Libraries name parts of others that they never use here, and what is named is loaded: scipy all of numpy, with its
 Fortran wrapper generator and its tests. And Python would look for garbage among all that is loaded again and again.
@@ -8,30 +8,133 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec, PathFinder
-from importlib.util import LazyLoader
+from threading import RLock
 from types import ModuleType
+from typing import Any
 
-LATE = frozenset((
-    "importlib.metadata._adapters",  # of what packages say of themselves; with it comes e-mail
-    "numpy._core._add_newdocs",  # docstrings that nobody reads here
-    "numpy._core._add_newdocs_scalars",
-    "numpy.f2py",
-    "numpy.polynomial",
-    "numpy.testing",
-))  # fmt: skip
+
+def nothing_masked(_: Any) -> bool:
+    """What `numpy.ma` says of an array while it is not loaded: nobody has made a masked one. unique and median ask."""
+    return False
+
+
+class AnyArray:
+    """`NDArray` of numpy's type hints, without the thousand others that come with it."""
+
+    def __class_getitem__(cls, scalar: Any) -> Any:
+        """Arrays of these numbers."""
+        from numpy._core.multiarray import dtype, ndarray
+
+        return ndarray[tuple[Any, ...], dtype[scalar]]
+
+
+HINTS = {"ArrayLike": Any, "DTypeLike": Any, "NDArray": AnyArray}  # what people write beside arguments
+LATE: dict[str, dict[str, Any]] = {  # what each answers for as it is not loaded
+    "difflib": {},  # the nearest name, of those that are wrong
+    "hashlib": {},
+    "importlib.metadata": {},
+    "importlib.metadata._adapters": {},  # of what packages say of themselves; with it comes e-mail
+    "numpy._core._add_newdocs": {},  # docstrings that nobody reads here
+    "numpy._core._add_newdocs_scalars": {},
+    "numpy._typing": HINTS,
+    "numpy.ctypeslib": {},
+    "numpy.f2py": {},
+    "numpy.ma": {"isMaskedArray": nothing_masked, "is_masked": nothing_masked},
+    "numpy.polynomial": {},
+    "numpy.testing": {},
+    "numpy.typing": HINTS,
+    "pickle": {},
+    "pydantic.plugin._loader": {"get_plugins": tuple},  # none: dem_cli/cli/main.py; it reads all that is installed
+    "pydoc": {},
+    "secrets": {},
+    "tempfile": {},
+    "zipfile": {},
+}
 SELDOM = (200_000, 10, 10)  # objects between two collections, and collections between two of older ones
+
+
+class LateLoader:
+    """Loader that does nothing until something is asked for that is not known."""
+
+    def __init__(self, spec: ModuleSpec, known: dict[str, Any]) -> None:
+        assert spec.loader is not None
+        self.loader, self.known, self.lock, self.begun = spec.loader, known, RLock(), False
+
+    def __getattr__(self, name: str) -> Any:
+        """What loaders say of a module, such as its source."""
+        return getattr(self.loader, name)
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        """As the module's own loader makes it."""
+        return self.loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """What is known, and whom to ask for the rest."""
+        module.__dict__.update(self.known, __getattr__=self._rest_of(module))
+
+    def _rest_of(self, module: ModuleType) -> Callable[[str], Any]:
+        def found(name: str) -> Any:
+            if name == "__path__":  # which each import asks for: who has none is no package
+                raise AttributeError(name)
+            self.load(module)
+            if name in module.__dict__:
+                return module.__dict__[name]
+            own = module.__dict__["__getattr__"]
+            if own is not found:
+                return own(name)
+            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+
+        return found
+
+    def load(self, module: ModuleType) -> None:
+        """Loads it, once: who comes meanwhile waits, and who is loaded by it asks for what is there already."""
+        with self.lock:
+            if not self.begun:
+                self._load(module)
+
+    def _load(self, module: ModuleType) -> None:
+        before = dict(module.__dict__)
+        self.begun = True
+        try:
+            self.loader.exec_module(module)
+        except BaseException:  # as if nobody had asked
+            self.begun = False
+            module.__dict__.clear()
+            module.__dict__.update(before)
+            raise
+
+
+class LoadedModule:
+    """Loader of a module that is there: the package that it is in, loaded first, has brought it."""
+
+    def __init__(self, module: ModuleType) -> None:
+        self.module, self.spec = module, module.__spec__
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """The module."""
+        return self.module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing but to leave it as it was."""
+        module.__spec__ = self.spec
 
 
 class LateModules:
     """Finder of modules that are loaded when something in them is first asked for."""
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        """Of a module that may wait."""
+        """Of a module that may wait, or that is in a package that has waited until now."""
+        package = sys.modules.get(name.rpartition(".")[0])
+        late = package and package.__spec__ and package.__spec__.loader
+        if package is not None and isinstance(late, LateLoader):
+            late.load(package)
+            if name in sys.modules:
+                return ModuleSpec(name, LoadedModule(sys.modules[name]))  # type: ignore[arg-type]
         spec = PathFinder.find_spec(name, path, target) if name in LATE else None
         if spec is not None and spec.loader is not None:
-            spec.loader = LazyLoader(spec.loader)
+            spec.loader = LateLoader(spec, LATE[name])  # type: ignore[assignment]
         return spec
 
 

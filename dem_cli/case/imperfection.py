@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hashlib import blake2b
+import hashlib
 from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
@@ -86,7 +86,7 @@ def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
     """The value of a key for the block or structure `name`; where it is drawn, from nothing but the other four."""
     if isinstance(error, float):
         return error
-    digest = blake2b(f"{seed} {table} {key} {name}".encode(), digest_size=8).digest()
+    digest = hashlib.blake2b(f"{seed} {table} {key} {name}".encode(), digest_size=8).digest()
     chance = ((int.from_bytes(digest, "big") >> 12) + 0.5) / 2.0**52  # between 0 and 1, neither of them
     if isinstance(error, tuple):
         return error[0] + chance * (error[1] - error[0])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
-from difflib import get_close_matches
 from pathlib import Path
 
 from pydantic import ValidationInfo
@@ -34,5 +34,5 @@ def missing_file(path: Path, what: str) -> str:
         files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
     except OSError:
         return f"no such file: {path} (there is no folder '{path.parent}')"
-    close = get_close_matches(path.name, files, 1)
+    close = difflib.get_close_matches(path.name, files, 1)
     return f"no such file: {path}" + (f", did you mean '{close[0]}'?" if close else "")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -214,5 +214,5 @@ def near_file(path: Path) -> str:
         files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
     except OSError:
         return f" (there is no folder '{path.parent}')"
-    close = get_close_matches(path.name, files, 1) or get_close_matches(f"{path.name}.toml", files, 1)
+    close = difflib.get_close_matches(path.name, files, 1) or difflib.get_close_matches(f"{path.name}.toml", files, 1)
     return f", did you mean '{path.parent / close[0]}'?" if close else ""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
 
@@ -107,7 +107,7 @@ def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
 def nearest(value: Any, names: Iterable[Any]) -> str:
     """`did you mean 'x'?`, or nothing when no name is near; a number that was meant has no quotes."""
     known = {str(name): name for name in names}
-    close = get_close_matches(str(value), known, 1, 0.6)
+    close = difflib.get_close_matches(str(value), known, 1, 0.6)
     return f"did you mean {show(known[close[0]])}?" if close else ""
 
 

@@ -52,11 +52,11 @@ class LoadSearchSettings:
     first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
     growth: float = 1.5  # of the next ones
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
-    hold_start: int = 20_000  # steps of the fast way to rest there, before it is held with combined damping
+    hold_start: int = 20_000  # steps of the fast way to rest there, or where nothing slides, before combined damping
     one_step: float = 0.99  # of the resolution: the next load, so that one failure closes the bracket
     beyond_impossible: float = 1e-4  # of a load proved impossible, that failure is shown at
     shown: float = 5.0  # elastic displacements that show a mechanism moving where limit analysis proves failure
-    pushed: float = 1e-3  # of that load, put on besides as long as it is shown: where nothing slides
+    pushed: float = 1e-3  # of that load, put on besides as long as it is shown: where a mechanism is known
     soft: float = 0.5  # displacement at failure in smallest edges, over the resolution: geometry must move beyond
     likely: float = 0.99  # of the bound by limit analysis: an estimate above it says that the bound may be reached
     unslid: float = 1000.0  # elastic displacements that equilibrium may take below a bound at which nothing slides

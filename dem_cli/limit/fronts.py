@@ -84,15 +84,15 @@ def fronts_of(pairs: np.ndarray, n_blocks: int, n_dof: int, places: np.ndarray |
 def _minimum_degree(pairs: np.ndarray, n_blocks: int) -> np.ndarray:
     """Blocks in an order that brings little fill."""
     from scipy.sparse import csc_matrix
-    from scipy.sparse.linalg import splu
+
+    from dem_cli.limit.sparse_factors import factors_of
 
     own, (first, second) = np.arange(n_blocks), pairs.T
     where = np.concatenate([own, first, second]), np.concatenate([own, second, first])
     most = float(np.bincount(pairs.ravel(), minlength=n_blocks).max(initial=0)) + 1.0
     values = np.concatenate([np.full(n_blocks, most), np.full(2 * len(pairs), -1.0)])
     matrix = csc_matrix((values, where), shape=(n_blocks, n_blocks))
-    lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.argsort(lu.perm_c)
+    return np.argsort(factors_of(matrix, "MMD_AT_PLUS_A", 0.0).perm_c)
 
 
 def _dissected(pairs: np.ndarray, places: np.ndarray) -> np.ndarray:

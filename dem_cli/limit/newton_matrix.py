@@ -11,9 +11,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import SuperLU, splu
 
 from dem_cli.limit.settings import PathSettings
+from dem_cli.limit.sparse_factors import Factors, SparseFactors, factors_of
 
 
 class PointRows(NamedTuple):
@@ -29,13 +29,6 @@ class PointRows(NamedTuple):
     def n_dof(self) -> int:
         """Degrees of freedom of a block."""
         return self.columns.shape[2]
-
-
-class Factors(Protocol):
-    """LU factors of one matrix."""
-
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        """The solution, (n_columns,)."""
 
 
 class NewtonMatrix(Protocol):
@@ -94,7 +87,7 @@ class SparseMatrix:
         self.place[used.ravel()] = place
         self.diagonal = np.flatnonzero(self.indices == keys // n)
 
-    def factorised(self, factors: list[np.ndarray]) -> SuperLU:
+    def factorised(self, factors: list[np.ndarray]) -> SparseFactors:
         """As NewtonMatrix has it."""
         values, more = self.work
         np.multiply(factors[0][:, None], self.outer[0], out=values)
@@ -104,8 +97,7 @@ class SparseMatrix:
         data[self.diagonal] += self.settings.singular * np.abs(data[self.diagonal]).mean()
         n = len(self.order)
         matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
-        options = {"SymmetricMode": True}
-        return splu(matrix, permc_spec=self.permutation, diag_pivot_thresh=self.settings.pivot, options=options)
+        return factors_of(matrix, self.permutation, self.settings.pivot)
 
 
 class FrontMatrix:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import platform
-import re
 from functools import cache
 from importlib import metadata
+from importlib.util import find_spec
+from pathlib import Path
 
 from dem_cli.version import __version__
 
 PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
-_VERSION = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 
 
 def provenance() -> dict[str, str]:
@@ -31,6 +31,18 @@ def _versions() -> dict[str, str]:
 
 
 def _version_of(package: str) -> str:
-    """As `metadata.version`, which reads what a package says of itself as an e-mail, 5 ms each."""
-    said = _VERSION.search(metadata.distribution(package).read_text("METADATA") or "")
-    return said[1] if said else metadata.version(package)
+    """As `metadata.version`, which is loaded in 8 ms and reads what a package says of itself as an e-mail, 5 ms each.
+
+    The folder that it says it in lies beside the package, and its name ends with the version.
+    """
+    spec = find_spec(package)
+    beside = _described(Path(spec.origin).parents[1]) if spec is not None and spec.origin else []
+    found = [version for name, version in beside if name == package]
+    return found[0] if len(found) == 1 else metadata.version(package)
+
+
+@cache
+def _described(folder: Path) -> list[tuple[str, str]]:
+    """Name and version of the packages that are installed in a folder."""
+    found = (place.name.removesuffix(".dist-info").partition("-") for place in folder.glob("*.dist-info"))
+    return [(name, version) for name, _, version in found]

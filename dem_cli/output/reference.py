@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from typing import Any, Protocol
 
 import numpy as np
@@ -130,7 +130,7 @@ def why_nothing(known: Mapping[str, Value], reference: ReferenceTable) -> str | 
         return None if fits else f"'{reference.path}' is {_sort(found)}, not {wanted}"
     if reference.path == "failure_load":
         return "this kind of analysis has no failure load"
-    close = get_close_matches(reference.path, known, 1, 0.6)
+    close = difflib.get_close_matches(reference.path, known, 1, 0.6)
     hint = f", did you mean '{close[0]}'?" if close else ""
     below = [path for path in known if path.startswith(f"{reference.path}.")]
     hint = f", but {', '.join(repr(path) for path in below[:3])}" if below else hint

@@ -209,16 +209,28 @@ class LoadSearch:
         """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
         the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
 
-        So little above the bound a tall structure takes long to move. Where nothing slides it is pushed a little, and
-        its motion compared with the mechanism of the bound: another one that lies as close may have set in as well.
+        So little above the bound a structure takes long to move. Where a mechanism at that load is known it is pushed a
+        little, and its motion compared with that: another one that lies as close may have set in as well.
         """
-        limits = self.answer.limits
-        if limits is not None and not limits.slides and limits.associated is not None:
+        mechanism = self._mechanism_at(load)
+        if mechanism is not None:
             verdict = self._moves_on(load, self.settings.pushed)
-            if follows(self.sim, self.answer.standing, limits.associated.velocities):
+            if follows(self.sim, self.answer.standing, mechanism):
                 return verdict
             self.sim.restore(self.answer.standing)
         return self._moves_on(load)
+
+    def _mechanism_at(self, load: float) -> np.ndarray | None:
+        """The mechanism of the bound, if nothing slides in it, or of a path that ends there, (n_blocks, n_dof)."""
+        limits = self.answer.limits
+        if limits is None or limits.associated is None:
+            return None
+        if not limits.slides:
+            return limits.associated.velocities
+        path = limits.path if limits.followed else None
+        if path is None or path.load is None or not path.finished:
+            return None
+        return path.mechanism if path.load >= (1.0 - self.settings.pushed) * load * self.sim.live_scale else None
 
     def _moves_on(self, load: float, pushed: float = 0.0) -> Verdict:
         """Motion under a load from the highest equilibrium so far; pushed: what is put on besides, of the load."""
@@ -322,12 +334,27 @@ class LoadSearch:
             if sim.kinematics == "large":
                 most = max(most, settings.trial_per_depth * sim.depth**2)
             tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
-            verdict = settle_or_fail(
+            verdict = self._rests_soon(load, tolerance) or settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
                 ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
+
+    def _rests_soon(self, load: float, tolerance: float) -> Verdict | None:
+        """Equilibrium the fast way, where nothing slides at the bound: joints that only open remember no way there.
+
+        None where that is not so, or where it does not come to rest: then all is as before.
+        """
+        sim, answer = self.sim, self.answer
+        if answer.limits is None or self.impossible == np.inf or answer.limits.slides or sim.kinematics != "fixed":
+            return None
+        scale = answer.elastic * abs(load)
+        verdict = relax(sim, load, tolerance, self.settings.hold_start, scale, budget=self.budget, elastic=False)
+        if verdict.state == "equilibrium":
+            return verdict
+        sim.restore(answer.standing)
+        return None
 
     def _elastic_change(self, load: float) -> float | None:
         """Elastic displacement from the present load to another one [m], where a curve led next to failure."""

@@ -202,3 +202,20 @@ def test_a_reader_that_goes_away_is_no_error():
         env=ENVIRONMENT,
     )
     assert (result.stdout, result.stderr) == ("{\n", "")
+
+
+def test_a_command_that_ended_runs_what_others_left_for_the_end_and_no_more():
+    code = (
+        "import atexit, sys\n"
+        "class Slow:\n"
+        "    def __del__(self): print('freed')\n"
+        "kept = Slow()\n"
+        "from dem_cli.cli.main import main\n"
+        "atexit.register(print, 'left for the end')\n"
+        "sys.argv = ['dem', *sys.argv[1:]]\n"
+        "main()"
+    )
+    assert python("-c", code, "--version").stdout.splitlines()[1:] == ["left for the end"]
+    refused = python("-c", code, "nothing")
+    assert (refused.returncode, refused.stdout.splitlines()) == (2, ["left for the end"])
+    assert "no command 'nothing'" in refused.stderr
