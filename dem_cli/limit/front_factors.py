@@ -48,6 +48,54 @@ def _add_part(values, part, left, right):
 
 
 @kernel
+def assemble_joints(values, parts, starts, rows, factors, pairs, pushed, part):
+    """The same of joints in space with several points: those of one joint are summed first, and go in together.
+
+    parts (n_joints, 2, 2, 3); starts (n_joints + 1,): first point of each joint; rows (n_points, 3, 2 n_dof);
+    pushed, part: room, (3, 2 n_dof) and (2 n_dof, 2 n_dof).
+    """
+    values[:] = 0.0
+    for joint in range(len(starts) - 1):
+        part[:] = 0.0
+        for p in range(starts[joint], starts[joint + 1]):
+            pushed[:] = 0.0
+            for k in range(len(pairs)):
+                _add_to_row(pushed[pairs[k, 0]], factors[k, p], rows[p, pairs[k, 1]])
+            _add_point(part, rows[p], pushed)
+        for a in range(2):
+            for b in range(2):
+                if parts[joint, a, b, 0] >= 0:
+                    _put_part(values, parts[joint, a, b], part, a, b)
+
+
+@inline
+def _add_to_row(total, factor, row):
+    for e in range(row.shape[0]):
+        total[e] += factor * row[e]
+
+
+@inline
+def _add_point(part, left, pushed):
+    """What one point adds to the part of its joint."""
+    normal, one, two = pushed[0], pushed[1], pushed[2]
+    for e in range(part.shape[0]):
+        row = part[e]
+        x, y, z = left[0, e], left[1, e], left[2, e]
+        for h in range(part.shape[0]):
+            row[h] += x * normal[h] + y * one[h] + z * two[h]
+
+
+@inline
+def _put_part(values, where, part, a, b):
+    """What one joint adds to the part of two blocks."""
+    n_dof = part.shape[0] // 2
+    for e in range(n_dof):
+        at, row = where[0] + e * where[1], part[a * n_dof + e]
+        for h in range(n_dof):
+            values[at + h * where[2]] += row[b * n_dof + h]
+
+
+@kernel
 def add_to_diagonal(values, diagonal, share):
     """A share of the mean of its diagonal to a matrix in fronts; diagonal: where that is."""
     total = 0.0

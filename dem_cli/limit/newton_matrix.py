@@ -118,23 +118,41 @@ class FrontMatrix:
         first, row, column = parts_of(fronts, np.repeat(np.arange(len(fronts.order)), 2).reshape(-1, 2)).T
         self.diagonal = (first[:, None] + (row + column)[:, None] * np.arange(n_dof)).ravel()
         self.rows = np.ascontiguousarray(points.rows)
+        self.joint_starts = np.flatnonzero(np.r_[True, (self.parts[1:] != self.parts[:-1]).any(axis=(1, 2, 3)), True])
         pairs = [(pair, k) for k, pair in enumerate(points.products)]
         pairs += [((j, i), k) for (i, j), k in pairs if 0 < i < j]  # of two tangents, either way round
         self.pairs, self.of_pair = np.array([pair for pair, _ in pairs]), [k for _, k in pairs]
         self.values = np.empty(int(fronts.start[-1]))
         self.room = np.empty(max(fronts.widest**2, 1))
         self.pushed = np.empty(self.rows.shape[1:])
+        several = len(self.rows) >= settings.points_summed * (len(self.joint_starts) - 1)
+        self.by_joints = several and self.rows.shape[1] == 3  # whether points of a joint are summed before they go in
+        if self.by_joints:
+            self.parts = np.ascontiguousarray(self.parts[self.joint_starts[:-1]])
+            self.rows, self.pushed = (room.reshape(*room.shape[:-2], 2 * n_dof) for room in (self.rows, self.pushed))
+            self.part = np.empty((2 * n_dof, 2 * n_dof))
 
     def factorised(self, factors: list[np.ndarray]) -> FrontFactors:
         """As NewtonMatrix has it."""
-        from dem_cli.limit.front_factors import add_to_diagonal, assemble, factorise
+        from dem_cli.limit.front_factors import add_to_diagonal, factorise
 
         fronts, values = self.fronts, self.values
-        assemble(values, self.parts, self.rows, np.stack([factors[k] for k in self.of_pair]), self.pairs, self.pushed)
+        self._assemble(np.stack([factors[k] for k in self.of_pair]))
         add_to_diagonal(values, self.diagonal, self.settings.singular)
         if not factorise(values, fronts, self.room):
             raise RuntimeError("a pivot is nothing: the matrix is singular")
         return FrontFactors(self)
+
+    def _assemble(self, factors: np.ndarray) -> None:
+        if self.by_joints:
+            from dem_cli.limit.front_factors import assemble_joints
+
+            starts = self.joint_starts
+            assemble_joints(self.values, self.parts, starts, self.rows, factors, self.pairs, self.pushed, self.part)
+        else:
+            from dem_cli.limit.front_factors import assemble
+
+            assemble(self.values, self.parts, self.rows, factors, self.pairs, self.pushed)
 
 
 class FrontFactors(NamedTuple):

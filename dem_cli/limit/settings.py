@@ -51,6 +51,7 @@ class PathSettings:
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
     opened: float = 1e-6  # ... and has this share of its stiffness, for the compliance of the start
     in_fronts: int = 300  # degrees of freedom from which on factors are dense fronts in compiled code
+    points_summed: float = 3.0  # of a joint in space, from which on they are summed before they go into the fronts
     pivot: float = 1e-3  # of the largest in its column, below which a diagonal entry is no pivot
     singular: float = 1e-13  # added to the diagonal, over its mean
 

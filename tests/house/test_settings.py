@@ -13,7 +13,7 @@ from dem_cli.engine.settings import DEFAULT
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ROOMS = ("limit", "engine", "statics", "dynamics", "ensembles", "analyses")
-SOURCES = [path for room in ROOMS for path in sorted((PACKAGE / room).glob("*.py"))]
+SOURCES = [path for room in ROOMS for path in sorted((PACKAGE / room).rglob("*.py"))]
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 DEFAULTS = {"DEFAULT", "DEFAULT_LIMIT"}
 

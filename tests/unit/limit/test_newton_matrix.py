@@ -12,10 +12,13 @@ SETTINGS = PathSettings()
 TANGENTS = {2: ((1, 1), (1, 0)), 3: ((1, 1), (2, 2), (1, 2), (1, 0), (2, 0))}
 
 
-def points(dimension, n_blocks, n_points, seed):
-    """Points between random blocks, of which the last are fixed; two motions of the first block are held."""
+def points(dimension, n_blocks, n_points, seed, of_joint=1):
+    """Points between random blocks, of which the last are fixed; two motions of the first block are held.
+
+    of_joint: points in turn between the same two blocks
+    """
     rng, n_dof = np.random.default_rng(seed), {2: 3, 3: 6}[dimension]
-    blocks = rng.integers(0, n_blocks + 2, (n_points, 2))
+    blocks = np.repeat(rng.integers(0, n_blocks + 2, (n_points // of_joint, 2)), of_joint, axis=0)
     blocks[:, 1] = np.where(blocks[:, 0] == blocks[:, 1], (blocks[:, 1] + 1) % (n_blocks + 2), blocks[:, 1])
     columns = np.where(blocks < n_blocks, blocks * n_dof, -1)[:, :, None]
     columns = np.where(columns >= 0, columns + np.arange(n_dof), -1)
@@ -32,9 +35,11 @@ def factors(made, seed):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize(("n_blocks", "n_points"), [(1, 4), (12, 60), (40, 160), (90, 700)])
-def test_both_ways_solve_the_same_equations(dimension, n_blocks, n_points):
-    made = points(dimension, n_blocks, n_points, n_blocks)
+@pytest.mark.parametrize(
+    ("n_blocks", "n_points", "of_joint"), [(1, 4, 1), (12, 60, 1), (40, 160, 1), (90, 700, 1), (12, 120, 4)]
+)
+def test_both_ways_solve_the_same_equations(dimension, n_blocks, n_points, of_joint):
+    made = points(dimension, n_blocks, n_points, n_blocks, of_joint)
     right = np.random.default_rng(1).normal(size=made.n_columns)
     right[:2] = 0.0  # held
     stiff, elastic = factors(made, 2), factors(made, 3)
@@ -58,6 +63,12 @@ def test_fronts_are_those_of_larger_structures():
     made = points(2, 12, 20, 0)
     assert isinstance(newton_matrix(made, factors(made, 0), SETTINGS), SparseMatrix)
     assert isinstance(newton_matrix(made, factors(made, 0), replace(SETTINGS, in_fronts=36)), FrontMatrix)
+
+
+def test_points_are_summed_first_where_joints_in_space_have_several():
+    assert FrontMatrix(points(3, 12, 120, 0, 4), SETTINGS).by_joints
+    assert not FrontMatrix(points(3, 12, 120, 0), SETTINGS).by_joints
+    assert not FrontMatrix(points(2, 12, 120, 0, 4), SETTINGS).by_joints
 
 
 def test_a_matrix_without_anything_is_singular():
