@@ -54,7 +54,7 @@ KNOWN_IN_SPACE = {
         _block(60),
         KnownStructure("panel", "spatial/panel", (), 0.125, "closed form: turns over at thickness / height"),
         KnownStructure("L wall", "spatial/l_wall", (), 0.285812, SEARCH, 0.361778, 0.285595),
-        wall_out_of_plane(10, 20, 0.201955, 0.371604),
+        wall_out_of_plane(10, 20, 0.206328, 0.371604),
     )
 }
 SIZES_IN_SPACE = (
