@@ -97,20 +97,25 @@ class LoadSearch:
         """The bracket again, raised from gravity in small steps: equal shares of `most` (as users know it).
 
         Where histories differ the steps may decide: this is then the history that a failure load is stated for. No
-        estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first,
-        the bracket stays that of the larger steps.
+        estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first, or
+        all that a search may cost is spent, the bracket stays that of the larger steps.
         """
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
         step = most / self.sim.live_scale / self.settings.small_steps
+        stopped: BaseException | None = None
         try:
             self._raise_load(self._trials([], step, step))
-        except (SolverError, KeyboardInterrupt) as stopped:
+        except (SolverError, KeyboardInterrupt) as why:
+            stopped = why
+        if stopped is not None or (self.answer.wide and (self._enough() or not self.answer.found)):
             vars(self.answer).update(vars(known))
             self.track.kept[:] = rows
-            if isinstance(stopped, KeyboardInterrupt):
-                raise
+            if known.failed_state is not None:
+                self.sim.restore(known.failed_state)
+        if isinstance(stopped, KeyboardInterrupt):
+            raise stopped
 
     def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
         """Loads to try from what is carried now."""

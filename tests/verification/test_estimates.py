@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import dem_cli
@@ -45,3 +47,23 @@ def test_wrong_estimates(tmp_path, monkeypatch, wrong):
     assert found["failure_load_bracket"] == right["failure_load_bracket"]
     assert found["load_range"]["lowest"] < found["failure_load"]
     assert found["warnings"][0].startswith("methods differ by")
+
+
+def test_small_steps_that_cost_too_much_leave_the_load_of_larger_ones(tmp_path, monkeypatch):
+    """A wall of 520 blocks in space had a load, and was "not converged" as its small steps ended at a quarter of it."""
+    case = tmp_path / "wall.toml"
+    case.write_text(WALL)
+    again = LoadSearch.run_again_in_small_steps
+
+    def cut_short(self, most):
+        assert self.answer.found
+        found.append((self.answer.carried, self.answer.failed))
+        self.settings = replace(self.settings, effort=0.0)
+        again(self, most)
+
+    found: list[tuple[float, float]] = []
+    monkeypatch.setattr(LoadSearch, "run_again_in_small_steps", cut_short)
+    summary = dem_cli.run(case).summary
+    assert summary["status"] == "ok"
+    assert tuple(summary["failure_load_bracket"]) == found[0]
+    assert "the load again in small steps: not finished; it is that of larger steps" in summary["skipped"]
