@@ -131,10 +131,12 @@ class LateModules:
         if package is not None and isinstance(late, LateLoader):
             late.load(package)
             if name in sys.modules:
-                return ModuleSpec(name, LoadedModule(sys.modules[name]))  # type: ignore[arg-type]
+                there: Any = LoadedModule(sys.modules[name])  # no Loader by descent: importlib.abc takes time to load
+                return ModuleSpec(name, there)
         spec = PathFinder.find_spec(name, path, target) if name in LATE else None
         if spec is not None and spec.loader is not None:
-            spec.loader = LateLoader(spec, LATE[name])  # type: ignore[assignment]
+            loader: Any = LateLoader(spec, LATE[name])
+            spec.loader = loader
         return spec
 
 

@@ -16,6 +16,7 @@ raised from there; one from limit analysis is an equilibrium that exists, and no
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -104,18 +105,17 @@ class LoadSearch:
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
         step = most / self.sim.live_scale / self.settings.small_steps
-        stopped: BaseException | None = None
+        finished = False
         try:
-            self._raise_load(self._trials([], step, step))
-        except (SolverError, KeyboardInterrupt) as why:
-            stopped = why
-        if stopped is not None or (self.answer.wide and (self._enough() or not self.answer.found)):
-            vars(self.answer).update(vars(known))
-            self.track.kept[:] = rows
-            if known.failed_state is not None:
-                self.sim.restore(known.failed_state)
-        if isinstance(stopped, KeyboardInterrupt):
-            raise stopped
+            with suppress(SolverError):
+                self._raise_load(self._trials([], step, step))
+                finished = not self.answer.wide or (self.answer.found and not self._enough())
+        finally:
+            if not finished:
+                vars(self.answer).update(vars(known))
+                self.track.kept[:] = rows
+                if known.failed_state is not None:
+                    self.sim.restore(known.failed_state)
 
     def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
         """Loads to try from what is carried now."""
