@@ -63,6 +63,7 @@ class LoadSearchSettings:
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
+    least_of_fewest: float = 0.5  # of the fewest steps of an equilibrium so far, that small steps take: 0.6 to 1.3
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and

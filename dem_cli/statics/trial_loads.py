@@ -22,6 +22,7 @@ class TrialLoads:
     step: float  # from the last of them on
     longest: float = float("inf")  # step of the load that is never exceeded
     limit: float = float("inf")  # load above which nothing is tried
+    goal: float = 0.0  # load that is known to be carried, to which steps of one length lead
     high: float | None = None  # lowest load that fails
     undecided: list[float] = field(default_factory=list)  # between them
     jumped: bool = False  # the failure came after a jump, which may break what a gentler step does not
@@ -38,6 +39,11 @@ class TrialLoads:
     def closed(self) -> bool:
         """Whether the bracket is as narrow as asked for."""
         return self.high is not None and self.high - self.low <= self.width
+
+    @property
+    def to_come(self) -> float:
+        """How many steps of the load there still are to its goal."""
+        return max(self.goal - self.low, 0.0) / self.longest if self.high is None else 0.0
 
     def next(self) -> float | None:
         """The load to try next; None where the bracket is narrow enough, or cannot be made any narrower."""
