@@ -62,7 +62,9 @@ class LoadSearch:
         self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
         self.on_stiff_joints = np.inf  # load of joints that are stiff, where geometry moves: a creep may throw blocks
         self.first_step = sim.steps
-        self.large = False  # whether the load is raised from the end of a path that was followed as far as is affordable
+        self.large = (
+            False  # whether the load is raised from the end of a path that was followed as far as is affordable
+        )
         answer.scale, answer.limit = scale, self.limit * scale
 
     def run(self, start: WarmStart | CurveStart | None = None) -> None:
