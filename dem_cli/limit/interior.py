@@ -70,13 +70,14 @@ class Increment:
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
         self.settings = problem.settings.of_increment(problem.dimension)
         self.end = (self.settings.end if end is None else end) * problem.lightest
+        self.gaps = problem.opened(before.displacements) + problem.gaps  # before, where joints have no stiffness
         self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         mu = problem.friction
-        opening = problem.bn @ before.displacements + before.normal / problem.kn + problem.gaps
+        opening = self.gaps + before.normal / problem.kn
         normal, opening = apart(before.normal - np.maximum(opening, 0.0), tau)
         limit, shear, slip = slips.started(mu * before.normal, before.shear, ahead * before.slip, tau)
         normal = np.maximum(normal, limit / mu)
@@ -227,9 +228,9 @@ class Increment:
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
-        self.off_gap = problem.bn @ at.u + normal / problem.kn + problem.gaps - opening
-        slide = problem.bt @ (at.u - before.displacements)
-        self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - slide
+        moved = problem.motion @ (at.u - before.displacements)
+        self.off_gap = self.gaps + moved[: problem.n_points] + normal / problem.kn - opening
+        self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - moved[problem.n_points :]
         self.off_reserve = slips.lacks(problem.friction * normal, at.shear, at.x)
         if self.displacement is None:
             self.off_target = self.target - at.load
@@ -278,15 +279,16 @@ class Increment:
         """
         problem, joints = self.problem, self.joints
         rub = joints.rubbed(forced, off_slide, push)
-        u = self.lu.solve(unbalanced + problem.bnt @ push + problem.btt @ rub)
+        u = self.lu.solve(unbalanced + problem.pull @ np.concatenate([push, rub]))
         if self.displacement is None:
             load = off_target
         else:
             load = (off_target - problem.live @ u) / (problem.live @ self.by_live)
         u = u + load * self.by_live
-        closing = problem.bn @ u
+        moved = problem.motion @ u
+        closing, slide = moved[: problem.n_points], moved[problem.n_points :]
         d_normal = push - self.stiff_n * closing
-        d_shear = joints.sheared(rub, problem.bt @ u, closing)
+        d_shear = joints.sheared(rub, slide, closing)
         d_reserve = problem.slips.changes(problem.friction * d_normal, d_shear) + off_reserve
         d_opening = off_gap + closing + d_normal / problem.kn
         d_slip = joints.slipped(forced, d_reserve - off_reserve)
