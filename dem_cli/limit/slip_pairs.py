@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.limit.settings import PathSettings
 from dem_cli.limit.slips import apart
 
 
@@ -77,14 +78,23 @@ class SlipPairs:
         """Of all numbers."""
         return float(relative.min(initial=0.0)), float(relative.max(initial=0.0))
 
-    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
+        """Of all numbers."""
+        return self.extremes(self.relative(x, change))
+
+    def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
         """Number by number."""
-        return x + change
+        return x + length * change
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> PairStiffness:
         """The products made linear."""
         n = self.n_points
         return PairStiffness(x[n : 3 * n], x[4 * n :], friction, ks, stiff_n)
+
+
+def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
+    """Of so many points."""
+    return SlipPairs(n_points)
 
 
 class PairStiffness:
