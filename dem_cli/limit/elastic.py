@@ -22,9 +22,24 @@ from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.newton_matrix import Factors, PointRows, newton_matrix
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
-from dem_cli.limit.slip_cones import cones_of
-from dem_cli.limit.slip_pairs import pairs_of
+from dem_cli.limit.slip_cones import SlipCones
+from dem_cli.limit.slip_pairs import SlipPairs
 from dem_cli.limit.slips import Slips
+
+
+def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
+    """In the plane."""
+    return SlipPairs(n_points)
+
+
+def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
+    """In space; those of many points are compiled: a third of the time, but code to be loaded."""
+    if n_points < settings.cones_compiled:
+        return SlipCones(n_points)
+    from dem_cli.limit.compiled_cones import CompiledCones
+
+    return CompiledCones(n_points)
+
 
 KINDS: dict[int, Callable[[int, PathSettings], Slips]] = {2: pairs_of, 3: cones_of}  # of slips, by dimension
 

@@ -113,8 +113,8 @@ def factorise(values, fronts, update):
         at = fronts.start[front]
         square, below = values[at : at + own * own], values[at + own * own : at + own * (own + left)]
         beside = values[at + own * (own + left) : at + own * (own + 2 * left)]
-        for k in range(own):
-            if square[k * own + k] == 0.0:
+        for k in range(0, own, 3):
+            if not _divide_panel(square, below, beside, own, left, k):
                 return False
             _eliminate(square, below, beside, own, left, k)
         _multiply(below, beside, own, left, update)
@@ -133,26 +133,54 @@ def _sizes(fronts, front):
 
 
 @inline
-def _eliminate(square, below, beside, own, left, k):
-    """One column of a front."""
-    inverse = 1.0 / square[k * own + k]
-    across, beyond = square[k * own + k + 1 : k * own + own], beside[k * left : k * left + left]
-    lower = below[k * left : k * left + left]
-    for j in range(left):
-        lower[j] *= inverse
-    for i in range(k + 1, own):
-        share, upper = square[i * own + k] * inverse, across[i - k - 1]
-        square[i * own + k] = share
-        if share != 0.0:
-            row, strip = square[i * own + k + 1 : i * own + own], beside[i * left : i * left + left]
-            for j in range(own - k - 1):
+def _divide_panel(square, below, beside, own, left, k):
+    """Three columns of a front, and three rows of what they leave; whether no pivot is nothing."""
+    end = k + 3
+    for p in range(k, end):
+        if square[p * own + p] == 0.0:
+            return False
+        inverse = 1.0 / square[p * own + p]
+        lower, beyond = below[p * left : p * left + left], beside[p * left : p * left + left]
+        for j in range(left):
+            lower[j] *= inverse
+        for i in range(p + 1, own):
+            share = square[i * own + p] * inverse
+            square[i * own + p] = share
+            for c in range(p + 1, end):
+                square[i * own + c] -= share * square[p * own + c]
+        across = square[p * own + end : p * own + own]
+        for i in range(p + 1, end):
+            share, upper = square[i * own + p], square[p * own + i]
+            row = square[i * own + end : i * own + own]
+            for j in range(own - end):
                 row[j] -= share * across[j]
+            strip, other = beside[i * left : i * left + left], below[i * left : i * left + left]
             for j in range(left):
                 strip[j] -= share * beyond[j]
-        if upper != 0.0:
+                other[j] -= upper * lower[j]
+    return True
+
+
+@inline
+def _eliminate(square, below, beside, own, left, k):
+    """Three columns of a front from all others, one after the other in each number."""
+    end, n = k + 3, own - k - 3
+    a, b = square[k * own + end : end * own], beside[k * left : end * left]
+    c, two, three = below[k * left : end * left], 2 * left, 2 * own
+    for i in range(end, own):
+        at = i * own + k
+        x, y, z = square[at], square[at + 1], square[at + 2]
+        if x != 0.0 or y != 0.0 or z != 0.0:
+            row, strip = square[at + 3 : at + 3 + n], beside[i * left : i * left + left]
+            for j in range(n):
+                row[j] = ((row[j] - x * a[j]) - y * a[own + j]) - z * a[three + j]
+            for j in range(left):
+                strip[j] = ((strip[j] - x * b[j]) - y * b[left + j]) - z * b[two + j]
+        x, y, z = a[i - end], a[own + i - end], a[three + i - end]
+        if x != 0.0 or y != 0.0 or z != 0.0:
             strip = below[i * left : i * left + left]
             for j in range(left):
-                strip[j] -= upper * lower[j]
+                strip[j] = ((strip[j] - x * c[j]) - y * c[left + j]) - z * c[two + j]
 
 
 @inline
@@ -187,13 +215,27 @@ def _subtract_beside(values, fronts, run, left, update):
     at, begin, count = fronts.start[runs.into[run]], runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
     beside = at + own * (own + deep) - own
     where = runs.places[runs.place_start[run] : runs.place_start[run + 1]]
-    for i in range(count * n_dof):
-        row = where[i // n_dof] * n_dof + i % n_dof
-        given = update[(begin + i) * left + begin : (begin + i + 1) * left]
-        for j in range(len(where)):
-            to = where[j] * n_dof + (at + row * own if j < count else beside + row * deep)
-            for k in range(n_dof):
-                values[to + k] -= given[j * n_dof + k]
+    j = 0
+    while j < len(where):
+        first, j = j, _end_in_line(where, j, count)
+        size, come = (j - first) * n_dof, begin * left + begin + first * n_dof
+        start, width = (at, own) if first < count else (beside, deep)
+        for b in range(count):
+            for row in range(where[b] * n_dof, (where[b] + 1) * n_dof):
+                to = start + where[first] * n_dof + row * width
+                taken, given = values[to : to + size], update[come : come + size]
+                for k in range(size):
+                    taken[k] -= given[k]
+                come += left
+
+
+@inline
+def _end_in_line(where, j, border):
+    """Where places end that follow one another from j on, at a border at the latest."""
+    j += 1
+    while j < len(where) and where[j] == where[j - 1] + 1 and j != border:
+        j += 1
+    return j
 
 
 @inline
@@ -204,12 +246,17 @@ def _subtract_below(values, fronts, run, left, update):
     begin, count = runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
     below = fronts.start[runs.into[run]] + own * own - own
     where = runs.places[runs.place_start[run] : runs.place_start[run + 1]]
-    for i in range(count * n_dof, len(where) * n_dof):
-        at = below + where[i // n_dof] * n_dof + i % n_dof
-        given = update[(begin + i) * left + begin : (begin + i) * left + begin + count * n_dof]
-        for j in range(count):
-            for k in range(n_dof):
-                values[at + (where[j] * n_dof + k) * deep] -= given[j * n_dof + k]
+    i = count
+    while i < len(where):
+        first, i = i, _end_in_line(where, i, count)
+        size, come = (i - first) * n_dof, (begin + first * n_dof) * left + begin
+        for b in range(count):
+            for row in range(where[b] * n_dof, (where[b] + 1) * n_dof):
+                to = below + where[first] * n_dof + row * deep
+                taken = values[to : to + size]
+                for k in range(size):
+                    taken[k] -= update[come + k * left]
+                come += 1
 
 
 @kernel

@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.limit.settings import PathSettings
 from dem_cli.limit.slips import apart
 
 # Of x₀: from this |x̄| on the smaller eigenvalue changes along d while x̄ turns; below it x₀ and x̄ move straight.
@@ -206,15 +205,6 @@ class SlipCones:
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> ConeStiffness:
         """The products made linear."""
         return ConeStiffness(polar(x), friction, ks, stiff_n)
-
-
-def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
-    """Of so many points; those of many are compiled: a third of the time, but code to be loaded."""
-    if n_points < settings.cones_compiled:
-        return SlipCones(n_points)
-    from dem_cli.limit.compiled_cones import CompiledCones
-
-    return CompiledCones(n_points)
 
 
 class ConeStiffness:

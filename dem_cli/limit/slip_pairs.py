@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.limit.settings import PathSettings
 from dem_cli.limit.slips import apart
 
 
@@ -90,11 +89,6 @@ class SlipPairs:
         """The products made linear."""
         n = self.n_points
         return PairStiffness(x[n : 3 * n], x[4 * n :], friction, ks, stiff_n)
-
-
-def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
-    """Of so many points."""
-    return SlipPairs(n_points)
 
 
 class PairStiffness:

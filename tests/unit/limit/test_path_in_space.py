@@ -14,11 +14,11 @@ from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.geometry.polygon import properties
 from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
-from dem_cli.limit.elastic import Elastic
+from dem_cli.limit.elastic import Elastic, cones_of
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.path import OK, Path, _advance, _at_rest, _compliance, trace
 from dem_cli.limit.settings import PathSettings
-from dem_cli.limit.slip_cones import SlipCones, cones_of
+from dem_cli.limit.slip_cones import SlipCones
 
 NEAR = 1e-6  # relative, of loads: the path ends where they grow no more
 
