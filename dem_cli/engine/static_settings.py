@@ -49,6 +49,7 @@ class LoadSearchSettings:
     shares_of_bound: tuple[float, ...] = (0.5, 0.9)  # the same where a path comes to the bound, or nothing slides there
     least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
     jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
+    leap: float = 0.04  # of a load, that a jump to a failure is at most where the next trial is right below it
     first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
     growth: float = 1.5  # of the next ones
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner

@@ -26,6 +26,7 @@ class TrialLoads:
     high: float | None = None  # lowest load that fails
     undecided: list[float] = field(default_factory=list)  # between them
     jumped: bool = False  # the failure came after a jump, which may break what a gentler step does not
+    leapt: bool = False  # the load next below it was tried at once
 
     def __post_init__(self) -> None:
         self._first_step = self.step
@@ -52,7 +53,7 @@ class TrialLoads:
         if self.closed:
             return self.high if self.jumped else None
         if not self.undecided:
-            return 0.5 * (self.low + self.high)
+            return self._next_below() or 0.5 * (self.low + self.high)
         if len(self.undecided) > self.settings.most_undecided:
             return None
         aside = self.settings.aside * self.width * 2.0 ** (len(self.undecided) - 1)
@@ -61,6 +62,20 @@ class TrialLoads:
         if below - self.low > nearest:
             return below
         return above if self.high - above > nearest else None
+
+    def _next_below(self) -> float | None:
+        """Once, after a jump to a failure not far above: of the loads that halving leads to, the one that closes the
+        bracket.
+        """
+        if self.leapt or not self.jumped or self.high is None:
+            return None
+        self.leapt = True
+        if self.high - self.low > self.settings.leap * abs(self.low):
+            return None
+        load = self.low
+        while self.high - load > self.resolution * max(abs(load), self.settings.least):
+            load = 0.5 * (load + self.high)
+        return load
 
     def _upwards(self) -> float | None:
         if self.low >= self.limit or len(self.undecided) > self.settings.most_undecided:
