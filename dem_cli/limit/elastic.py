@@ -12,6 +12,7 @@ inside Newton's iteration, so that the law is the real, non-associated one; the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,12 +21,27 @@ from scipy.sparse import vstack
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.newton_matrix import Factors, PointRows, newton_matrix
-from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 from dem_cli.limit.slip_pairs import SlipPairs
 from dem_cli.limit.slips import Slips
 
-KINDS: dict[int, type[SlipPairs] | type[SlipCones]] = {2: SlipPairs, 3: SlipCones}  # of slips, by dimension
+
+def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
+    """In the plane."""
+    return SlipPairs(n_points)
+
+
+def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
+    """In space; those of many points are compiled: a third of the time, but code to be loaded."""
+    if n_points < settings.cones_compiled:
+        return SlipCones(n_points)
+    from dem_cli.limit.compiled_cones import CompiledCones
+
+    return CompiledCones(n_points)
+
+
+KINDS: dict[int, Callable[[int, PathSettings], Slips]] = {2: pairs_of, 3: cones_of}  # of slips, by dimension
 
 
 class State(NamedTuple):
@@ -82,7 +98,7 @@ class Elastic:
         scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
         self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
-        self.slips: Slips = KINDS[d](len(self.kn))
+        self.slips: Slips = KINDS[d](len(self.kn), settings.path)
         self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight

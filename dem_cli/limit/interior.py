@@ -156,7 +156,7 @@ class Increment:
         settings, slips = self.settings, self.problem.slips
         straight = self._direction(0.0)
         length = self._to_boundary(at, straight, 1.0)
-        left = float(slips.products(slips.moved(at.x, length * straight.positive)).mean()) / mean
+        left = float(slips.products(slips.moved(at.x, straight.positive, length)).mean()) / mean
         tau = max(float(np.clip(left**3, settings.least, 1.0)) * mean, self.end)
         most = settings.widest * mean
         products = tau - np.clip(slips.products(slips.moved(at.x, straight.positive)), -most, most)
@@ -174,7 +174,7 @@ class Increment:
         for _ in range(settings.correctors):
             if length > settings.far:
                 break
-            beyond = slips.products(slips.moved(at.x, min(1.0, length + settings.beyond) * step.positive))
+            beyond = slips.products(slips.moved(at.x, step.positive, min(1.0, length + settings.beyond)))
             wanted = np.clip(beyond, tau / settings.widest, tau * settings.widest)
             products = products + np.maximum(wanted - beyond, -settings.widest * tau)
             other = self._direction(products)
@@ -299,7 +299,7 @@ class Increment:
         most one.
         """
         slips = self.problem.slips
-        steepest = slips.extremes(slips.relative(at.x, step.positive))[0]
+        steepest = slips.fastest(at.x, step.positive)[0]
         share = self.settings.boundary if share is None else share
         return min(1.0, -share / steepest) if steepest < 0.0 else 1.0
 
@@ -307,7 +307,7 @@ class Increment:
         at.u = at.u + length * step.displacements
         at.load += length * step.load
         at.shear = at.shear + length * step.shear
-        at.x = self.problem.slips.moved(at.x, length * step.positive)
+        at.x = self.problem.slips.moved(at.x, step.positive, length)
 
     def _spread(self, at: Iterate, mean: float) -> float:
         """Largest ratio of a product to the mean, or of the mean to a product."""

@@ -77,9 +77,13 @@ class SlipPairs:
         """Of all numbers."""
         return float(relative.min(initial=0.0)), float(relative.max(initial=0.0))
 
-    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
+        """Of all numbers."""
+        return self.extremes(self.relative(x, change))
+
+    def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
         """Number by number."""
-        return x + change
+        return x + length * change
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> PairStiffness:
         """The products made linear."""
