@@ -46,7 +46,7 @@ class LoadSearchSettings:
     doublings: int = 4  # of that load
     locked: float = 100.0  # internal multiplier at which a structure counts as self-locking
     shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
-    shares_of_bound: tuple[float, ...] = (0.5, 0.9)  # the same where a path comes to the bound, or nothing slides there
+    shares_of_hinges: tuple[float, ...] = (0.5, 0.9)  # the same where nothing slides at the bound: any way leads there
     least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
     jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
     leap: float = 0.04  # of a load, that a jump to a failure is at most where the next trial is right below it

@@ -62,9 +62,7 @@ class LoadSearch:
         self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
         self.on_stiff_joints = np.inf  # load of joints that are stiff, where geometry moves: a creep may throw blocks
         self.first_step = sim.steps
-        self.large = (
-            False  # whether the load is raised from the end of a path that was followed as far as is affordable
-        )
+        self.large = False  # whether the load is raised from the end of a path as far as that was affordable
         answer.scale, answer.limit = scale, self.limit * scale
 
     def run(self, start: WarmStart | CurveStart | None = None) -> None:
@@ -143,8 +141,8 @@ class LoadSearch:
         expected = False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
-        at_the_bound = expected and self._at_the_bound()
-        levels = [share * estimate for share in (settings.shares_of_bound if at_the_bound else settings.shares)]
+        hinges = expected and answer.limits is not None and not answer.limits.slides
+        levels = [share * estimate for share in (settings.shares_of_hinges if hinges else settings.shares)]
         if expected:
             levels.append((1.0 - settings.short * self.resolution) * estimate)
             levels.append((1.0 + settings.beyond * self.resolution) * estimate)
@@ -166,16 +164,6 @@ class LoadSearch:
             return max(load, estimate), False
         self.plateau = load
         return load, True
-
-    def _at_the_bound(self) -> bool:
-        """Whether the load of the bound does not hang on the way there: nothing slides, or the path ends there too."""
-        limits = self.answer.limits
-        assert limits is not None
-        if not limits.slides:
-            return True
-        path = limits.path if limits.followed else None
-        load = (path.load or 0.0) / self.sim.live_scale if path is not None else 0.0
-        return load >= (1.0 - self.resolution) * self.impossible
 
     def _ends_where_the_path_does(self) -> bool:
         """Whether the path of a large structure leads to a load that the explicit solver holds.
