@@ -26,7 +26,7 @@ class TrialLoads:
     high: float | None = None  # lowest load that fails
     undecided: list[float] = field(default_factory=list)  # between them
     jumped: bool = False  # the failure came after a jump, which may break what a gentler step does not
-    leapt: bool = False  # the load next below it was tried at once
+    leaps: bool = False  # the last load was one of the levels: right below a failure there is the next trial
 
     def __post_init__(self) -> None:
         self._first_step = self.step
@@ -64,13 +64,9 @@ class TrialLoads:
         return above if self.high - above > nearest else None
 
     def _next_below(self) -> float | None:
-        """Once, after a jump to a failure not far above: of the loads that halving leads to, the one that closes the
-        bracket.
-        """
-        if self.leapt or not self.jumped or self.high is None:
-            return None
-        self.leapt = True
-        if self.high - self.low > self.settings.leap * abs(self.low):
+        """Once, after a jump to a level that failed: of the loads of halving, the one that closes the bracket."""
+        leaps, self.leaps = self.leaps, False
+        if self.high is None or not (leaps and self.jumped and self.high - self.low <= self.settings.leap * self.low):
             return None
         load = self.low
         while self.high - load > self.resolution * max(abs(load), self.settings.least):
@@ -82,6 +78,7 @@ class TrialLoads:
             return None
         reached = max([self.low, *self.undecided])
         self.levels = [load for load in self.levels if load > reached]
+        self.leaps = bool(self.levels)
         if self.levels:
             return min(self.levels.pop(0), self.limit)
         load = reached + self.step
