@@ -44,7 +44,7 @@ def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
 
 
 def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
-    return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), capped=profiled, **flags)
+    return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), **flags)
 
 
 FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law

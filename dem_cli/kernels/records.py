@@ -13,6 +13,7 @@ import numpy as np
 from dem_cli.kernels.fixed_joints import FixedJoints
 
 NO_MODES = np.zeros((0, 0))
+NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
 
 
 class Bodies(NamedTuple):
@@ -34,6 +35,9 @@ class Bodies(NamedTuple):
     pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
     # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
+    # In space, for joints that hold their geometry (kernels/spatial_forces.py), else empty:
+    poses: np.ndarray = NO_MODES  # orientations that turns count from, (n_blocks, 4)
+    turned: np.ndarray = NOTHING  # 1: has turned from there by what joints notice, and there it is now, (n_blocks,)
     # Of blocks that deform (model/uniform_strain.py), else empty:
     modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
     gradients: np.ndarray = NO_MODES  # deformation gradients R (I + ε), row by row, (n_blocks, d·d)
@@ -69,6 +73,7 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    held: np.ndarray = NO_JOINTS  # in space: points that touch, where geometry is held; −1: just measured, (n_joints,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -169,6 +174,8 @@ class SpatialMotion(NamedTuple):
     normals: np.ndarray  # outward unit normals of both, each in the frame of its block, (n_joints, 6)
     tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
+    apart: np.ndarray  # from centroid b to a when geometry was measured that may be held, else nan [m], (n_joints, 3)
+    opened: np.ndarray  # by how much a point opened since the step before it was measured [m], (n_points,)
     scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 9)
     edges: (
         np.ndarray

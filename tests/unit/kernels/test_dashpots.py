@@ -32,7 +32,7 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     joints = SimpleNamespace(
         blocks=np.array([[0, 1], [1, 2]]), starts=np.array([0, n_points, n]), kn=rng.uniform(1e3, 4e3, n),
         ks=rng.uniform(1e3, 4e3, n), frames=np.array([turned(rng).ravel() for _ in range(n)]),
-        levers=np.zeros((n, 18)), points=rng.uniform(-1.0, 1.0, (n, 3)),
+        levers=np.zeros((n, 18)), points=rng.uniform(-1.0, 1.0, (n, 3)), held=np.full(2, -1),
     )  # fmt: skip
     bodies = SimpleNamespace(
         positions=rng.uniform(-1.0, 1.0, (3, 3)), velocities=rng.uniform(-1.0, 1.0, (3, 6)), forces=np.zeros((3, 6)),
