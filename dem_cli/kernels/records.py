@@ -73,7 +73,7 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
-    held: np.ndarray = NO_JOINTS  # in space: points that touch, where geometry is held; −1: just measured, (n_joints,)
+    held: np.ndarray = NO_JOINTS  # in space: points that touch, n, where geometry is held; −1 − n: just measured, (n_joints,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -276,7 +276,9 @@ class Dampers(NamedTuple):
     rates: np.ndarray  # opening and sliding before the step [m/s], where elements ask for it, (n_points, d)
     gains: np.ndarray  # what a turn reads, of the points that touch one behind another, columns as in dashpots.py,
     # (n_points, 16), in space as in spatial_dashpots.py, (n_points, 18)
-    packed: np.ndarray  # the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    packed: np.ndarray  # in the plane the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    lasts: np.ndarray  # in space these are packed[j]:lasts[j], and packed[-1] the first row that is free, (n_joints,)
+    rooms: np.ndarray  # how many they may become where they are, (n_joints,)
     holders: np.ndarray  # and these the points of the rows, (n_points,)
     active: np.ndarray  # joints that have rows; the last entry is how many they are, (n_joints + 1,)
     awake: np.ndarray  # those of them that are swept once more, (n_joints,)

@@ -150,7 +150,7 @@ def _goes_on(joints, contacts, dampers, joint):
 
     Points that have met in the step before act for all of this one.
     """
-    rows, states, first, last = dampers.gains, dampers.states, joints.starts[joint], dampers.packed[joint]
+    states, first, last = dampers.states, dampers.packed[joint], dampers.lasts[joint]
     if last - first != joints.held[joint] or dampers.met[joint] != 0:
         return False
     for row in range(first, last):
@@ -162,11 +162,37 @@ def _goes_on(joints, contacts, dampers, joint):
 
 
 @always_inline
+def _count_touching(held):
+    """Points of a joint that touch, whether its geometry is held or was just measured."""
+    return held if held >= 0 else -1 - held
+
+
+@inline
+def _make_room(joints, dampers):
+    """Begins with the first row again, for all joints, where those that may come now have no room any more."""
+    needed = dampers.packed[-1]
+    for joint in range(joints.held.shape[0]):
+        needed += _count_touching(joints.held[joint])
+    if needed > dampers.gains.shape[0]:
+        dampers.packed[:], dampers.lasts[:], dampers.rooms[:] = 0, 0, 0
+
+
+@always_inline
+def _first_row(joints, dampers, joint):
+    """Where the rows of a joint go that are made anew: where they were, or where nothing is yet."""
+    packed, n = dampers.packed, _count_touching(joints.held[joint])
+    if n > dampers.rooms[joint]:
+        packed[joint], dampers.rooms[joint] = packed[-1], n
+        packed[-1] += n
+    return packed[joint]
+
+
+@always_inline
 def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
     """Impulses of rows that go on, as far as they may, onto the blocks."""
     rows, holders, slips, seen = dampers.gains, dampers.holders, contacts.slip, dampers.slips
     pushed, turned = scale(0.0, like), scale(0.0, like)
-    for number in range(joints.starts[joint], dampers.packed[joint]):
+    for number in range(dampers.packed[joint], dampers.lasts[joint]):
         row = np.uint64(number)
         point = np.uint64(holders[row])
         seen[point] = slips[point]
@@ -189,7 +215,7 @@ def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
 
 @inline
 def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """As dashpots.meet_in_plane; rows of joint j from starts[j] up to packed[j]. Those that go on are not made anew."""
+    """As dashpots.meet_in_plane; rows of joint j from packed[j] up to lasts[j]. Those that go on are not made anew."""
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
@@ -197,19 +223,20 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     pushes[:] = 0.0
     motions, lifts = dampers.motions, dampers.lifts
-    elements, packed, n_met, n_active = dampers.elements, dampers.packed, 0, 0
+    elements, packed, lasts, n_met, n_active = dampers.elements, dampers.packed, dampers.lasts, 0, 0
+    _make_room(joints, dampers)
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         if elements.shape[0] == 0 and _goes_on(joints, contacts, dampers, joint):
-            if packed[joint] > starts[joint]:
+            if lasts[joint] > packed[joint]:
                 _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like)
                 dampers.active[n_active] = number
                 n_active += 1
             continue
         half, masses = 0.5 * viscosity[joint] * dt, inverse_masses[a, 0] + inverse_masses[b, 0]
         dampers.met[joint] = 0
-        n_rows = starts[joint]
+        n_rows = _first_row(joints, dampers, joint)
         mobilities = (load_mobility(bodies.mobilities, a, like), load_mobility(bodies.mobilities, b, like))
         xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
@@ -266,8 +293,8 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             add_at(pushes, b, 0, pushed, 1.0)
             add_at(pushes, a, 3, turned_a, -1.0)
             add_at(pushes, b, 3, turned_b, 1.0)
-        packed[joint] = n_rows
-        if n_rows > starts[joint]:
+        lasts[joint] = n_rows
+        if n_rows > packed[joint]:
             dampers.active[n_active] = number
             n_active += 1
     dampers.active[blocks.shape[0]] = n_active
@@ -285,7 +312,7 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n,
     for i in range(n):
         number = swept[n - 1 - i if backwards else i]
         joint = np.uint64(number)
-        low, high, change = joints.starts[joint], packed[joint], 0.0
+        low, high, change = packed[joint], dampers.lasts[joint], 0.0
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
         mobility_a = load_mobility(bodies.mobilities, a, like)

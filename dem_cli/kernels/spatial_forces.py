@@ -147,7 +147,7 @@ def make_spatial_forces(
                 if strains:
                     stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
             if holds:
-                joints.held[joint] = n_touch if held else -1
+                joints.held[joint] = n_touch if held else -1 - n_touch
             if n_loaded > 0:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
