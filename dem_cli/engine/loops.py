@@ -43,8 +43,8 @@ def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
     return (make_profiled_forces if profiled else make_planar_forces)(law.function, law.bonded, **flags)
 
 
-def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
-    return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), **flags)
+def _in_space(law: Law, profiled: bool, keeps: bool = False, **flags: bool) -> Callable:
+    return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), capped=profiled, **flags)
 
 
 FORCES = {2: _in_plane, 3: _in_space}  # where geometry moves, by dimension: what makes the loop over joints of a law

@@ -209,7 +209,8 @@ class SpatialMotion(NamedTuple):
     def kept(self) -> SpatialMotion:
         """The same with a copy of what changes."""
         changing = ("features", "markers", "types", "corners", "shares", "spans", "arms")
-        return self._replace(**{name: getattr(self, name).copy() for name in changing})
+        unmeasured = np.full_like(self.apart, np.nan)
+        return self._replace(apart=unmeasured, **{name: getattr(self, name).copy() for name in changing})
 
 
 CORNER_OF_B, CORNER_OF_A, CROSSING, FIXED_TO_B = 0, 1, 2, 3  # of SpatialMotion.types

@@ -29,8 +29,11 @@ SHIFT = 1e-5  # of its size: by so much its blocks may move against each other m
 
 
 @kernel
-def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded):
-    """Frames, places and gaps of the points of a joint where its blocks are now; renewed first where that is due."""
+def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
+    """Frames, places and gaps of the points of a joint where its blocks are now; renewed first where that is due.
+
+    capped: joints may have caps; holds: what is found may be held from now on.
+    """
     frames, places, gaps, normals = joints.frames, joints.points, contacts.gaps, contacts.normal
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
     first, last = joints.starts[joint], joints.starts[joint + 1]
@@ -46,7 +49,8 @@ def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded):
         if joints.kn[point] == 0.0:
             continue
         normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
-        gap, place = on_cap(geometry, bodies, joint, point, gap, place, frame)
+        if capped:
+            gap, place = on_cap(geometry, bodies, joint, point, gap, place, frame)
         geometry.opened[point] = gap - gaps[point]
         gaps[point] = gap
         t1, t2 = tangents3(normal, along)
@@ -54,9 +58,15 @@ def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded):
             frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
             places[point, k] = place[k]
     tilt, apart = axpy(-1.0, frame[0], frame[1]), minus3(row3(bodies.positions, a), row3(bodies.positions, b))
-    holds = geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
+    holds = holds and geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
     for k in range(3):
         geometry.apart[joint, k] = apart[k] if holds else math.nan
+
+
+@always_inline
+def measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
+    """As _measure, for the loops that are made for a law (renewal.renew says why)."""
+    _measure(np.int64(joint), joints, geometry, contacts, bodies, remembers, bonded, capped, holds)
 
 
 @always_inline
@@ -72,20 +82,20 @@ def _keeps(geometry, bodies, joint, a, b):
 def make_spatial_forces(
     law: Callable,
     bonded: bool = False,
-    keeps: bool = False,
     meets: bool = False,
     rigid: bool = False,
     remembers: int = 0,
+    capped: bool = False,
     strains: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    keeps: dampers go with the springs, and geometry is held while blocks hardly move. meets, rigid: as in
-    planar_forces.py. remembers: numbers of a point's memory that belong to the law. strains: blocks deform
+    meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
+    remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
     (kernels/deformation); their faces stay plane, and geometry is measured in each step.
     """
     assert remembers <= MOST_LEFT
-    press, holds = make_press(law, bonded), keeps and not strains
+    press, holds = make_press(law, bonded), meets and not strains
 
     @inline
     def spatial_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
@@ -101,7 +111,7 @@ def make_spatial_forces(
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
             held = holds and _keeps(geometry, bodies, joint, a, b)
             if not held:
-                _measure(number, joints, geometry, contacts, bodies, remembers, bonded)
+                measure(number, joints, geometry, contacts, bodies, remembers, bonded, capped, holds)
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             va = load(velocities, a, 0, like)
             relative = axpy(-1.0, va, load(velocities, b, 0, like))
@@ -152,7 +162,8 @@ def make_spatial_forces(
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
-    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "strains": strains}
+    flags = {"bonded": bonded, "meets": meets, "rigid": rigid, "capped": capped}
+    flags |= {"strains": strains}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 
 
