@@ -19,7 +19,7 @@ from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.vec import axpy, dot, load, load_frame, norm, scale
 
 ITERATIONS = 8  # of the midpoint, at most; each gains as many digits as a step turns by less than a radian
-HELD = 1e-5  # rad: what touches a block that turned by less since then is where it was
+HELD = 2e-6  # rad: what touches a block that turned by less since then is where it was
 CHANGE = 1e-30  # of |w|²: smaller changes of the midpoint, squared, are round-off
 
 
