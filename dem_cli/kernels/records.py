@@ -73,7 +73,9 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
-    held: np.ndarray = NO_JOINTS  # in space: points that touch, n, where geometry is held; −1 − n: just measured, (n_joints,)
+    held: np.ndarray = (
+        NO_JOINTS  # in space: points that touch, n, where geometry is held; −1 − n: just measured, (n_joints,)
+    )
 
     @property
     def owners(self) -> np.ndarray:

@@ -196,8 +196,10 @@ def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
         row = np.uint64(number)
         point = np.uint64(holders[row])
         seen[point] = slips[point]
-        least, normal, impulse = least_of(contacts.normal[point], dt), load(rows, row, NORMAL, like), load(
-            rows, row, IMPULSE, like
+        least, normal, impulse = (
+            least_of(contacts.normal[point], dt),
+            load(rows, row, NORMAL, like),
+            load(rows, row, IMPULSE, like),
         )
         rows[row, LEAST] = least
         short = least - dot(normal, impulse)
@@ -323,7 +325,11 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n,
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
         for j in range(high - low):
             row = np.uint64(high - 1 - j if backwards else low + j)
-            normal, impulse, arm_a = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like), load(rows, row, ARM, like)
+            normal, impulse, arm_a = (
+                load(rows, row, NORMAL, like),
+                load(rows, row, IMPULSE, like),
+                load(rows, row, ARM, like),
+            )
             arm_b = axpy(1.0, apart, arm_a)
             turning = axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b))
             rate = plus_modes(motions, velocities, holders[row], a, b, axpy(1.0, turning, axpy(-1.0, va, vb)))

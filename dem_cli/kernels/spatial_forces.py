@@ -23,7 +23,6 @@ from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tange
 from dem_cli.kernels.spatial_points import SIZE
 from dem_cli.kernels.vec import axpy, compose, dot, load, load_frame, scale, store
 
-
 HOLDS = 1e-3  # sine of the angle between faces up to which a joint may hold its geometry
 SHIFT = 1e-5  # of its size: by so much its blocks may move against each other meanwhile
 
@@ -58,7 +57,9 @@ def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, cappe
             frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
             places[point, k] = place[k]
     tilt, apart = axpy(-1.0, frame[0], frame[1]), minus3(row3(bodies.positions, a), row3(bodies.positions, b))
-    holds = holds and geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
+    holds = (
+        holds and geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
+    )
     for k in range(3):
         geometry.apart[joint, k] = apart[k] if holds else math.nan
 

@@ -196,6 +196,27 @@ def test_open_slots_hold_nothing():
     assert (contacts.memory == 0.0).all()
 
 
+def test_rows_that_move_to_and_fro_change_nothing():
+    """Points come and go, so that joints need more room than they have, until all begin with the first row again."""
+    rng = np.random.default_rng(2)
+    old = scene(viscosity=0.05)
+    starts = []
+    for _ in range(12):
+        joints, bodies, contacts, _, dampers = old
+        touching = rng.random(len(joints.kn)) < 0.6
+        contacts.normal[:] = np.where(touching, 1e9, 0.0)
+        joints.held[:] = -1 - touching.reshape(2, -1).sum(axis=1)
+        new = scene(viscosity=0.05)
+        new[1].velocities[:], new[2].normal[:], new[2].memory[:] = bodies.velocities, contacts.normal, contacts.memory
+        new[4].states[:], new[0].held[:] = dampers.states, joints.held
+        for each in (old, new):
+            step(*each, 1, np.full((3, 6), 0.1))
+        assert (new[1].velocities == bodies.velocities).all()
+        assert (new[2].memory == contacts.memory).all()
+        starts.append(dampers.packed[0])
+    assert starts[-1] < max(starts) > 0
+
+
 def test_impulses_take_energy_whatever_the_stiffness():
     """Energy only falls, from soft to next to rigid dashpots, after one pair of sweeps."""
     for viscosity in (1e-3, 1.0, 1e3, 1e6):
